@@ -23,36 +23,17 @@ fn derivations(criterion: &mut Criterion) {
             Method::LindstedtPoincare,
             40,
         ),
-        (
-            "pendulum to A^20",
-            "x'' + sin(x) = 0",
-            Method::LindstedtPoincare,
-            20,
-        ),
-        (
-            "van der Pol to mu^16",
-            "x'' - mu*(1 - x^2)*x' + x = 0",
-            Method::LindstedtPoincare,
-            16,
-        ),
+        ("pendulum to A^20", "x'' + sin(x) = 0", Method::LindstedtPoincare, 20),
+        ("van der Pol to mu^16", "x'' - mu*(1 - x^2)*x' + x = 0", Method::LindstedtPoincare, 16),
         (
             "a2 a3 a5 symbolic to eps^6",
             "x'' + x + eps*(a2*x^2 + a3*x^3 + a5*x^5) = 0",
             Method::LindstedtPoincare,
             6,
         ),
-        (
-            "homotopy on Duffing, order 8",
-            "x'' + x + eps*x^3 = 0",
-            Method::HomotopyPerturbation,
-            8,
-        ),
+        ("homotopy on Duffing, order 8", "x'' + x + eps*x^3 = 0", Method::HomotopyPerturbation, 8),
     ] {
-        let options = Options {
-            method: Some(method),
-            order: Some(order),
-            ..Options::default()
-        };
+        let options = Options { method: Some(method), order: Some(order), ..Options::default() };
         criterion.bench_function(name, |bencher| {
             bencher.iter(|| {
                 let oscillator = Oscillator::parse(equation).expect("an oscillator");
@@ -64,10 +45,7 @@ fn derivations(criterion: &mut Criterion) {
 
 /// The balance of many harmonics, and the whole table.
 fn methods(criterion: &mut Criterion) {
-    for (name, equation) in [
-        ("Duffing", "x'' + x + x^3 = 0"),
-        ("pendulum", "x'' + sin(x) = 0"),
-    ] {
+    for (name, equation) in [("Duffing", "x'' + x + x^3 = 0"), ("pendulum", "x'' + sin(x) = 0")] {
         let oscillator = Oscillator::parse(equation).expect("an oscillator");
         let options = Options {
             method: Some(Method::HarmonicBalance),
@@ -82,9 +60,7 @@ fn methods(criterion: &mut Criterion) {
             });
         });
         let mut values = Values::default();
-        values
-            .insert("A".into(), "3/2".parse().expect("a number"))
-            .expect("a value");
+        values.insert("A".into(), "3/2".parse().expect("a number")).expect("a value");
         criterion.bench_function(&format!("every method compared, {name}"), |bencher| {
             bencher.iter(|| compare(&oscillator, &values, None, 0.01).expect("a table"));
         });
@@ -94,13 +70,7 @@ fn methods(criterion: &mut Criterion) {
 fn contact(criterion: &mut Criterion) {
     let stiffness = Design::default().stiffness().expect("a stiffness");
     criterion.bench_function("impact of the paper", |bencher| {
-        bencher.iter(|| {
-            impact::solve(Setup {
-                stiffness,
-                ..Setup::default()
-            })
-            .expect("an impact")
-        });
+        bencher.iter(|| impact::solve(Setup { stiffness, ..Setup::default() }).expect("an impact"));
     });
 }
 

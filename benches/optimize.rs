@@ -28,20 +28,11 @@ fn benches(criterion: &mut Criterion) {
                 Ok(design) => question.evaluation(&design),
                 Err(_) => lindstedt::genetic::Evaluation::of(f64::INFINITY),
             };
-            search(
-                &space,
-                evaluate,
-                &question.genetic,
-                &mut generator(1, 0),
-                &mut |_| true,
-            )
+            search(&space, evaluate, &question.genetic, &mut generator(1, 0), &mut |_| true)
         });
     });
     slow.bench_function("a study of two runs", |bencher| {
-        let two = Question {
-            runs: 2,
-            ..question.clone()
-        };
+        let two = Question { runs: 2, ..question.clone() };
         bencher.iter(|| optimize(two.clone(), vec![], &Watch::default()));
     });
 }

@@ -7,21 +7,15 @@ use lindstedt::response::{Question, respond};
 fn duffing(harmonics: Option<usize>) -> Question {
     let equation = "x'' + x'/10 + x + x^3 - F*cos(Omega*t) = 0";
     let question = Question::new(equation, "Omega", [0.5, 2.5], "F = 3/10").expect("a question");
-    Question {
-        harmonics,
-        ..question
-    }
+    Question { harmonics, ..question }
 }
 
 fn benches(criterion: &mut Criterion) {
     for (name, harmonics) in [("automatic", None), ("20 harmonics", Some(20))] {
         let question = duffing(harmonics);
-        criterion.bench_function(
-            &format!("response of Duffing's oscillator, {name}"),
-            |bencher| {
-                bencher.iter(|| respond(&question).expect("a response"));
-            },
-        );
+        criterion.bench_function(&format!("response of Duffing's oscillator, {name}"), |bencher| {
+            bencher.iter(|| respond(&question).expect("a response"));
+        });
     }
 }
 

@@ -19,12 +19,7 @@ fn scheme(amplitude: Amplitude) -> Scheme {
 }
 
 fn term<R: Ring>(position: u32, velocity: u32, coefficient: FourierSeries<R>) -> ForceTerm<R> {
-    ForceTerm {
-        order: 1,
-        position,
-        velocity,
-        coefficient,
-    }
+    ForceTerm { order: 1, position, velocity, coefficient }
 }
 
 fn numbers(criterion: &mut Criterion) {
@@ -33,12 +28,7 @@ fn numbers(criterion: &mut Criterion) {
     let van_der_pol = vec![term(2, 1, integer(4)), term(0, 1, integer(-1))];
     let works = [
         ("Duffing", duffing, Amplitude::Free, [10, 20, 40, 80]),
-        (
-            "van der Pol",
-            van_der_pol,
-            Amplitude::Determined,
-            [8, 16, 32, 64],
-        ),
+        ("van der Pol", van_der_pol, Amplitude::Determined, [8, 16, 32, 64]),
     ];
     for (name, force, amplitude, orders) in works {
         let mut group = criterion.benchmark_group(format!("series: {name}"));
@@ -69,11 +59,7 @@ fn numbers(criterion: &mut Criterion) {
 fn symbols(criterion: &mut Criterion) {
     let ring = Polynomials(Integers);
     let letter = |name| FourierSeries::constant(ring, Polynomial::symbol(Symbol::new(name)));
-    let force = [
-        term(2, 0, letter("a2")),
-        term(3, 0, letter("a3")),
-        term(5, 0, letter("a5")),
-    ];
+    let force = [term(2, 0, letter("a2")), term(3, 0, letter("a3")), term(5, 0, letter("a5"))];
     let scheme = scheme(Amplitude::Free);
     let mut group = criterion.benchmark_group("series: three symbols");
     group.sample_size(10);

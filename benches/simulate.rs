@@ -8,27 +8,12 @@ use lindstedt::Oscillator;
 use lindstedt::impact::{Integrator, Model, Settings, Start, simulate, simulate_many};
 use lindstedt::trajectory::{Course, sweep};
 
-const REST: Start = Start {
-    x: -1.5,
-    velocity: 0.0,
-};
+const REST: Start = Start { x: -1.5, velocity: 0.0 };
 
 fn conservative() -> (Vec<(Model, Start)>, Settings) {
-    let start = |index: u32| Start {
-        x: -1.5 + 1e-2 * f64::from(index),
-        velocity: 0.0,
-    };
-    let motions = (0..10)
-        .map(|index| {
-            (
-                Model {
-                    gamma: 1e6,
-                    ..Model::default()
-                },
-                start(index),
-            )
-        })
-        .collect();
+    let start = |index: u32| Start { x: -1.5 + 1e-2 * f64::from(index), velocity: 0.0 };
+    let motions =
+        (0..10).map(|index| (Model { gamma: 1e6, ..Model::default() }, start(index))).collect();
     let options = Settings {
         relative_tolerance: 1e-10,
         absolute_tolerance: 1e-12,
@@ -62,14 +47,8 @@ fn damped() -> (Vec<(Model, Start)>, Settings) {
 /// its designs.
 fn to_rest() -> (Vec<(Model, Start)>, Settings) {
     let (_, options) = damped();
-    let model = Model {
-        zeta: 0.02,
-        ..Model::default()
-    };
-    let model = Model {
-        mu: 0.1 * model.gamma,
-        ..model
-    };
+    let model = Model { zeta: 0.02, ..Model::default() };
+    let model = Model { mu: 0.1 * model.gamma, ..model };
     let options = Settings {
         relative_tolerance: 1e-12,
         absolute_tolerance: 1e-14,
@@ -81,11 +60,9 @@ fn to_rest() -> (Vec<(Model, Start)>, Settings) {
 }
 
 fn workloads(criterion: &mut Criterion) {
-    for (name, (motions, options)) in [
-        ("conservative", conservative()),
-        ("damped", damped()),
-        ("to rest", to_rest()),
-    ] {
+    for (name, (motions, options)) in
+        [("conservative", conservative()), ("damped", damped()), ("to rest", to_rest())]
+    {
         criterion.bench_function(&format!("{name}, several at a time"), |bencher| {
             bencher.iter(|| simulate_many(&motions, &options));
         });
@@ -111,9 +88,8 @@ fn sweep_of_an_equation(criterion: &mut Criterion) {
     let equation = Oscillator::parse("x'' + 2*zeta*x' + sin(x) = 0").expect("an equation");
     let mut course = Course::of_equation(&equation);
     course.begin("x".into(), -1.5).expect("a state");
-    let dampings: Vec<Vec<f64>> = (0..100)
-        .map(|index| vec![0.01 + 0.0019 * f64::from(index)])
-        .collect();
+    let dampings: Vec<Vec<f64>> =
+        (0..100).map(|index| vec![0.01 + 0.0019 * f64::from(index)]).collect();
     criterion.bench_function("equation, a sweep of 100 motions", |bencher| {
         bencher.iter(|| sweep(&course, &["zeta".into()], &dampings, || ()));
     });

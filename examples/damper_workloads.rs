@@ -14,13 +14,7 @@ fn main() {
     let w5: Vec<(Model, Start)> = (0..1000)
         .map(|i| {
             let x = -1.5 + 1e-4 * f64::from(i);
-            (
-                Model {
-                    gamma: 1e6,
-                    ..Model::default()
-                },
-                Start { x, velocity: 0.0 },
-            )
+            (Model { gamma: 1e6, ..Model::default() }, Start { x, velocity: 0.0 })
         })
         .collect();
     let options = Settings {
@@ -39,13 +33,7 @@ fn main() {
                 right: Some(0.05 + 0.5 * f64::from(i) / 10_000.0),
                 ..Model::default()
             };
-            (
-                model,
-                Start {
-                    x: -1.5,
-                    velocity: 0.0,
-                },
-            )
+            (model, Start { x: -1.5, velocity: 0.0 })
         })
         .collect();
     let options = Settings {
@@ -61,12 +49,8 @@ fn main() {
 
 /// The rest times by the chain and by integration, and how far they are apart.
 fn chains(motions: &[(Model, Start)]) {
-    let options = Settings {
-        duration: 1e4,
-        keep_path: false,
-        stop_at_rest: true,
-        ..Settings::default()
-    };
+    let options =
+        Settings { duration: 1e4, keep_path: false, stop_at_rest: true, ..Settings::default() };
     let rest_times = |integrator| {
         let begin = Instant::now();
         let rest = |(model, start): &(Model, Start)| {
@@ -78,10 +62,7 @@ fn chains(motions: &[(Model, Start)]) {
     };
     let (closed, found) = rest_times(Integrator::Chain);
     let (integrated, truth) = rest_times(Integrator::Taylor);
-    let errors = found
-        .iter()
-        .zip(&truth)
-        .map(|(found, truth)| (found / truth - 1.0).abs());
+    let errors = found.iter().zip(&truth).map(|(found, truth)| (found / truth - 1.0).abs());
     println!(
         "rest times by chain: {closed:.4} s, by integration one by one {integrated:.4} s, {:.1} times as long; at most {:.4} % apart",
         integrated / closed,

@@ -80,8 +80,7 @@ impl Ring for Counted {
         denominator: &mut Integer,
     ) {
         let elements: Vec<&mut Integer> = elements.into_iter().collect();
-        self.divisors
-            .set(self.divisors.get() + elements.len() as u64);
+        self.divisors.set(self.divisors.get() + elements.len() as u64);
         Integers.reduce(elements, denominator);
     }
     fn inverse(&self, element: &Integer) -> Option<(Integer, Integer)> {
@@ -147,10 +146,7 @@ fn expanded(
             });
             (sine.collect(), Amplitude::Free)
         }
-        "W3" => (
-            vec![term(1, 2, 1, 4, &one), term(1, 0, 1, -1, &one)],
-            Amplitude::Determined,
-        ),
+        "W3" => (vec![term(1, 2, 1, 4, &one), term(1, 0, 1, -1, &one)], Amplitude::Determined),
         _ => return Err(format!("no work {work}").into()),
     };
     let scheme = Scheme {

@@ -12,10 +12,7 @@ use lindstedt::system::{Event, Integrator, Options, System};
 const EQUATIONS: [(&str, &str); 4] = [
     ("a", "p"),
     ("b", "q"),
-    (
-        "p",
-        "(-2*sin(a) + cos(a - b)*sin(b) - sin(a - b)*(q^2 + cos(a - b)*p^2))/(2 - cos(a - b)^2)",
-    ),
+    ("p", "(-2*sin(a) + cos(a - b)*sin(b) - sin(a - b)*(q^2 + cos(a - b)*p^2))/(2 - cos(a - b)^2)"),
     (
         "q",
         "(2*cos(a - b)*sin(a) - 2*sin(b) + sin(a - b)*(2*p^2 + cos(a - b)*q^2))/(2 - cos(a - b)^2)",
@@ -35,10 +32,7 @@ pub fn report() -> Result<String, Box<dyn std::error::Error>> {
     let start = [1.5, -0.5, 0.0, 0.0];
     let upright = Event::record(parse_expression("a")?);
     let path = links.solve(0.0, &start, END, &[upright], &Options::default())?;
-    let by_runge_kutta = Options {
-        integrator: Integrator::RungeKutta,
-        ..Options::default()
-    };
+    let by_runge_kutta = Options { integrator: Integrator::RungeKutta, ..Options::default() };
     let check = links.solve(0.0, &start, END, &[], &by_runge_kutta)?;
 
     let mut out = String::from("Two links, released at rest\n\n     t          a          b\n");
@@ -55,16 +49,9 @@ pub fn report() -> Result<String, Box<dyn std::error::Error>> {
             writeln!(out, "{time:6.1} {:10.6} {:10.6}", state[0], state[1])?;
         }
     }
-    let times: Vec<String> = path
-        .occurrences()
-        .iter()
-        .map(|met| format!("{:.6}", met.time))
-        .collect();
-    writeln!(
-        out,
-        "\nthe upper link is vertical at t = {}",
-        times.join(", ")
-    )?;
+    let times: Vec<String> =
+        path.occurrences().iter().map(|met| format!("{:.6}", met.time)).collect();
+    writeln!(out, "\nthe upper link is vertical at t = {}", times.join(", "))?;
     writeln!(out, "the energy is kept to 1e-12: {}", drift < 1e-12)?;
     writeln!(out, "Runge-Kutta agrees to 1e-10: {}", difference < 1e-10)?;
     Ok(out)

@@ -30,12 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn term(order: usize, position: u32, velocity: u32, coefficient: Rational) -> ForceTerm<Integers> {
     let numerator = FourierSeries::constant(Integers, coefficient.numer().clone());
-    ForceTerm {
-        order,
-        position,
-        velocity,
-        coefficient: numerator.over(coefficient.denom()),
-    }
+    ForceTerm { order, position, velocity, coefficient: numerator.over(coefficient.denom()) }
 }
 
 /// `sin x - x` in powers of `A^2`.
@@ -44,9 +39,7 @@ fn sine(order: usize) -> Vec<ForceTerm<Integers>> {
         let sign = if n.is_multiple_of(2) { 1 } else { -1 };
         Rational::new(Integer::from(sign), factorial(2 * n as u32 + 1))
     };
-    (1..=order)
-        .map(|n| term(n, 2 * n as u32 + 1, 0, coefficient(n)))
-        .collect()
+    (1..=order).map(|n| term(n, 2 * n as u32 + 1, 0, coefficient(n))).collect()
 }
 
 fn timed(
@@ -71,10 +64,7 @@ fn conservative(force: &[ForceTerm<Integers>], order: usize) -> Result<(), Box<d
         println!("W {k} {}", mean(square));
     }
     for j in 0..=order {
-        println!(
-            "F {j} {}",
-            mean(&expansion.displacement[order].cosine(2 * j + 1))
-        );
+        println!("F {j} {}", mean(&expansion.displacement[order].cosine(2 * j + 1)));
     }
     Ok(())
 }
@@ -92,10 +82,7 @@ fn van_der_pol(order: usize) -> Result<(), Box<dyn Error>> {
         println!("A {k} {}", twice(&expansion.displacement[k].at_zero()));
     }
     for j in 0..order {
-        println!(
-            "F {j} {}",
-            twice(&expansion.displacement[order - 1].sine(2 * j + 1))
-        );
+        println!("F {j} {}", twice(&expansion.displacement[order - 1].sine(2 * j + 1)));
     }
     Ok(())
 }

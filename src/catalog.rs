@@ -49,19 +49,11 @@ impl fmt::Display for Published {
 }
 
 const fn omega(law: &'static str, order: u32) -> Option<Published> {
-    Some(Published {
-        law,
-        squared: false,
-        order,
-    })
+    Some(Published { law, squared: false, order })
 }
 
 const fn omega_squared(law: &'static str, order: u32) -> Option<Published> {
-    Some(Published {
-        law,
-        squared: true,
-        order,
-    })
+    Some(Published { law, squared: true, order })
 }
 
 const NAYFEH_MOOK: &str = "A. H. Nayfeh, D. T. Mook, Nonlinear Oscillations, Wiley 1979, chapter 2";
@@ -298,15 +290,9 @@ pub fn find(name: &str) -> Option<&'static Entry> {
 /// ```
 pub fn methods(entry: &Entry) -> Vec<(Method, Result<(), Refusal>)> {
     let attempt = |method| {
-        let options = Options {
-            method: Some(method),
-            ..Options::default()
-        };
+        let options = Options { method: Some(method), ..Options::default() };
         let oscillator = Oscillator::parse(entry.equation)?;
         solve(&oscillator, &options).map(|_| ())
     };
-    Method::ALL
-        .into_iter()
-        .map(|method| (method, attempt(method)))
-        .collect()
+    Method::ALL.into_iter().map(|method| (method, attempt(method))).collect()
 }

@@ -77,12 +77,8 @@ pub enum Trend {
 
 impl Trend {
     /// Every trend.
-    pub const ALL: [Self; 4] = [
-        Self::Falls,
-        Self::Rises,
-        Self::FirstIsLeast,
-        Self::FirstIsGreatest,
-    ];
+    pub const ALL: [Self; 4] =
+        [Self::Falls, Self::Rises, Self::FirstIsLeast, Self::FirstIsGreatest];
 
     /// The words in a file.
     pub fn name(self) -> &'static str {
@@ -311,12 +307,8 @@ pub enum Verdict {
 
 impl Verdict {
     /// Every verdict, the best first.
-    pub const ALL: [Self; 4] = [
-        Self::Reproduced,
-        Self::UnderAssumption,
-        Self::NotReproducible,
-        Self::Inconsistent,
-    ];
+    pub const ALL: [Self; 4] =
+        [Self::Reproduced, Self::UnderAssumption, Self::NotReproducible, Self::Inconsistent];
 
     /// The name in files and documents.
     pub fn name(self) -> &'static str {

@@ -73,19 +73,11 @@ struct Mistake {
 type Found<T> = Result<T, Mistake>;
 
 fn mistake<T>(span: Range<usize>, what: impl Into<String>) -> Found<T> {
-    Err(Mistake {
-        span,
-        what: what.into(),
-        help: None,
-    })
+    Err(Mistake { span, what: what.into(), help: None })
 }
 
 fn helped<T>(span: Range<usize>, what: impl Into<String>, help: impl Into<String>) -> Found<T> {
-    Err(Mistake {
-        span,
-        what: what.into(),
-        help: Some(help.into()),
-    })
+    Err(Mistake { span, what: what.into(), help: Some(help.into()) })
 }
 
 impl FromStr for Claims {
@@ -202,10 +194,7 @@ fn read(document: Document) -> Found<Option<Claims>> {
         }
         claims.push(claim(section, &values)?);
     }
-    Ok((!claims.is_empty()).then_some(Claims {
-        title: document.title,
-        claims,
-    }))
+    Ok((!claims.is_empty()).then_some(Claims { title: document.title, claims }))
 }
 
 fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> Found<Claim> {
@@ -225,35 +214,20 @@ fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> Found<Claim> {
         quantity: quantity(section, kind)?,
         equation: section.equation.as_ref().map(equation).transpose()?,
         options: options_of(section)?,
-        rule: section
-            .linearisation
-            .as_ref()
-            .map(rule)
-            .transpose()?
-            .unwrap_or_default(),
+        rule: section.linearisation.as_ref().map(rule).transpose()?.unwrap_or_default(),
         values,
         pi: None,
-        rounding: section
-            .rounding
-            .as_ref()
-            .map(rounding)
-            .transpose()?
-            .unwrap_or_default(),
+        rounding: section.rounding.as_ref().map(rounding).transpose()?.unwrap_or_default(),
         tolerance: section.tolerance.as_ref().map(tolerance).transpose()?,
     };
     let suppositions = match &section.suppose {
         Some(suppose) => suppositions(suppose.get_ref())?,
         None => vec![],
     };
-    let combinations = suppositions
-        .iter()
-        .map(|subject| subject.len() + 1)
-        .try_fold(1_usize, usize::checked_mul);
+    let combinations =
+        suppositions.iter().map(|subject| subject.len() + 1).try_fold(1_usize, usize::checked_mul);
     if combinations.is_none_or(|count| count > MOST_COMBINATIONS) {
-        let span = section
-            .suppose
-            .as_ref()
-            .map_or(section.id.span(), Spanned::span);
+        let span = section.suppose.as_ref().map_or(section.id.span(), Spanned::span);
         return mistake(
             span,
             format!("these are more than {MOST_COMBINATIONS} combinations of suppositions"),
@@ -291,18 +265,12 @@ fn quantity(section: &Section, kind: &str) -> Found<Quantity> {
         }
     };
     let formula = || -> Found<Expr> { equal_to_zero(&needed("formula", &section.formula)?) };
-    let squared = || match section
-        .of
-        .as_ref()
-        .map(|of| (of.get_ref().as_str(), of.span()))
-    {
+    let squared = || match section.of.as_ref().map(|of| (of.get_ref().as_str(), of.span())) {
         None | Some(("frequency_squared", _)) => Ok(true),
         Some(("frequency", _)) => Ok(false),
-        Some((other, span)) => helped(
-            span,
-            format!("`{other}` is no law"),
-            "give frequency_squared or frequency",
-        ),
+        Some((other, span)) => {
+            helped(span, format!("`{other}` is no law"), "give frequency_squared or frequency")
+        }
     };
     if matches!(kind, "coefficient" | "law") {
         needed("equation", &section.equation)?;
@@ -316,9 +284,7 @@ fn quantity(section: &Section, kind: &str) -> Found<Quantity> {
             let term = expression(&text)?;
             let polynomial = term.to_polynomial(&mut |_| None).ok().flatten();
             let is_product = polynomial.is_some_and(|terms| {
-                terms
-                    .single_term()
-                    .is_some_and(|(_, number)| num_traits::One::is_one(number))
+                terms.single_term().is_some_and(|(_, number)| num_traits::One::is_one(number))
             });
             if !is_product {
                 return mistake(
@@ -326,23 +292,15 @@ fn quantity(section: &Section, kind: &str) -> Found<Quantity> {
                     format!("`{term}` is no product of powers, such as A^2*eps"),
                 );
             }
-            Quantity::Coefficient {
-                squared: squared()?,
-                term,
-            }
+            Quantity::Coefficient { squared: squared()?, term }
         }
-        "law" => Quantity::Law {
-            squared: squared()?,
-        },
+        "law" => Quantity::Law { squared: squared()? },
         "taylor" => Quantity::Taylor {
             formula: formula()?,
             degree: match section.order.as_ref().map(Spanned::get_ref) {
                 Some(Order::Power(degree)) if *degree <= MOST_TAYLOR => *degree,
                 _ => {
-                    let span = section
-                        .order
-                        .as_ref()
-                        .map_or(section.id.span(), Spanned::span);
+                    let span = section.order.as_ref().map_or(section.id.span(), Spanned::span);
                     return mistake(
                         span,
                         format!(
@@ -355,14 +313,8 @@ fn quantity(section: &Section, kind: &str) -> Found<Quantity> {
         "identity" => Quantity::Identity(formula()?),
         "motion" => Quantity::Motion {
             kinetic: expression(&needed("kinetic", &section.kinetic)?)?,
-            potential: section
-                .potential
-                .as_ref()
-                .map_or(Ok(Expr::zero()), expression)?,
-            force: section
-                .force
-                .as_ref()
-                .map_or(Ok(Expr::zero()), expression)?,
+            potential: section.potential.as_ref().map_or(Ok(Expr::zero()), expression)?,
+            force: section.force.as_ref().map_or(Ok(Expr::zero()), expression)?,
         },
         "coordinates" => Quantity::Coordinates(formula()?),
         "options" => Quantity::Settings(settings(section)?),
@@ -464,11 +416,7 @@ fn entries(section: &Section, kind: &str) -> Found<Vec<Entry>> {
             Ok(Entry {
                 values: own(row.get_ref())?,
                 printed: printed.get_ref().clone(),
-                read_as: row
-                    .get_ref()
-                    .read_as
-                    .as_ref()
-                    .map(|text| text.get_ref().clone()),
+                read_as: row.get_ref().read_as.as_ref().map(|text| text.get_ref().clone()),
                 stated: stated(kind, row.get_ref().read_as.as_ref().unwrap_or(printed))?,
             })
         };
@@ -480,17 +428,11 @@ fn entries(section: &Section, kind: &str) -> Found<Vec<Entry>> {
         (Some(printed), kind) => stated(kind, section.read_as.as_ref().unwrap_or(printed))?,
     };
     if let (Some(text), "" | "options") = (&section.read_as, kind) {
-        return mistake(
-            text.span(),
-            "`read_as` says nothing here: there is no number to be read",
-        );
+        return mistake(text.span(), "`read_as` says nothing here: there is no number to be read");
     }
     Ok(vec![Entry {
         values: BTreeMap::new(),
-        printed: section
-            .printed
-            .as_ref()
-            .map_or(String::new(), |text| text.get_ref().clone()),
+        printed: section.printed.as_ref().map_or(String::new(), |text| text.get_ref().clone()),
         read_as: section.read_as.as_ref().map(|text| text.get_ref().clone()),
         stated,
     }])
@@ -499,10 +441,7 @@ fn entries(section: &Section, kind: &str) -> Found<Vec<Entry>> {
 fn no_number<T>(section: &Section) -> Found<T> {
     helped(
         section.id.span(),
-        format!(
-            "claim `{}` has nothing that is printed",
-            section.id.get_ref()
-        ),
+        format!("claim `{}` has nothing that is printed", section.id.get_ref()),
         "give `printed`, the text with all its digits: printed = \"0.8478\"",
     )
 }
@@ -564,10 +503,7 @@ fn unknown(section: &Section, values: &BTreeMap<Symbol, Expr>) -> Found<Option<U
             ),
         );
     }
-    Ok(Some(Unknown {
-        name: symbol,
-        within: ends,
-    }))
+    Ok(Some(Unknown { name: symbol, within: ends }))
 }
 
 fn options_of(section: &Section) -> Found<Options> {
@@ -593,10 +529,7 @@ fn suppositions(suppose: &Suppose) -> Found<Vec<Vec<Supposition>>> {
     };
     let pi = |value: &Spanned<toml::Value>| -> Found<Supposition> {
         let found = number(value.get_ref(), value.span())?;
-        match found
-            .as_number()
-            .is_some_and(|number| *number > Rational::default())
-        {
+        match found.as_number().is_some_and(|number| *number > Rational::default()) {
             true => Ok(Supposition::Pi(found)),
             false => mistake(
                 value.span(),
@@ -611,33 +544,15 @@ fn suppositions(suppose: &Suppose) -> Found<Vec<Vec<Supposition>>> {
             .map(|values| Ok(Supposition::Values(table(values)?.into_iter().collect())))
             .collect::<Found<_>>()?,
         suppose.pi.iter().map(pi).collect::<Found<_>>()?,
-        each(&suppose.rounding, &|text| {
-            Ok(Supposition::Rounding(rounding(text)?))
-        })?,
+        each(&suppose.rounding, &|text| Ok(Supposition::Rounding(rounding(text)?)))?,
         each(&suppose.formula, &|text| {
-            Ok(Supposition::Formula(
-                expression(text)?,
-                text.get_ref().clone(),
-            ))
+            Ok(Supposition::Formula(expression(text)?, text.get_ref().clone()))
         })?,
-        each(&suppose.method, &|text| {
-            Ok(Supposition::Method(method(text)?))
-        })?,
+        each(&suppose.method, &|text| Ok(Supposition::Method(method(text)?)))?,
         suppose.order.iter().map(order).collect(),
-        suppose
-            .taylor
-            .iter()
-            .map(|degree| Supposition::Taylor(*degree))
-            .collect(),
-        each(&suppose.amplitude, &|text| {
-            Ok(Supposition::Amplitude(convention(text)?))
-        })?,
-        each(&suppose.linearisation, &|text| {
-            Ok(Supposition::Rule(rule(text)?))
-        })?,
+        suppose.taylor.iter().map(|degree| Supposition::Taylor(*degree)).collect(),
+        each(&suppose.amplitude, &|text| Ok(Supposition::Amplitude(convention(text)?)))?,
+        each(&suppose.linearisation, &|text| Ok(Supposition::Rule(rule(text)?)))?,
     ];
-    Ok(subjects
-        .into_iter()
-        .filter(|subject: &Vec<Supposition>| !subject.is_empty())
-        .collect())
+    Ok(subjects.into_iter().filter(|subject: &Vec<Supposition>| !subject.is_empty()).collect())
 }

@@ -29,25 +29,16 @@ const ENOUGH: usize = 8;
 /// Expressions too large to be written out; no point at which both have a value.
 pub(super) fn difference(first: &Expr, second: &Expr) -> Result<Option<Difference>, String> {
     let words = |error: ExprError| error.to_string();
-    let (one, other) = (
-        first.expand().map_err(words)?,
-        second.expand().map_err(words)?,
-    );
+    let (one, other) = (first.expand().map_err(words)?, second.expand().map_err(words)?);
     let rest = (&one - &other).expand().map_err(words)?;
     if rest.is_zero() || agree(&one, &other)? {
         return Ok(None);
     }
     let apart = |these: &Expr, those: &Expr| -> Vec<Expr> {
-        let terms = these
-            .terms()
-            .iter()
-            .filter(|term| !those.terms().contains(term));
+        let terms = these.terms().iter().filter(|term| !those.terms().contains(term));
         terms.cloned().collect()
     };
-    Ok(Some(Difference {
-        only_first: apart(&one, &other),
-        only_second: apart(&other, &one),
-    }))
+    Ok(Some(Difference { only_first: apart(&one, &other), only_second: apart(&other, &one) }))
 }
 
 /// Whether two expressions have the same value wherever both have one.
@@ -59,20 +50,15 @@ fn agree(one: &Expr, other: &Expr) -> Result<bool, String> {
     // A linear congruence: the same points on every run.
     let mut state = 0x2545_F491_4F6C_DD1D_u64;
     let mut next = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     let mut compared = 0;
     for point in 0..POINTS {
         // Roots want positive numbers, steps and signs both.
         let place = |part: f64| {
-            if point % 2 == 0 {
-                0.2 + 1.5 * part
-            } else {
-                3.0 * part - 1.5
-            }
+            if point % 2 == 0 { 0.2 + 1.5 * part } else { 3.0 * part - 1.5 }
         };
         let arguments: Vec<f64> = symbols.iter().map(|_| place(next())).collect();
         let (a, b) = (first.call(&arguments), second.call(&arguments));
@@ -115,9 +101,7 @@ pub(super) fn with_definitions(
         if !definitions.keys().any(|name| found.contains(*name)) {
             return Ok(found);
         }
-        found = found
-            .substitute_all(&definitions)
-            .map_err(|error| error.to_string())?;
+        found = found.substitute_all(&definitions).map_err(|error| error.to_string())?;
     }
     let own = definitions.keys().find(|name| found.contains(**name));
     match own {
@@ -144,13 +128,8 @@ mod tests {
 
     fn apart(one: &str, other: &str) -> Option<[String; 2]> {
         let [one, other] = [one, other].map(|text| parse_expression(text).expect("an expression"));
-        let words = |terms: Vec<Expr>| {
-            terms
-                .iter()
-                .map(ToString::to_string)
-                .collect::<Vec<_>>()
-                .join("; ")
-        };
+        let words =
+            |terms: Vec<Expr>| terms.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
         difference(&one, &other)
             .expect("a comparison")
             .map(|found| [words(found.only_first), words(found.only_second)])
@@ -172,10 +151,7 @@ mod tests {
     fn the_terms_that_differ_are_named() {
         let found = apart("(a + 1)^2 + b", "(a + 1)^2 + b^2");
         assert_eq!(found, Some(["b".to_owned(), "b^2".to_owned()]));
-        assert_eq!(
-            apart("x", "x + 1e-6"),
-            Some([String::new(), "1/1000000".to_owned()])
-        );
+        assert_eq!(apart("x", "x + 1e-6"), Some([String::new(), "1/1000000".to_owned()]));
         // It is not where both have no value that they agree.
         let [one, other] = ["sqrt(-1 - x^2)", "sqrt(-2 - x^2)"]
             .map(|text| parse_expression(text).expect("an expression"));
@@ -186,23 +162,14 @@ mod tests {
     fn definitions_may_use_each_other_but_not_themselves() {
         let define = |entries: &[(&str, &str)]| -> BTreeMap<Symbol, Expr> {
             let parsed = |text: &str| parse_expression(text).expect("an expression");
-            entries
-                .iter()
-                .map(|(name, text)| (Symbol::new(name), parsed(text)))
-                .collect()
+            entries.iter().map(|(name, text)| (Symbol::new(name), parsed(text))).collect()
         };
         let f = parse_expression("F + 1").expect("an expression");
         let found = with_definitions(&f, &define(&[("F", "k*d"), ("k", "2")]));
-        assert_eq!(
-            found.map(|found| found.to_string()),
-            Ok("1 + 2*d".to_owned())
-        );
+        assert_eq!(found.map(|found| found.to_string()), Ok("1 + 2*d".to_owned()));
         let rate = parse_expression("X' + F'").expect("an expression");
         let found = with_definitions(&rate, &define(&[("X", "t*sin(x)"), ("F'", "3")]));
-        assert_eq!(
-            found.map(|found| found.to_string()),
-            Ok("3 + sin(x) + x'*t*cos(x)".to_owned())
-        );
+        assert_eq!(found.map(|found| found.to_string()), Ok("3 + sin(x) + x'*t*cos(x)".to_owned()));
         assert!(
             with_definitions(&f, &define(&[("F", "k"), ("k", "F")]))
                 .is_err_and(|error| error.contains("itself"))

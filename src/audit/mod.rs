@@ -142,10 +142,7 @@ impl Finding {
 impl Audit {
     /// How many claims have this verdict.
     pub fn count(&self, verdict: Verdict) -> usize {
-        self.findings
-            .iter()
-            .filter(|finding| finding.verdict == verdict)
-            .count()
+        self.findings.iter().filter(|finding| finding.verdict == verdict).count()
     }
 
     /// Whether every verdict is the expected one; with `strict`, whether every claim is reproduced,
@@ -163,10 +160,7 @@ impl Audit {
 pub fn audit(claims: Claims) -> Audit {
     let mut findings: Vec<Finding> = claims.claims.into_iter().map(judge).collect();
     share_unknowns(&mut findings);
-    Audit {
-        title: claims.title,
-        findings,
-    }
+    Audit { title: claims.title, findings }
 }
 
 /// Combinations of suppositions that are tried at most.
@@ -179,9 +173,7 @@ fn combinations(subjects: &[Vec<Supposition>]) -> Vec<Vec<&Supposition>> {
         let longer: Vec<Vec<&Supposition>> = found
             .iter()
             .flat_map(|chosen| {
-                subject
-                    .iter()
-                    .map(move |one| chosen.iter().copied().chain([one]).collect())
+                subject.iter().map(move |one| chosen.iter().copied().chain([one]).collect())
             })
             .collect();
         found.extend(longer);
@@ -230,9 +222,8 @@ fn judge(claim: Claim) -> Finding {
         let shown = within.or(demands.first());
         demand = shown.map(|(found, _)| *found);
         let outside = demands.iter().filter(|_| within.is_none());
-        let outside: Vec<String> = outside
-            .map(|(found, chosen)| outside_words(found, &claim.question, chosen))
-            .collect();
+        let outside: Vec<String> =
+            outside.map(|(found, chosen)| outside_words(found, &claim.question, chosen)).collect();
         return finding(claim, tried, demand, outside);
     }
     finding(claim, tried, demand, vec![])
@@ -257,19 +248,14 @@ fn attempt(claim: &Claim, chosen: &[&Supposition]) -> Tried {
     let question = claim.question.supposing(chosen);
     let evaluator = Evaluator::new(&question);
     // What is not printed must be supposed before anything can be computed.
-    let supplied = chosen
-        .iter()
-        .any(|one| !matches!(one, Supposition::Rounding(_) | Supposition::Pi(_)));
+    let supplied =
+        chosen.iter().any(|one| !matches!(one, Supposition::Rounding(_) | Supposition::Pi(_)));
     if !claim.needs.is_empty() && !supplied {
         let needs: BTreeSet<String> = claim.needs.iter().cloned().collect();
         return Tried {
             supposing: chosen.iter().map(|one| (*one).clone()).collect(),
             words: words(&question, chosen, None),
-            computed: claim
-                .entries
-                .iter()
-                .map(|_| Err(Lack::Missing(needs.clone())))
-                .collect(),
+            computed: claim.entries.iter().map(|_| Err(Lack::Missing(needs.clone()))).collect(),
             reproduced: vec![false; claim.entries.len()],
         };
     }
@@ -286,10 +272,7 @@ fn words(
     let number = |value: &Expr| {
         let found = identity::with_definitions(value, &question.values).ok()?;
         let is_plain = value.symbols().is_empty();
-        let number = found
-            .evaluate(&BTreeMap::new())
-            .ok()
-            .filter(|_| !is_plain)?;
+        let number = found.evaluate(&BTreeMap::new()).ok().filter(|_| !is_plain)?;
         Some(format!(" = {}", decimal(number)))
     };
     let one = |supposition: &&Supposition| match supposition {
@@ -314,15 +297,10 @@ fn compare(
     chosen: &[&Supposition],
     unknown: Option<(Symbol, f64)>,
 ) -> Tried {
-    let computed: Vec<Result<Computed, Lack>> = claim
-        .entries
-        .iter()
-        .map(|entry| evaluator.compute(&entry.values, unknown))
-        .collect();
-    let numbers: Option<Vec<f64>> = computed
-        .iter()
-        .map(|found| found.as_ref().ok()?.number())
-        .collect();
+    let computed: Vec<Result<Computed, Lack>> =
+        claim.entries.iter().map(|entry| evaluator.compute(&entry.values, unknown)).collect();
+    let numbers: Option<Vec<f64>> =
+        computed.iter().map(|found| found.as_ref().ok()?.number()).collect();
     let comes_out = |(entry, found): (&Entry, &Result<Computed, Lack>)| match (&entry.stated, found)
     {
         (Stated::Number(printed), Ok(Computed::Number(number))) => {
@@ -344,9 +322,7 @@ fn compare(
         }
         (Stated::Trend(trend), Ok(_)) => {
             let same = question.tolerance.unwrap_or(SAME);
-            numbers
-                .as_ref()
-                .is_some_and(|numbers| trend.holds(numbers, same))
+            numbers.as_ref().is_some_and(|numbers| trend.holds(numbers, same))
         }
         (Stated::Words, Ok(Computed::Conflicts(conflicts))) => conflicts.is_empty(),
         _ => false,
@@ -368,29 +344,14 @@ fn solve_for(claim: &Claim, chosen: &[&Supposition], unknown: Unknown) -> Option
     let question = claim.question.supposing(chosen);
     let evaluator = Evaluator::new(&question);
     unknown::solve(unknown, &|value| {
-        let found = compare(
-            claim,
-            &question,
-            &evaluator,
-            chosen,
-            Some((unknown.name, value)),
-        );
-        let differences = claim
-            .entries
-            .iter()
-            .zip(&found.computed)
-            .map(|(entry, found)| {
-                let (Stated::Number(printed), Ok(found)) = (&entry.stated, found) else {
-                    return f64::NAN;
-                };
-                found.number().map_or(f64::NAN, |number| {
-                    number - printed.middle(question.rounding)
-                })
-            });
-        Trial {
-            differences: differences.collect(),
-            reproduces: found.is_reproduced(),
-        }
+        let found = compare(claim, &question, &evaluator, chosen, Some((unknown.name, value)));
+        let differences = claim.entries.iter().zip(&found.computed).map(|(entry, found)| {
+            let (Stated::Number(printed), Ok(found)) = (&entry.stated, found) else {
+                return f64::NAN;
+            };
+            found.number().map_or(f64::NAN, |number| number - printed.middle(question.rounding))
+        });
+        Trial { differences: differences.collect(), reproduces: found.is_reproduced() }
     })
 }
 
@@ -434,11 +395,7 @@ fn finding(
     evidence.extend(outside);
     match (best, verdict) {
         (None, Verdict::Inconsistent) if demand.is_none() => {
-            evidence.extend(
-                alone
-                    .map(|alone| against(&claim, alone))
-                    .unwrap_or_default(),
-            );
+            evidence.extend(alone.map(|alone| against(&claim, alone)).unwrap_or_default());
         }
         _ => {}
     }
@@ -451,14 +408,7 @@ fn finding(
             "{name} is not printed; every {name} from {least} to {greatest} makes it come out, of those from {low} to {high}"
         ));
     }
-    Finding {
-        missing: missing.into_iter().collect(),
-        evidence,
-        claim,
-        verdict,
-        tried,
-        demand,
-    }
+    Finding { missing: missing.into_iter().collect(), evidence, claim, verdict, tried, demand }
 }
 
 /// What is computed in place of what is printed.
@@ -466,10 +416,7 @@ fn against(claim: &Claim, tried: &Tried) -> Vec<String> {
     let several = claim.entries.len() > 1;
     if several && tried.reproduced.iter().any(|entry| *entry) {
         let count = tried.reproduced.iter().filter(|entry| **entry).count();
-        return vec![format!(
-            "{count} of {} entries come out",
-            claim.entries.len()
-        )];
+        return vec![format!("{count} of {} entries come out", claim.entries.len())];
     }
     if let Some(Stated::Trend(_)) = claim.entries.first().map(|entry| &entry.stated) {
         return vec![format!("computed: {}", numbers_of(claim, tried))];
@@ -477,10 +424,7 @@ fn against(claim: &Claim, tried: &Tried) -> Vec<String> {
     let entries = claim.entries.iter().zip(&tried.computed);
     let each = entries.flat_map(|(entry, found)| match (&entry.stated, found) {
         (Stated::Number(_), Ok(Computed::Absent)) => {
-            vec![format!(
-                "printed {}, but the derived law has no such term",
-                entry.printed
-            )]
+            vec![format!("printed {}, but the derived law has no such term", entry.printed)]
         }
         (Stated::Number(printed), Ok(found)) => {
             let number = found.number().unwrap_or(f64::NAN);
@@ -498,10 +442,7 @@ fn against(claim: &Claim, tried: &Tried) -> Vec<String> {
 
 /// A number beside the printed one.
 fn versus(entry: &Entry, printed: &Printed, number: f64) -> String {
-    let read = entry
-        .read_as
-        .as_ref()
-        .map_or(String::new(), |text| format!(", read as {text}"));
+    let read = entry.read_as.as_ref().map_or(String::new(), |text| format!(", read as {text}"));
     let computed = printed.alike(number, 6);
     let difference = match printed.relation {
         Relation::Equal if number.is_finite() && printed.value * number > 0.0 => {
@@ -515,18 +456,12 @@ fn versus(entry: &Entry, printed: &Printed, number: f64) -> String {
                     ": the printed one is {} % too large",
                     significant(100.0 * (ratio - 1.0), 3)
                 ),
-                _ => format!(
-                    ": the printed one is {} times as large",
-                    significant(ratio, 3)
-                ),
+                _ => format!(": the printed one is {} times as large", significant(ratio, 3)),
             }
         }
         _ => String::new(),
     };
-    format!(
-        "printed {}{read}, computed {computed}{difference}",
-        entry.printed
-    )
+    format!("printed {}{read}, computed {computed}{difference}", entry.printed)
 }
 
 fn formula_versus(printed: Result<Expr, String>, formula: &Expr) -> Vec<String> {
@@ -552,22 +487,18 @@ pub(crate) const ABSENT: &str = "0, no such term";
 
 /// What is computed for all entries.
 fn numbers_of(claim: &Claim, tried: &Tried) -> String {
-    let words = claim
-        .entries
-        .iter()
-        .zip(&tried.computed)
-        .map(|(entry, found)| match found {
-            Ok(Computed::Number(number)) => match &entry.stated {
-                Stated::Number(printed) => printed.alike(*number, 6),
-                _ => decimal(*number),
-            },
-            Ok(Computed::Exact(fraction)) => fraction.to_string(),
-            Ok(Computed::Absent) => ABSENT.to_owned(),
-            Ok(Computed::Formula(formula)) => formula.to_string(),
-            Ok(Computed::Conflicts(conflicts)) => format!("{} conflicts", conflicts.len()),
-            Err(Lack::Missing(_)) => "none".to_owned(),
-            Err(Lack::Refused(reason)) => reason.clone(),
-        });
+    let words = claim.entries.iter().zip(&tried.computed).map(|(entry, found)| match found {
+        Ok(Computed::Number(number)) => match &entry.stated {
+            Stated::Number(printed) => printed.alike(*number, 6),
+            _ => decimal(*number),
+        },
+        Ok(Computed::Exact(fraction)) => fraction.to_string(),
+        Ok(Computed::Absent) => ABSENT.to_owned(),
+        Ok(Computed::Formula(formula)) => formula.to_string(),
+        Ok(Computed::Conflicts(conflicts)) => format!("{} conflicts", conflicts.len()),
+        Err(Lack::Missing(_)) => "none".to_owned(),
+        Err(Lack::Refused(reason)) => reason.clone(),
+    });
     words.collect::<Vec<_>>().join(", ")
 }
 
@@ -577,10 +508,8 @@ const TOLD: usize = 8;
 /// What comes of the other things that were tried: a sentence each.
 fn others(claim: &Claim, tried: &[Tried]) -> Vec<String> {
     let entries = claim.entries.len();
-    let is_trend = matches!(
-        claim.entries.first().map(|entry| &entry.stated),
-        Some(Stated::Trend(_))
-    );
+    let is_trend =
+        matches!(claim.entries.first().map(|entry| &entry.stated), Some(Stated::Trend(_)));
     let told = tried.iter().enumerate().filter(|(index, one)| {
         // The claim alone is told elsewhere, but for how much of it comes out.
         let worth = *index > 0 || entries > 1 && !is_trend && tried.len() > 1;
@@ -617,9 +546,7 @@ fn others(claim: &Claim, tried: &[Tried]) -> Vec<String> {
 /// Claims that share an unknown must ask for the same values of it.
 fn share_unknowns(findings: &mut [Finding]) {
     let demanded = |finding: &Finding| {
-        finding
-            .demand
-            .filter(|demand| demand.is_within && finding.verdict.is_reproduced())
+        finding.demand.filter(|demand| demand.is_within && finding.verdict.is_reproduced())
     };
     let demands: Vec<(usize, String, Demand)> = findings
         .iter()
@@ -644,11 +571,8 @@ fn share_unknowns(findings: &mut [Finding]) {
                 range(of_other)
             ));
         } else if !with.is_empty() {
-            let ranges: Vec<[f64; 2]> = with
-                .iter()
-                .map(|(_, _, of_other)| of_other.range)
-                .chain([demand.range])
-                .collect();
+            let ranges: Vec<[f64; 2]> =
+                with.iter().map(|(_, _, of_other)| of_other.range).chain([demand.range]).collect();
             let ids: Vec<String> = with.iter().map(|(_, id, _)| format!("`{id}`")).collect();
             if let Some(common) = unknown::in_common(&ranges) {
                 let [low, high] = common.map(|end| significant(end, 4));

@@ -98,21 +98,13 @@ const RULES: [Rule; 8] = [
 /// What these options have against each other, a sentence each; what is not stated breaks no rule.
 pub(super) fn conflicts(settings: &[(String, String)]) -> Vec<String> {
     let stated = |name: &str| {
-        settings
-            .iter()
-            .find(|(option, _)| option == name)
-            .map(|entry| entry.1.as_str())
+        settings.iter().find(|(option, _)| option == name).map(|entry| entry.1.as_str())
     };
     let broken = RULES.iter().filter_map(|rule| {
         let value = stated(rule.option)?;
         let other = stated(rule.needs)?;
-        let applies = rule
-            .value
-            .is_none_or(|wanted| value.eq_ignore_ascii_case(wanted));
-        let met = rule
-            .among
-            .iter()
-            .any(|wanted| other.eq_ignore_ascii_case(wanted));
+        let applies = rule.value.is_none_or(|wanted| value.eq_ignore_ascii_case(wanted));
+        let met = rule.among.iter().any(|wanted| other.eq_ignore_ascii_case(wanted));
         (applies && !met).then(|| {
             format!(
                 "{} = {value} needs {} = {}, not {other}: {}",
@@ -128,20 +120,14 @@ mod tests {
     use super::*;
 
     fn found(settings: &[(&str, &str)]) -> usize {
-        let own = settings
-            .iter()
-            .map(|(name, value)| ((*name).to_owned(), (*value).to_owned()));
+        let own = settings.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned()));
         conflicts(&own.collect::<Vec<_>>()).len()
     }
 
     #[test]
     fn rules_speak_of_known_options_alone() {
         for rule in RULES {
-            assert!(
-                KNOWN.contains(&rule.option) && KNOWN.contains(&rule.needs),
-                "{}",
-                rule.option
-            );
+            assert!(KNOWN.contains(&rule.option) && KNOWN.contains(&rule.needs), "{}", rule.option);
         }
     }
 
@@ -151,9 +137,6 @@ mod tests {
         assert_eq!(found(&[heuristic, ("population type", "Bit string")]), 1);
         assert_eq!(found(&[heuristic, ("population type", "double vector")]), 0);
         assert_eq!(found(&[heuristic]), 0);
-        assert_eq!(
-            found(&[("penalty factor", "100"), ("constraints", "bounds")]),
-            1
-        );
+        assert_eq!(found(&[("penalty factor", "100"), ("constraints", "bounds")]), 1);
     }
 }

@@ -121,10 +121,7 @@ impl Printed {
         }
         let (digits, exponent) = unsigned.split_once(['e', 'E']).unwrap_or((unsigned, "0"));
         let (whole, part) = digits.split_once('.').unwrap_or((digits, "0"));
-        let exponent: i32 = exponent
-            .parse()
-            .ok()
-            .filter(|size: &i32| size.abs() <= 300)?;
+        let exponent: i32 = exponent.parse().ok().filter(|size: &i32| size.abs() <= 300)?;
         // A leading zero may be left out.
         let is_whole_number = all_digits(whole) || whole.is_empty() && digits.contains('.');
         if !(is_whole_number && all_digits(part)) {
@@ -147,9 +144,7 @@ impl Printed {
 
     /// Digits behind the decimal point.
     fn decimals(&self) -> usize {
-        self.digits
-            .split_once('.')
-            .map_or(0, |(_, part)| part.len())
+        self.digits.split_once('.').map_or(0, |(_, part)| part.len())
     }
 
     /// How many digits it has that say something.
@@ -210,9 +205,7 @@ impl Printed {
 
     fn has_digits_of(&self, number: f64) -> bool {
         let written = format!("{:.*}", self.decimals(), number.abs() / self.scale);
-        let zeros = written
-            .bytes()
-            .all(|letter| !letter.is_ascii_digit() || letter == b'0');
+        let zeros = written.bytes().all(|letter| !letter.is_ascii_digit() || letter == b'0');
         let written = written.trim_start_matches('0');
         // No sign stands before a zero; a leading zero may be left out.
         written == self.digits.trim_start_matches('0')
@@ -306,9 +299,6 @@ mod tests {
         ] {
             assert_eq!(Printed::read(text), None, "{text}");
         }
-        assert_eq!(
-            Printed::read("0.0340").map(|it| it.significant_digits()),
-            Some(3)
-        );
+        assert_eq!(Printed::read("0.0340").map(|it| it.significant_digits()), Some(3));
     }
 }

@@ -31,41 +31,17 @@ use crate::verify::{DEFAULT_TOLERANCE, Extent, judge_to, needed_values};
 /// What the program computes by name, beside the values that a file gives: the name, what it needs,
 /// what it is.
 pub const NAMES: [(&str, &str, &str); 29] = [
-    (
-        "frequency",
-        "equation, its parameters, A",
-        "omega by the method",
-    ),
-    (
-        "true_frequency",
-        "equation, its parameters, A",
-        "omega of the true motion",
-    ),
+    ("frequency", "equation, its parameters, A", "omega by the method"),
+    ("true_frequency", "equation, its parameters, A", "omega of the true motion"),
     (
         "max_deviation",
         "equation, its parameters, A",
         "largest deviation of the motion over one true period, over |A|",
     ),
-    (
-        "paper_time_to_contact",
-        "A, xc",
-        "time from the release to the barrier, by one cosine",
-    ),
-    (
-        "paper_speed",
-        "A, xc",
-        "speed at the barrier, by one cosine",
-    ),
-    (
-        "paper_penetration",
-        "A, xc, gamma",
-        "greatest depth, by the fitted line",
-    ),
-    (
-        "paper_duration",
-        "A, xc, gamma",
-        "duration of the contact, by the fitted line",
-    ),
+    ("paper_time_to_contact", "A, xc", "time from the release to the barrier, by one cosine"),
+    ("paper_speed", "A, xc", "speed at the barrier, by one cosine"),
+    ("paper_penetration", "A, xc, gamma", "greatest depth, by the fitted line"),
+    ("paper_duration", "A, xc, gamma", "duration of the contact, by the fitted line"),
     (
         "paper_period",
         "A, xc, gamma",
@@ -78,87 +54,27 @@ pub const NAMES: [(&str, &str, &str); 29] = [
         "A, xc, gamma",
         "largest deviation of these phases from the true motion, over |A|",
     ),
-    (
-        "energy_speed",
-        "A, xc",
-        "speed at the barrier by the energy, exact for the equation",
-    ),
-    (
-        "energy_penetration",
-        "A, xc, gamma",
-        "greatest depth by the fitted line with that speed",
-    ),
-    (
-        "energy_duration",
-        "A, xc, gamma",
-        "duration by the fitted line with that speed",
-    ),
-    (
-        "line_slope",
-        "A, xc, gamma",
-        "slope p of the line p*x - q, per unit of gamma",
-    ),
+    ("energy_speed", "A, xc", "speed at the barrier by the energy, exact for the equation"),
+    ("energy_penetration", "A, xc, gamma", "greatest depth by the fitted line with that speed"),
+    ("energy_duration", "A, xc, gamma", "duration by the fitted line with that speed"),
+    ("line_slope", "A, xc, gamma", "slope p of the line p*x - q, per unit of gamma"),
     ("line_constant", "A, xc, gamma", "constant q of that line"),
-    (
-        "line_depth",
-        "A, xc, gamma",
-        "depth over which it is fitted",
-    ),
-    (
-        "true_time_to_contact",
-        "A, xc, gamma",
-        "time to the barrier, by Runge-Kutta",
-    ),
-    (
-        "true_speed",
-        "A, xc, gamma",
-        "speed at the barrier, by Runge-Kutta",
-    ),
-    (
-        "true_penetration",
-        "A, xc, gamma",
-        "greatest depth, by Runge-Kutta",
-    ),
-    (
-        "true_duration",
-        "A, xc, gamma",
-        "duration of the contact, by Runge-Kutta",
-    ),
-    (
-        "true_period",
-        "A, xc, gamma",
-        "period with the impact, by Runge-Kutta",
-    ),
-    (
-        "hertz_factor",
-        "",
-        "duration times speed over depth of every Hertz contact",
-    ),
-    (
-        "rest_time",
-        "A, xc, gamma, mu, zeta, alpha",
-        "when the envelope crosses 10 %, by simulation",
-    ),
-    (
-        "rest_time_without_barrier",
-        "A, zeta, alpha",
-        "the same without a barrier",
-    ),
+    ("line_depth", "A, xc, gamma", "depth over which it is fitted"),
+    ("true_time_to_contact", "A, xc, gamma", "time to the barrier, by Runge-Kutta"),
+    ("true_speed", "A, xc, gamma", "speed at the barrier, by Runge-Kutta"),
+    ("true_penetration", "A, xc, gamma", "greatest depth, by Runge-Kutta"),
+    ("true_duration", "A, xc, gamma", "duration of the contact, by Runge-Kutta"),
+    ("true_period", "A, xc, gamma", "period with the impact, by Runge-Kutta"),
+    ("hertz_factor", "", "duration times speed over depth of every Hertz contact"),
+    ("rest_time", "A, xc, gamma, mu, zeta, alpha", "when the envelope crosses 10 %, by simulation"),
+    ("rest_time_without_barrier", "A, zeta, alpha", "the same without a barrier"),
     (
         "primary_rest_time",
         "mass_ratio, kappa, delta, y0, xc, gamma, mu, zeta, alpha",
         "rest time of the main mass with pendulum and barrier, by simulation",
     ),
-    (
-        "primary_rest_time_locked",
-        "mass_ratio, kappa, delta",
-        "the same with the pendulum locked",
-    ),
-    (
-        "primary_rest_time_without",
-        "mass_ratio, kappa, delta",
-        "the same without the pendulum",
-    ),
+    ("primary_rest_time_locked", "mass_ratio, kappa, delta", "the same with the pendulum locked"),
+    ("primary_rest_time_without", "mass_ratio, kappa, delta", "the same without the pendulum"),
     (
         "stall_generation",
         "window",
@@ -211,11 +127,7 @@ pub(super) struct Evaluator<'a> {
 
 impl<'a> Evaluator<'a> {
     pub(super) fn new(question: &'a Question) -> Self {
-        Self {
-            question,
-            law: OnceCell::new(),
-            swing: OnceCell::new(),
-        }
+        Self { question, law: OnceCell::new(), swing: OnceCell::new() }
     }
 
     /// What is computed with the values of an entry, and of an unknown where one is tried.
@@ -256,13 +168,11 @@ impl<'a> Evaluator<'a> {
             Quantity::Identity(formula) => identity::with_definitions(formula, &values)
                 .map(Computed::Formula)
                 .map_err(Lack::Refused),
-            Quantity::Motion {
-                kinetic,
-                potential,
-                force,
-            } => motion([kinetic, potential, force], &values)
-                .map(Computed::Formula)
-                .map_err(Lack::Refused),
+            Quantity::Motion { kinetic, potential, force } => {
+                motion([kinetic, potential, force], &values)
+                    .map(Computed::Formula)
+                    .map_err(Lack::Refused)
+            }
             Quantity::Coordinates(formula) => {
                 let symbols = formula.symbols();
                 let accelerations = symbols.iter().filter(|symbol| symbol.primes() == 2);
@@ -283,9 +193,7 @@ impl<'a> Evaluator<'a> {
                 solve(equation, &self.question.options).map_err(|error| error.to_string())?;
             Ok((equation.clone(), solution))
         });
-        found
-            .as_ref()
-            .map_err(|reason| Lack::Refused(reason.clone()))
+        found.as_ref().map_err(|reason| Lack::Refused(reason.clone()))
     }
 
     /// omega or omega^2 as a polynomial.
@@ -297,10 +205,7 @@ impl<'a> Evaluator<'a> {
         };
         found.cloned().ok_or_else(|| {
             let name = if squared { "omega^2" } else { "omega" };
-            Lack::Refused(format!(
-                "{} gives no polynomial for {name}",
-                solution.title()
-            ))
+            Lack::Refused(format!("{} gives no polynomial for {name}", solution.title()))
         })
     }
 
@@ -320,9 +225,7 @@ impl<'a> Evaluator<'a> {
             let solution = solve(&equation, &options).map_err(|error| words(&error))?;
             Ok((equation, solution))
         });
-        found
-            .as_ref()
-            .map_err(|reason| Lack::Refused(reason.clone()))
+        found.as_ref().map_err(|reason| Lack::Refused(reason.clone()))
     }
 }
 
@@ -351,9 +254,8 @@ fn coefficient(law: &Polynomial, wanted: &Monomial) -> Result<Computed, Lack> {
     }
     for &(letter, power) in wanted.factors() {
         let powers = law.terms().map(|(monomial, _)| monomial.exponent(letter));
-        let [least, greatest] = powers.fold([0, 0], |[least, greatest], one| {
-            [least.min(one), greatest.max(one)]
-        });
+        let [least, greatest] =
+            powers.fold([0, 0], |[least, greatest], one| [least.min(one), greatest.max(one)]);
         if [least, greatest] == [0, 0] {
             return Err(Lack::Refused(format!(
                 "`{letter}` does not occur in the derived law `{}`",
@@ -480,9 +382,8 @@ impl Scope<'_, '_> {
             "line_slope" | "line_constant" | "line_depth" => {
                 let phases = self.phases(name, ContactSpeed::Paper)?;
                 let [barrier] = self.numbers(["xc"])?;
-                let fitted = phases
-                    .fitted
-                    .ok_or_else(|| Lack::Refused("there is no line".to_owned()))?;
+                let fitted =
+                    phases.fitted.ok_or_else(|| Lack::Refused("there is no line".to_owned()))?;
                 Ok(match name {
                     "line_slope" => fitted.line.slope,
                     "line_constant" => fitted.line.q(barrier),
@@ -496,9 +397,7 @@ impl Scope<'_, '_> {
             }
             _ if name.starts_with("true_") && is_a_name(name) => {
                 let numbers = self.impact()?.truth.quantities();
-                let place = QUANTITIES_OF_AN_IMPACT
-                    .iter()
-                    .position(|known| name.ends_with(known));
+                let place = QUANTITIES_OF_AN_IMPACT.iter().position(|known| name.ends_with(known));
                 Ok(place.map_or(f64::NAN, |place| numbers[place]))
             }
             _ => Err(missing(name)),
@@ -533,9 +432,7 @@ impl Scope<'_, '_> {
     fn phases(&mut self, name: &str, speed: ContactSpeed) -> Result<ThreePhases, Lack> {
         let (equation, law) = self.evaluator.swing()?;
         // How stiff the barrier is says nothing of the way to it.
-        let hits = NAMES
-            .iter()
-            .any(|(known, needs, _)| *known == name && needs.contains("gamma"));
+        let hits = NAMES.iter().any(|(known, needs, _)| *known == name && needs.contains("gamma"));
         let needed: Vec<Symbol> = ["A", "xc", "gamma"][..if hits { 3 } else { 2 }]
             .iter()
             .map(|name| Symbol::new(name))
@@ -548,10 +445,8 @@ impl Scope<'_, '_> {
         let compiled = |expr: &Expr| {
             CompiledFunction::new(expr, &arguments(equation)).map_err(|error| refused(&error))
         };
-        let slope = equation
-            .force
-            .differentiate(equation.coordinate)
-            .map_err(|error| refused(&error))?;
+        let slope =
+            equation.force.differentiate(equation.coordinate).map_err(|error| refused(&error))?;
         let (force, slope) = (compiled(&equation.force)?, compiled(&slope)?);
         let call = |function: &CompiledFunction, x: f64| {
             let others = equation.parameters.iter().map(|name| number(name.name()));
@@ -560,11 +455,7 @@ impl Scope<'_, '_> {
         let swing = Swing {
             amplitude: number("A"),
             barrier: number("xc"),
-            stiffness: if hits {
-                number("gamma")
-            } else {
-                hertz::DEFAULT_STIFFNESS
-            },
+            stiffness: if hits { number("gamma") } else { hertz::DEFAULT_STIFFNESS },
             frequency_squared: square,
             linear_stiffness: call(&slope, 0.0),
             restoring_force: &|x| call(&force, x),
@@ -579,10 +470,8 @@ impl Scope<'_, '_> {
         if self.impact.is_none() {
             let [amplitude, barrier, stiffness] = self.numbers(["A", "xc", "gamma"])?;
             let question = self.evaluator.question;
-            let parameters = question
-                .equation
-                .as_ref()
-                .map_or(vec![], |equation| equation.parameters.clone());
+            let parameters =
+                question.equation.as_ref().map_or(vec![], |equation| equation.parameters.clone());
             let values = exact(&self.all(&parameters)?)?;
             let setup = Setup {
                 swing: question.equation.clone(),
@@ -596,53 +485,23 @@ impl Scope<'_, '_> {
             let found = crate::impact::solve(setup).map_err(|error| refused(&error))?;
             self.impact = Some(Box::new(found));
         }
-        self.impact
-            .as_deref()
-            .ok_or_else(|| Lack::Refused("there is no impact".to_owned()))
+        self.impact.as_deref().ok_or_else(|| Lack::Refused("there is no impact".to_owned()))
     }
 
     /// A main mass that nothing drives.
     fn primary(&mut self) -> Result<Primary, Lack> {
         let [mass, stiffness, damping] = self.numbers(["mass_ratio", "kappa", "delta"])?;
-        Ok(Primary {
-            mass,
-            stiffness,
-            damping,
-            force: 0.0,
-            frequency: 0.0,
-        })
+        Ok(Primary { mass, stiffness, damping, force: 0.0, frequency: 0.0 })
     }
 
     fn primary_rest_time(&mut self) -> Result<f64, Lack> {
-        let names = [
-            "mass_ratio",
-            "kappa",
-            "delta",
-            "y0",
-            "xc",
-            "gamma",
-            "mu",
-            "zeta",
-            "alpha",
-        ];
+        let names = ["mass_ratio", "kappa", "delta", "y0", "xc", "gamma", "mu", "zeta", "alpha"];
         let [_, _, _, displacement, barrier, gamma, mu, zeta, alpha] = self.numbers(names)?;
-        let model = Model {
-            zeta,
-            alpha,
-            gamma,
-            mu,
-            right: Some(barrier),
-            ..Model::default()
-        };
-        let case = PrimaryCase {
-            primary: self.primary()?,
-            model,
-            start: [0.0, 0.0, displacement, 0.0],
-        };
-        let settings = PrimarySettings {
-            duration: LONGEST_OF_A_MAIN_MASS,
-            ..PrimarySettings::default()
-        };
+        let model = Model { zeta, alpha, gamma, mu, right: Some(barrier), ..Model::default() };
+        let case =
+            PrimaryCase { primary: self.primary()?, model, start: [0.0, 0.0, displacement, 0.0] };
+        let settings =
+            PrimarySettings { duration: LONGEST_OF_A_MAIN_MASS, ..PrimarySettings::default() };
         let motion = simulate_primary(case, &settings).map_err(|error| refused(&error))?;
         motion.rest_time().map_err(|reason| refused(&reason))
     }
@@ -662,15 +521,8 @@ impl Scope<'_, '_> {
             right: barrier.map(|numbers| numbers[0]),
             ..usual
         };
-        let start = Start {
-            x: -amplitude,
-            velocity: 0.0,
-        };
-        let settings = Settings {
-            duration: LONGEST,
-            stop_at_rest: true,
-            ..Settings::default()
-        };
+        let start = Start { x: -amplitude, velocity: 0.0 };
+        let settings = Settings { duration: LONGEST, stop_at_rest: true, ..Settings::default() };
         let found = course(&model, start, Integrator::Taylor, &settings)
             .map_err(|error| refused(&error))?;
         found.rest_time.map_err(|reason| refused(&reason))
@@ -693,12 +545,8 @@ fn motion(parts: [&Expr; 3], definitions: &BTreeMap<Symbol, Expr>) -> Result<Exp
     let equations = mechanism.equations().map_err(|error| error.to_string())?;
     let words = |error: ExprError| error.to_string();
     let left = &equations.left[0];
-    let inertia = left
-        .differentiate(x.derivative().derivative())
-        .map_err(words)?;
-    Expr::divide(left, &inertia)
-        .and_then(|left| left.expand())
-        .map_err(words)
+    let inertia = left.differentiate(x.derivative().derivative()).map_err(words)?;
+    Expr::divide(left, &inertia).and_then(|left| left.expand()).map_err(words)
 }
 
 /// How long a motion is followed to its rest, in units of 1/omega.
@@ -708,13 +556,8 @@ const LONGEST: f64 = 2000.0;
 const LONGEST_OF_A_MAIN_MASS: f64 = 1000.0;
 
 /// The numbers of an impact in the order of [`ThreePhases::quantities`].
-const QUANTITIES_OF_AN_IMPACT: [&str; 5] = [
-    "_time_to_contact",
-    "_speed",
-    "_penetration",
-    "_duration",
-    "_period",
-];
+const QUANTITIES_OF_AN_IMPACT: [&str; 5] =
+    ["_time_to_contact", "_speed", "_penetration", "_duration", "_period"];
 
 /// Whether the program computes something under this name.
 pub(super) fn is_a_name(name: &str) -> bool {
@@ -723,27 +566,21 @@ pub(super) fn is_a_name(name: &str) -> bool {
 
 fn of_phases(name: &str, phases: &ThreePhases) -> Option<f64> {
     let cosine = |index: usize| match phases.phases[index].form {
-        Form::Cosine {
-            frequency, phase, ..
-        } => Some((frequency, phase)),
+        Form::Cosine { frequency, phase, .. } => Some((frequency, phase)),
         _ => None,
     };
     match name {
         "paper_frequency" => Some(cosine(0)?.0),
         "paper_phase" => Some(cosine(2)?.1),
         _ => {
-            let place = QUANTITIES_OF_AN_IMPACT
-                .iter()
-                .position(|known| name.ends_with(known))?;
+            let place = QUANTITIES_OF_AN_IMPACT.iter().position(|known| name.ends_with(known))?;
             Some(phases.quantities()[place])
         }
     }
 }
 
 fn arguments(equation: &Oscillator) -> Vec<Symbol> {
-    std::iter::once(equation.coordinate)
-        .chain(equation.parameters.iter().copied())
-        .collect()
+    std::iter::once(equation.coordinate).chain(equation.parameters.iter().copied()).collect()
 }
 
 /// Doubles as values.
@@ -752,9 +589,7 @@ fn exact(numbers: &BTreeMap<Symbol, f64>) -> Result<Values, Lack> {
     for (name, number) in numbers {
         let number =
             from_f64(*number).ok_or_else(|| Lack::Refused(format!("`{name}` is no number")))?;
-        values
-            .insert(*name, Expr::number(number))
-            .map_err(|error| refused(&error))?;
+        values.insert(*name, Expr::number(number)).map_err(|error| refused(&error))?;
     }
     Ok(values)
 }

@@ -43,10 +43,7 @@ pub(super) fn solve(unknown: Unknown, try_value: &dyn Fn(f64) -> Trial) -> Optio
     };
     let grid = |from: f64, to: f64| -> Vec<f64> {
         let inner = (1..POINTS).map(|point| place(from, to, point as f64 / POINTS as f64));
-        std::iter::once(from)
-            .chain(inner)
-            .chain(std::iter::once(to))
-            .collect()
+        std::iter::once(from).chain(inner).chain(std::iter::once(to)).collect()
     };
     let [below, above] = match by_ratio {
         true => [low / BEYOND, high * BEYOND],
@@ -76,10 +73,7 @@ pub(super) fn solve(unknown: Unknown, try_value: &dyn Fn(f64) -> Trial) -> Optio
 fn first(grid: &[f64], try_value: &dyn Fn(f64) -> Trial) -> Option<(f64, [f64; 2])> {
     let trials: Vec<Trial> = grid.iter().map(|value| try_value(*value)).collect();
     for (index, trial) in trials.iter().enumerate() {
-        let neighbours = [
-            grid[index.saturating_sub(1)],
-            grid[(index + 1).min(grid.len() - 1)],
-        ];
+        let neighbours = [grid[index.saturating_sub(1)], grid[(index + 1).min(grid.len() - 1)]];
         if trial.reproduces {
             return Some(range_about(grid[index], neighbours, try_value));
         }
@@ -90,13 +84,8 @@ fn first(grid: &[f64], try_value: &dyn Fn(f64) -> Trial) -> Option<(f64, [f64; 2
             if !(pair.0.is_finite() && pair.1.is_finite() && pair.0 * pair.1 < 0.0) {
                 continue;
             }
-            let difference = |value: f64| {
-                try_value(value)
-                    .differences
-                    .get(entry)
-                    .copied()
-                    .unwrap_or(f64::NAN)
-            };
+            let difference =
+                |value: f64| try_value(value).differences.get(entry).copied().unwrap_or(f64::NAN);
             let Ok(root) = find_root(difference, grid[index], grid[index + 1]) else {
                 continue;
             };
@@ -150,14 +139,8 @@ fn nearest(known: f64, range: [f64; 2], try_value: &dyn Fn(f64) -> Trial) -> f64
 
 /// What all of these ranges have in common.
 pub(super) fn in_common(ranges: &[[f64; 2]]) -> Option<[f64; 2]> {
-    let low = ranges
-        .iter()
-        .map(|range| range[0])
-        .fold(f64::NEG_INFINITY, f64::max);
-    let high = ranges
-        .iter()
-        .map(|range| range[1])
-        .fold(f64::INFINITY, f64::min);
+    let low = ranges.iter().map(|range| range[0]).fold(f64::NEG_INFINITY, f64::max);
+    let high = ranges.iter().map(|range| range[1]).fold(f64::INFINITY, f64::min);
     (low <= high).then_some([low, high])
 }
 
@@ -171,10 +154,7 @@ mod tests {
         printed: f64,
         half: f64,
     ) -> Option<Demand> {
-        let unknown = Unknown {
-            name: "u".into(),
-            within,
-        };
+        let unknown = Unknown { name: "u".into(), within };
         solve(unknown, &|value| Trial {
             reproduces: (function(value) - printed).abs() <= half,
             differences: vec![function(value) - printed],

@@ -31,9 +31,9 @@ impl Answer<'_> {
         let text = match common.format() {
             Format::Text => printable(&text::document(self.document, self.width)),
             Format::Latex => printable(&latex::document(self.document)),
-            Format::Html => printable(&page(self.picture, None, |page| {
-                html::document(self.document, page)
-            })),
+            Format::Html => {
+                printable(&page(self.picture, None, |page| html::document(self.document, page)))
+            }
             Format::Svg => drawn(self.picture)?,
             format => (self.other)(format)?,
         };
@@ -79,10 +79,8 @@ pub(super) fn page(
         Ok(picture) => Ok(picture.as_str()),
         Err(reason) => Err(reason.as_str()),
     });
-    let words: Vec<String> = std::env::args_os()
-        .skip(1)
-        .map(|word| word.to_string_lossy().into_owned())
-        .collect();
+    let words: Vec<String> =
+        std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
     write(&Page {
         title: &command(&what_is_asked(&words)),
         picture,
@@ -97,9 +95,7 @@ fn what_is_asked(words: &[String]) -> Vec<String> {
     let mut asked = Vec::new();
     let mut words = words.iter();
     while let Some(word) = words.next() {
-        let option = word
-            .split_once('=')
-            .map_or(word.as_str(), |(option, _)| option);
+        let option = word.split_once('=').map_or(word.as_str(), |(option, _)| option);
         if !HANDED_ON.contains(&option) {
             asked.push(word.clone());
         } else if option == word {

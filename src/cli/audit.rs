@@ -88,9 +88,7 @@ fn outcome(claims: &str, name: &str, own: &Own, common: &Common) -> Result<Outco
         ));
     }
     if common.plot.is_some() {
-        return Err(Failure::Usage(
-            "--plot: an audit draws no picture".to_owned(),
-        ));
+        return Err(Failure::Usage("--plot: an audit draws no picture".to_owned()));
     }
     let claims: Claims = claims.parse().map_err(|error: ClaimsError| {
         Failure::refused(&format!("{name}: {error}"), error.help())
@@ -105,8 +103,5 @@ fn outcome(claims: &str, name: &str, own: &Own, common: &Common) -> Result<Outco
             format => no_such(format),
         },
     };
-    Ok(Outcome {
-        verdict: Some(Verdict::of(audit.passes(own.strict))),
-        ..answer.outcome(common)?
-    })
+    Ok(Outcome { verdict: Some(Verdict::of(audit.passes(own.strict))), ..answer.outcome(common)? })
 }

@@ -26,14 +26,10 @@ impl Work for Arguments {
 
 fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.common.plot.is_some() {
-        return Err(Failure::Usage(
-            "--plot: the catalogue has no picture".to_owned(),
-        ));
+        return Err(Failure::Usage("--plot: the catalogue has no picture".to_owned()));
     }
     if arguments.common.tolerance.is_some() {
-        return Err(Failure::Usage(
-            "--tolerance: the catalogue has no verdict".to_owned(),
-        ));
+        return Err(Failure::Usage("--tolerance: the catalogue has no verdict".to_owned()));
     }
     let text = match arguments.common.format() {
         Format::Text => catalog::text(),
@@ -42,11 +38,5 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Json => json_text(&json::catalog())?,
         format => no_such(format)?,
     };
-    Ok(Outcome {
-        result: whole(text),
-        picture: None,
-        note: None,
-        verdict: None,
-        partial: false,
-    })
+    Ok(Outcome { result: whole(text), picture: None, note: None, verdict: None, partial: false })
 }

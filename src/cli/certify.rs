@@ -59,19 +59,12 @@ const LARGEST_CERTIFICATE: usize = 16 << 20;
 
 /// Two positive numbers, the smaller one first.
 fn range(text: &str) -> Result<(Rational, Rational), String> {
-    let end = |text: &str| {
-        parse_expression(text)
-            .ok()
-            .and_then(|value| value.as_number().cloned())
-    };
-    let ends = text
-        .split_once(':')
-        .and_then(|(low, high)| end(low).zip(end(high)));
-    ends.filter(|(low, high)| low.is_positive() && low < high)
-        .ok_or_else(|| {
-            "expected two positive fractions or decimals, the smaller one first, such as 1/10:3"
-                .to_owned()
-        })
+    let end = |text: &str| parse_expression(text).ok().and_then(|value| value.as_number().cloned());
+    let ends = text.split_once(':').and_then(|(low, high)| end(low).zip(end(high)));
+    ends.filter(|(low, high)| low.is_positive() && low < high).ok_or_else(|| {
+        "expected two positive fractions or decimals, the smaller one first, such as 1/10:3"
+            .to_owned()
+    })
 }
 
 impl Work for Arguments {
@@ -97,12 +90,8 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ));
     }
     derive::with_motion(&arguments.question, &[("a certificate", true)])?;
-    let Solved {
-        oscillator,
-        values,
-        solution,
-        ..
-    } = derive::solved(&arguments.question, Names::Changed)?;
+    let Solved { oscillator, values, solution, .. } =
+        derive::solved(&arguments.question, Names::Changed)?;
     let values = values.unwrap_or_default();
     // A proof of a driven motion is of the steady one alone, whose formula is that of slow
     // equations.
@@ -135,10 +124,8 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         false => certificate::certify(&oscillator, &solution, &values),
     };
     let (certificate, certified) = proved.map_err(|error| refused(&error))?;
-    let supervision = Supervision {
-        interrupt: Interrupt::by(&STOP),
-        progress: Progress::by(&PROGRESS),
-    };
+    let supervision =
+        Supervision { interrupt: Interrupt::by(&STOP), progress: Progress::by(&PROGRESS) };
     let validity = arguments.range.as_ref().map(|(low, high)| {
         with_progress("of the range", || {
             certificate::validity(
@@ -166,10 +153,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
 /// The formula of the steady motion under a drive; `None` where there is none.
 fn steady_formula(oscillator: &Oscillator, values: &Values) -> Option<Solution> {
-    let options = Options {
-        method: Some(Method::MultipleScales),
-        ..Options::default()
-    };
+    let options = Options { method: Some(Method::MultipleScales), ..Options::default() };
     let options = with_resonance_at(oscillator, &options, values).ok()?;
     solve(oscillator, &options).ok()
 }
@@ -279,8 +263,5 @@ fn printed(report: &CertificateReport, common: &Common) -> Result<Outcome, Failu
             format => no_such(format),
         },
     };
-    Ok(Outcome {
-        verdict: report.verdict().or(Some(Verdict::Pass)),
-        ..answer.outcome(common)?
-    })
+    Ok(Outcome { verdict: report.verdict().or(Some(Verdict::Pass)), ..answer.outcome(common)? })
 }

@@ -51,18 +51,13 @@ impl Work for Arguments {
 fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Compare)?;
-    let (oscillator, renamed) = named(
-        &oscillator(&formula, arguments.about.as_deref())?,
-        Names::Kept,
-    )?;
+    let (oscillator, renamed) =
+        named(&oscillator(&formula, arguments.about.as_deref())?, Names::Kept)?;
     let letters = oscillator.letters();
     let _letters = letters.in_force();
     let coordinate = oscillator.coordinate;
-    let Numbered {
-        oscillator,
-        values,
-        notes,
-    } = with_values(oscillator, &renamed, &arguments.at, &problem)?;
+    let Numbered { oscillator, values, notes } =
+        with_values(oscillator, &renamed, &arguments.at, &problem)?;
     let values = values.unwrap_or_default();
     let small = arguments.small.as_deref().or(formula.small);
     if small.is_some() {
@@ -73,17 +68,14 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let tolerance = tolerance(&arguments.common);
     let comparison = comparison::compare(&oscillator, &values, small, tolerance).map_err(
         |error| match &error {
-            comparison::ComparisonError::NoMethod(refused) => Failure::advised(
-                &error,
-                refused.first().and_then(|first| first.reason.help()),
-            ),
+            comparison::ComparisonError::NoMethod(refused) => {
+                Failure::advised(&error, refused.first().and_then(|first| first.reason.help()))
+            }
             comparison::ComparisonError::Verification(verify::VerificationError::Missing(
                 names,
             )) => {
-                let example: Vec<String> = names
-                    .iter()
-                    .map(|name| format!("--at {name}=..."))
-                    .collect();
+                let example: Vec<String> =
+                    names.iter().map(|name| format!("--at {name}=...")).collect();
                 Failure::refused(&error, Some(format!("add {}", example.join(" "))))
             }
             comparison::ComparisonError::Verification(verify::VerificationError::Unknown {
@@ -101,10 +93,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             format => no_such(format),
         },
     };
-    let passed = comparison
-        .rows
-        .iter()
-        .all(|row| row.verdict == Some(Verdict::Pass));
+    let passed = comparison.rows.iter().all(|row| row.verdict == Some(Verdict::Pass));
     let of_letters = comparison.rows.first();
     let of_letters =
         of_letters.map(|row| notes_on_letters(&letters, coordinate, &row.solution, true));
@@ -128,11 +117,8 @@ fn picture(oscillator: &Oscillator, comparison: &Comparison) -> Result<String, F
 
     let (truth, curves) = comparison::backbones(oscillator, comparison)
         .map_err(|error| Failure::refused(&error, None))?;
-    let at: Vec<String> = comparison
-        .at
-        .iter()
-        .map(|(name, value)| format!("{name} = {value}"))
-        .collect();
+    let at: Vec<String> =
+        comparison.at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let caption = format!("{}; {}", comparison.equation, at.join(", "));
     let marked = comparison.at.get("A".into()).map(f64::abs);
     backbone_figure(&truth, &curves, marked, &caption)

@@ -91,11 +91,8 @@ pub struct Arguments {
 
 /// The names of the conventions, and the convention of each.
 fn convention() -> impl TypedValueParser<Value = AmplitudeConvention> {
-    let names = [
-        AmplitudeConvention::Initial,
-        AmplitudeConvention::FirstHarmonic,
-    ]
-    .map(AmplitudeConvention::name);
+    let names = [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic]
+        .map(AmplitudeConvention::name);
     let unknown = || "no convention of this name".to_owned();
     PossibleValuesParser::new(names)
         .try_map(move |name| AmplitudeConvention::from_name(&name).ok_or_else(unknown))
@@ -104,19 +101,12 @@ fn convention() -> impl TypedValueParser<Value = AmplitudeConvention> {
 /// A ratio of two whole numbers, `1:3`, in lowest terms.
 fn ratio(text: &str) -> Result<(u32, u32), String> {
     let parts = text.split_once(':').and_then(|(above, below)| {
-        let part = |text: &str| {
-            text.trim()
-                .parse::<u32>()
-                .ok()
-                .filter(|part| (1..=9).contains(part))
-        };
+        let part =
+            |text: &str| text.trim().parse::<u32>().ok().filter(|part| (1..=9).contains(part));
         part(above).zip(part(below))
     });
     let (above, below) = parts.ok_or("expected two whole numbers from 1 to 9, such as 1:3")?;
-    let common = (1..=9)
-        .rev()
-        .find(|k| above % k == 0 && below % k == 0)
-        .unwrap_or(1);
+    let common = (1..=9).rev().find(|k| above % k == 0 && below % k == 0).unwrap_or(1);
     Ok((above / common, below / common))
 }
 
@@ -176,15 +166,10 @@ pub(super) fn solved(arguments: &Question, names: Names) -> Result<Solved, Failu
             .map_err(|error| Failure::advised(&error, error.help()))?;
     }
     let coordinate = oscillator.coordinate;
-    let Numbered {
-        oscillator,
-        values,
-        mut notes,
-    } = with_values(oscillator, &renamed, &arguments.at, &problem)?;
+    let Numbered { oscillator, values, mut notes } =
+        with_values(oscillator, &renamed, &arguments.at, &problem)?;
     // A name that is no function may be why the equation is refused.
-    let misleading = notes
-        .iter()
-        .filter(|note| matches!(note, Note::Misleading { .. }));
+    let misleading = notes.iter().filter(|note| matches!(note, Note::Misleading { .. }));
     let misleading: Vec<String> = misleading.map(Note::to_string).collect();
     let options = match &values {
         Some(values) => method::with_resonance_at(&oscillator, &options, values)
@@ -196,21 +181,11 @@ pub(super) fn solved(arguments: &Question, names: Names) -> Result<Solved, Failu
             let _letters = letters.in_force();
             let (oscillator, values, mut solution) = solve_at(oscillator, values, &options)?;
             solution.convergence = verify::converges(&solution);
-            notes.extend(notes_on_letters(
-                &letters,
-                coordinate,
-                &solution,
-                values.is_some(),
-            ));
+            notes.extend(notes_on_letters(&letters, coordinate, &solution, values.is_some()));
             solution.validity.extend(notes);
             let everywhere = verify::converges_everywhere(&solution);
             solution.validity.extend(everywhere);
-            Ok(Solved {
-                oscillator,
-                values,
-                solution,
-                letters,
-            })
+            Ok(Solved { oscillator, values, solution, letters })
         })
     })
     .map_err(|failure: Failure| failure.with_notes(&misleading))
@@ -229,10 +204,9 @@ fn unjudged(error: &VerificationError) -> Failure {
             let help = near.map(|near| format!("\n  help: did you mean `{near}`?"));
             Failure::Usage(format!("--at: {error}{}", help.unwrap_or_default()))
         }
-        VerificationError::Missing(names) => Failure::refused(
-            error,
-            names.first().map(|name| format!("--at {name}=VALUE")),
-        ),
+        VerificationError::Missing(names) => {
+            Failure::refused(error, names.first().map(|name| format!("--at {name}=VALUE")))
+        }
         VerificationError::OffCycle => Failure::refused(
             error,
             Some("--method averaging follows the motion from A to the cycle".to_owned()),
@@ -250,10 +224,7 @@ fn unjudged(error: &VerificationError) -> Failure {
 
 /// Refuses what asks for the motion where it is left out.
 pub(super) fn with_motion(question: &Question, of_motion: &[(&str, bool)]) -> Result<(), Failure> {
-    match of_motion
-        .iter()
-        .find(|(_, given)| question.omega_only && *given)
-    {
+    match of_motion.iter().find(|(_, given)| question.omega_only && *given) {
         Some((what, _)) => Err(Failure::Usage(format!(
             "{what} asks for the motion, which --omega-only leaves out"
         ))),
@@ -282,12 +253,8 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ("--format svg", arguments.common.format() == Format::Svg),
     ];
     with_motion(&arguments.question, &of_motion)?;
-    let Solved {
-        oscillator,
-        values,
-        solution,
-        letters,
-    } = solved(&arguments.question, Names::Kept)?;
+    let Solved { oscillator, values, solution, letters } =
+        solved(&arguments.question, Names::Kept)?;
     let _letters = letters.in_force();
     let tolerance = tolerance(&arguments.common);
     let judged =
@@ -295,18 +262,12 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let verification = match judged {
         false => None,
         true => {
-            let judged = verify::judge(
-                &oscillator,
-                &solution,
-                &values.unwrap_or_default(),
-                tolerance,
-            );
+            let judged =
+                verify::judge(&oscillator, &solution, &values.unwrap_or_default(), tolerance);
             Some(judged.map_err(|error| unjudged(&error))?)
         }
     };
-    let place = verification
-        .as_ref()
-        .filter(|_| !arguments.question.omega_only);
+    let place = verification.as_ref().filter(|_| !arguments.question.omega_only);
     let draw = place.map(|verification| || picture(&oscillator, &solution, &verification.at));
     let picture = draw.as_ref().map(|draw| draw as Draw);
     let derivation = match arguments.common.format() {
@@ -333,19 +294,13 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Json => {
             let mut document = json::solution(&solution, verification.as_ref());
             // The first line is the heading.
-            document.derivation = arguments
-                .steps
-                .then(|| derivation.lines().skip(1).map(str::to_owned).collect());
+            document.derivation =
+                arguments.steps.then(|| derivation.lines().skip(1).map(str::to_owned).collect());
             json_text(&document)?
         }
         Format::Code(language) => {
-            let program = code::solution(
-                &oscillator,
-                &solution,
-                verification.as_ref(),
-                tolerance,
-                language,
-            );
+            let program =
+                code::solution(&oscillator, &solution, verification.as_ref(), tolerance, language);
             let program = program.map_err(|reason| Failure::advised(&reason, reason.help()))?;
             let space = if derivation.is_empty() { "" } else { "\n" };
             language.comment(&(derivation + space)) + &program
@@ -371,12 +326,8 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
 /// Does the work on so many threads, or on all.
 fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> T {
-    let pool = threads.and_then(|count| {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(count.into())
-            .build()
-            .ok()
-    });
+    let pool = threads
+        .and_then(|count| rayon::ThreadPoolBuilder::new().num_threads(count.into()).build().ok());
     match pool {
         Some(pool) => pool.install(work),
         None => work(),
@@ -404,10 +355,9 @@ fn solve_at(
     };
     let names: Vec<Symbol> = match &refusal {
         Refusal::LimitCycle { equation, .. } => equation.symbols().into_iter().collect(),
-        Refusal::Unsuited {
-            reason: Unsuited::SeveralVariables,
-            ..
-        } => oscillator.parameters.clone(),
+        Refusal::Unsuited { reason: Unsuited::SeveralVariables, .. } => {
+            oscillator.parameters.clone()
+        }
         _ => vec![],
     };
     match values {
@@ -427,17 +377,13 @@ fn solve_at(
 /// A refusal, with the term that it names shown in the equation.
 pub(super) fn refused(oscillator: &Oscillator, refusal: &Refusal) -> Failure {
     let place = refusal.term().and_then(|term| oscillator.typed.place(term));
-    let shown = place.map_or(String::new(), |[line, carets]| {
-        format!("\n  {line}\n  {carets}")
-    });
+    let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
     Failure::advised(&format!("{refusal}{shown}"), refusal.help())
 }
 
 /// What a problem says to this command.
 pub(super) fn formula(problem: &Problem, reader: Reader) -> Result<Formula<'_>, Failure> {
-    problem
-        .formula(reader)
-        .map_err(|error| Failure::refused(&error, error.help()))
+    problem.formula(reader).map_err(|error| Failure::refused(&error, error.help()))
 }
 
 /// The oscillator of an equation, about the equilibrium asked for.
@@ -449,19 +395,13 @@ pub(super) fn oscillator(formula: &Formula, about: Option<&str>) -> Result<Oscil
     };
     let x = oscillator.coordinate;
     let usage = |message: String| Failure::Usage(format!("--about {about}: {message}"));
-    let place = about
-        .split_once('=')
-        .filter(|(name, _)| name.trim() == x.name())
-        .ok_or_else(|| {
-            usage(format!(
-                "expected {x}=VALUE, an equilibrium of the coordinate {x}"
-            ))
+    let place =
+        about.split_once('=').filter(|(name, _)| name.trim() == x.name()).ok_or_else(|| {
+            usage(format!("expected {x}=VALUE, an equilibrium of the coordinate {x}"))
         })?;
     let value = parse_expression(place.1).map_err(|error| usage(error.to_string()))?;
-    let foreign = value
-        .symbols()
-        .into_iter()
-        .find(|symbol| !oscillator.parameters.contains(symbol));
+    let foreign =
+        value.symbols().into_iter().find(|symbol| !oscillator.parameters.contains(symbol));
     match foreign {
         Some(symbol) => Err(usage(format!("`{symbol}` is no parameter of the equation"))),
         None => Ok(oscillator.about(value)),
@@ -475,9 +415,7 @@ pub(super) fn named(
     names: Names,
 ) -> Result<(Oscillator, Vec<(Symbol, Symbol)>), Failure> {
     let named = match names {
-        Names::Kept => oscillator
-            .with_own_names_apart()
-            .map(|oscillator| (oscillator, vec![])),
+        Names::Kept => oscillator.with_own_names_apart().map(|oscillator| (oscillator, vec![])),
         Names::Changed => oscillator.with_names_of_answers_free(),
     };
     named.map_err(|error| Failure::advised(&error, error.help()))
@@ -494,10 +432,7 @@ pub(super) fn notes_on_letters(
     let slow = solution.modulation.as_ref();
     let begins = |slow: &Modulation| slow.release.is_some() && !slow.is_conservative();
     let released = slow.is_some_and(begins) || solution.in_time().is_some();
-    let [start, harmonic] = [
-        AmplitudeConvention::Initial,
-        AmplitudeConvention::FirstHarmonic,
-    ];
+    let [start, harmonic] = [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic];
     let stands = |usual: Symbol| {
         if usual == start.symbol() {
             solution.amplitude == start || released
@@ -534,16 +469,10 @@ pub(super) fn with_values(
     problem: &Problem,
 ) -> Result<Numbered, Failure> {
     let values = exact_values(at, problem.values_of_motion())?;
-    let values = values
-        .map(|values| with_new_names(values, renamed, &oscillator))
-        .transpose()?;
+    let values = values.map(|values| with_new_names(values, renamed, &oscillator)).transpose()?;
     let notes = notes_on_names(&oscillator, values.as_ref(), renamed);
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
-    Ok(Numbered {
-        oscillator,
-        values,
-        notes,
-    })
+    Ok(Numbered { oscillator, values, notes })
 }
 
 /// Notes on the names of parameters: those that are written otherwise, and those without a value
@@ -553,15 +482,12 @@ fn notes_on_names(
     values: Option<&Values>,
     renamed: &[(Symbol, Symbol)],
 ) -> Vec<Note> {
-    let renamed = renamed
-        .iter()
-        .map(|&(typed, written)| Note::Renamed { typed, written });
+    let renamed = renamed.iter().map(|&(typed, written)| Note::Renamed { typed, written });
     let misleading = oscillator.misleading_parameters().into_iter();
     let without_value =
         |(name, _): &(Symbol, String)| values.is_none_or(|values| values.get(*name).is_none());
-    let misleading = misleading
-        .filter(without_value)
-        .map(|(name, instead)| Note::Misleading { name, instead });
+    let misleading =
+        misleading.filter(without_value).map(|(name, instead)| Note::Misleading { name, instead });
     renamed.chain(misleading).collect()
 }
 
@@ -623,10 +549,7 @@ fn options(
         Some(name) => match Method::from_name(name) {
             Some(method) => Some(method),
             None => {
-                return usage(format!(
-                    "unknown method `{name}`\n  help: {}",
-                    methods_like(name)
-                ));
+                return usage(format!("unknown method `{name}`\n  help: {}", methods_like(name)));
             }
         },
     };
@@ -664,16 +587,10 @@ fn options(
     }
     let (order, degrees) = match arguments.order.or(formula.order) {
         Some(_) if !entry.takes(Choice::Order) && !entry.takes(Choice::Degrees) => {
-            return without(
-                "--order, or `order` in the file,",
-                "the methods that approximate",
-            );
+            return without("--order, or `order` in the file,", "the methods that approximate");
         }
         Some(Order::Degrees(_)) if !entry.takes(Choice::Degrees) => {
-            return usage(format!(
-                "degrees are those of --method {}",
-                that_take(Choice::Degrees)
-            ));
+            return usage(format!("degrees are those of --method {}", that_take(Choice::Degrees)));
         }
         Some(order) if entry.takes(Choice::Degrees) => match (chosen.counts(), order.degrees()) {
             (Counts::Degrees(count), Some(degrees)) if degrees.list().len() == count => {
@@ -686,10 +603,7 @@ fn options(
                 ));
             }
             _ => {
-                return usage(format!(
-                    "--method {} takes two degrees: --order 2,1",
-                    chosen.name()
-                ));
+                return usage(format!("--method {} takes two degrees: --order 2,1", chosen.name()));
             }
         },
         Some(Order::Degrees(degrees)) => (None, Some(degrees)),
@@ -699,26 +613,17 @@ fn options(
     let hbar = match &arguments.hbar {
         None => None,
         Some(_) if !entry.takes(Choice::Hbar) => {
-            return usage(format!(
-                "--hbar belongs to --method {}",
-                that_take(Choice::Hbar)
-            ));
+            return usage(format!("--hbar belongs to --method {}", that_take(Choice::Hbar)));
         }
         Some(text) => match parse_expression(text) {
             Ok(value) if value.as_number().is_some() => Some(value),
             Ok(_) => {
-                return usage(format!(
-                    "--hbar {text}: expected a fraction, such as -1 or -4/5"
-                ));
+                return usage(format!("--hbar {text}: expected a fraction, such as -1 or -4/5"));
             }
             Err(error) => return usage(format!("--hbar {text}: {error}")),
         },
     };
-    let small = arguments
-        .small
-        .as_deref()
-        .or(formula.small)
-        .map(str::to_owned);
+    let small = arguments.small.as_deref().or(formula.small).map(str::to_owned);
     Ok(Options {
         method,
         order,
@@ -750,11 +655,7 @@ fn methods_like(typed: &str) -> String {
         true => format!("choose one of {}", names().collect::<Vec<_>>().join(", ")),
         false => format!(
             "did you mean {}?",
-            close
-                .iter()
-                .map(|name| format!("`{name}`"))
-                .collect::<Vec<_>>()
-                .join(" or ")
+            close.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(" or ")
         ),
     }
 }
@@ -768,17 +669,12 @@ pub(super) fn exact_values(
     let mut values = Values::default();
     for text in at {
         let Some((name, value)) = text.split_once('=') else {
-            return Err(Failure::Usage(format!(
-                "--at {text}: expected NAME=VALUE, such as A=1.5"
-            )));
+            return Err(Failure::Usage(format!("--at {text}: expected NAME=VALUE, such as A=1.5")));
         };
         // `A=1,eps=1` and `A=1 eps=1`: the equals sign of the second value stands in the text of
         // the first.
         if value.contains('=') {
-            let parts = text
-                .split([',', ' ', ';'])
-                .map(str::trim)
-                .filter(|part| !part.is_empty());
+            let parts = text.split([',', ' ', ';']).map(str::trim).filter(|part| !part.is_empty());
             let separate: Vec<String> = parts.map(|part| format!("--at {part}")).collect();
             return Err(Failure::Usage(format!(
                 "--at {text}: one value at a time\n  help: {}",
@@ -788,19 +684,13 @@ pub(super) fn exact_values(
         let value = parse_expression(value)
             .map_err(|error| Failure::Usage(format!("--at {text}: {error}")))?;
         let name = Symbol::new(name.trim());
-        values
-            .insert(name, value)
-            .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
+        values.insert(name, value).map_err(|error| Failure::Usage(format!("--at: {error}")))?;
     }
     let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
-    for (name, value) in file
-        .iter()
-        .filter(|(name, _)| values.get(*name).is_none())
-        .collect::<Vec<_>>()
+    for (name, value) in
+        file.iter().filter(|(name, _)| values.get(*name).is_none()).collect::<Vec<_>>()
     {
-        values
-            .insert(name, value.clone())
-            .map_err(|error| Failure::refused(&error, None))?;
+        values.insert(name, value.clone()).map_err(|error| Failure::refused(&error, None))?;
     }
     Ok((!values.is_empty()).then_some(values))
 }
@@ -825,10 +715,7 @@ fn picture(
             "the formula has no real frequency there, so it has no motion".to_owned(),
         ));
     };
-    let at: Vec<String> = values
-        .iter()
-        .map(|(name, value)| format!("{name} = {value}"))
-        .collect();
+    let at: Vec<String> = values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let caption = format!("{}; {}", solution.equation, at.join(", "));
     let label = solution.title();
     let figure = MotionFigure {
@@ -838,10 +725,7 @@ fn picture(
         formula_label: &label,
         formula: &motions.formula,
         truth: &motions.truth,
-        envelopes: motions
-            .envelope
-            .as_ref()
-            .map_or(&[], |envelopes| envelopes.as_slice()),
+        envelopes: motions.envelope.as_ref().map_or(&[], |envelopes| envelopes.as_slice()),
         caption: &caption,
     };
     motion_figure(&figure).map_err(|error| Failure::refused(&error, None))

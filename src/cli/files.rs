@@ -21,9 +21,7 @@ pub(super) fn is_standard(path: &Path) -> bool {
 pub(super) fn width(output: Option<&Path>) -> usize {
     const OF_FILES: usize = 120;
     const NARROWEST: usize = 40;
-    let asked = std::env::var("COLUMNS")
-        .ok()
-        .and_then(|text| text.trim().parse().ok());
+    let asked = std::env::var("COLUMNS").ok().and_then(|text| text.trim().parse().ok());
     let terminal = || {
         let (terminal_size::Width(columns), _) =
             terminal_size::terminal_size_of(std::io::stdout())?;
@@ -39,9 +37,8 @@ pub(super) fn width(output: Option<&Path>) -> usize {
 /// cannot be written.
 pub(super) fn check(common: &Common, input: Option<&Path>) -> Result<(), Failure> {
     if let Some(picture) = &common.plot {
-        let is_svg = picture
-            .extension()
-            .is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
+        let is_svg =
+            picture.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
         if !is_svg && !is_standard(picture) {
             return Err(Failure::Usage(format!(
                 "--plot {} is no SVG file: pictures are drawn as SVG, so name it {}",
@@ -124,8 +121,7 @@ pub(super) fn same(one: &Path, other: &Path) -> bool {
 
 /// Devices and pipes are written as they are; there is nothing to replace.
 fn is_special(path: &Path) -> bool {
-    path.metadata()
-        .is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
+    path.metadata().is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
 }
 
 /// The reason without the name of the file beside it, which nobody asked for.
@@ -162,15 +158,11 @@ fn replace(path: &Path, result: Writer) -> Result<(), String> {
     }
     let file = beside(path).map_err(refused)?;
     let mut output = BufWriter::new(file.as_file());
-    result(&mut output)
-        .and_then(|()| output.flush())
-        .map_err(refused)?;
+    result(&mut output).and_then(|()| output.flush()).map_err(refused)?;
     drop(output);
     file.as_file().sync_data().map_err(refused)?;
     let place = resolved(path).unwrap_or_else(|| path.to_owned());
-    file.persist(place)
-        .map_err(|error| refused(error.error))
-        .map(drop)
+    file.persist(place).map_err(|error| refused(error.error)).map(drop)
 }
 
 /// An empty file beside this place, with the permissions that the file there has, or that a new one

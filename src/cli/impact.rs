@@ -96,10 +96,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         },
     };
     let passes = impact.verdicts(tolerance).contains(&Verdict::Pass);
-    Ok(Outcome {
-        verdict: Some(Verdict::of(passes)),
-        ..answer.outcome(&arguments.common)?
-    })
+    Ok(Outcome { verdict: Some(Verdict::of(passes)), ..answer.outcome(&arguments.common)? })
 }
 
 /// What is proved of the impact, and with it of its closed forms.
@@ -132,16 +129,10 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         Side::Right => 1.0,
         Side::Left => -1.0,
     };
-    let exact = [
-        -towards * setup.release,
-        towards * setup.barrier,
-        setup.stiffness,
-    ]
-    .map(as_written);
+    let exact =
+        [-towards * setup.release, towards * setup.barrier, setup.stiffness].map(as_written);
     let [Some(amplitude), Some(barrier), Some(stiffness)] = &exact else {
-        return Err(Failure::Refused(
-            "a number of the impact is not finite".to_owned(),
-        ));
+        return Err(Failure::Refused("a number of the impact is not finite".to_owned()));
     };
     let enclosure = enclose_impact(amplitude, barrier, stiffness)
         .map_err(|error| Failure::refused(&error, None))?;
@@ -158,22 +149,13 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         picture: None,
         other: &no_such,
     };
-    let passes = report
-        .verdicts()
-        .iter()
-        .any(|(_, verdict)| *verdict == Verdict::Pass);
-    Ok(Outcome {
-        verdict: Some(Verdict::of(passes)),
-        ..answer.outcome(common)?
-    })
+    let passes = report.verdicts().iter().any(|(_, verdict)| *verdict == Verdict::Pass);
+    Ok(Outcome { verdict: Some(Verdict::of(passes)), ..answer.outcome(common)? })
 }
 
 /// A double as the fraction that its decimals say.
 fn as_written(value: f64) -> Option<Rational> {
-    parse_expression(&value.to_string())
-        .ok()?
-        .as_number()
-        .cloned()
+    parse_expression(&value.to_string()).ok()?.as_number().cloned()
 }
 
 /// The table of methods.
@@ -183,10 +165,7 @@ fn every_method(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
             "--compare takes every method: leave out --method, or `method` in the file".to_owned(),
         ));
     }
-    if setup
-        .units
-        .is_some_and(|units| units.yield_limits().next().is_some())
-    {
+    if setup.units.is_some_and(|units| units.yield_limits().next().is_some()) {
         return Err(Failure::Usage(
             "--compare has no pressures: leave out `yield` in the file, or --compare".to_owned(),
         ));
@@ -213,14 +192,8 @@ fn every_method(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
             format => no_such(format),
         },
     };
-    let passes = table
-        .rows
-        .iter()
-        .any(|row| row.verdict(tolerance) == Verdict::Pass);
-    Ok(Outcome {
-        verdict: Some(Verdict::of(passes)),
-        ..answer.outcome(common)?
-    })
+    let passes = table.rows.iter().any(|row| row.verdict(tolerance) == Verdict::Pass);
+    Ok(Outcome { verdict: Some(Verdict::of(passes)), ..answer.outcome(common)? })
 }
 
 /// The problem of the file with what the command line says, which wins.
@@ -278,12 +251,7 @@ fn picture(impact: &Impact) -> Result<String, Failure> {
     let styles = std::iter::once(("Runge-Kutta", CurveStyle::RUNGE_KUTTA)).chain(closed_forms);
     let motion = |(path, (label, style))| {
         let SampledMotion { samples, contact }: &SampledMotion = path;
-        ImpactMotion {
-            label,
-            style,
-            samples,
-            contact,
-        }
+        ImpactMotion { label, style, samples, contact }
     };
     let motions: Vec<_> = drawn.iter().zip(styles).map(motion).collect();
     let setup = &impact.setup;
@@ -295,11 +263,7 @@ fn picture(impact: &Impact) -> Result<String, Failure> {
         Side::Right if impact.equilibrium == 0.0 => {
             format!("A = {}", decimal(-impact.turning_point))
         }
-        _ => format!(
-            "{}(0) = {}",
-            impact.letters.coordinate,
-            decimal(impact.turning_point)
-        ),
+        _ => format!("{}(0) = {}", impact.letters.coordinate, decimal(impact.turning_point)),
     };
     let stiffness = match &setup.force {
         None => format!(", γ = {}", decimal(setup.stiffness)),

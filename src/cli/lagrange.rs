@@ -60,18 +60,14 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         None => (paper::mechanism(), Problem::default()),
         Some(path) => {
             let problem = from_file(path)?;
-            problem
-                .check_keys(Reader::Lagrange)
-                .map_err(|error| Failure::refused(&error, None))?;
-            let question = problem
-                .mechanism()
-                .map_err(|error| Failure::refused(&error, error.help()))?;
+            problem.check_keys(Reader::Lagrange).map_err(|error| Failure::refused(&error, None))?;
+            let question =
+                problem.mechanism().map_err(|error| Failure::refused(&error, error.help()))?;
             (question, problem)
         }
     };
-    question.values = exact_values(&arguments.at, problem.exact_values())?
-        .unwrap_or_default()
-        .numbers();
+    question.values =
+        exact_values(&arguments.at, problem.exact_values())?.unwrap_or_default().numbers();
     let study = study(question).map_err(|error| Failure::refused(&error, error.help()))?;
     // The printed equations stand beside the derived ones where the mechanism is the paper's.
     let findings = match &arguments.file {

@@ -61,10 +61,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut question = problem
         .materials(arguments.only_own)
         .map_err(|error| Failure::refused(&error, error.help()))?;
-    question.settings = Settings {
-        interrupt: Interrupt::by(&STOP),
-        ..question.settings
-    };
+    question.settings = Settings { interrupt: Interrupt::by(&STOP), ..question.settings };
     if arguments.chain {
         question.integrator = Integrator::Chain;
     }
@@ -90,11 +87,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let (name, stop) = (&row.material.name, row.course.stop);
         format!("warning: {name} stopped early, what there is is kept: {stop}")
     });
-    Ok(Outcome {
-        note,
-        partial: broken.is_some(),
-        ..answer.outcome(common)?
-    })
+    Ok(Outcome { note, partial: broken.is_some(), ..answer.outcome(common)? })
 }
 
 #[cfg(not(feature = "plot"))]

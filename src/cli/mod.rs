@@ -56,9 +56,7 @@ paper always); 4 stopped before the end: what is printed is partial and says so.
 /// The commands, in the order of `--help`. A new one is a file with its arguments, documented by
 /// their line in `--help`, and their [`Work`], and a row here.
 static COMMANDS: [Command; 16] = [
-    Command::of::<derive::Arguments>("derive")
-        .writing(Formats::Programs)
-        .waiting(derive::patience),
+    Command::of::<derive::Arguments>("derive").writing(Formats::Programs).waiting(derive::patience),
     Command::of::<compare::Arguments>("compare").writing(Formats::Pictures),
     Command::of::<impact::Arguments>("impact").writing(Formats::Pictures),
     Command::of::<simulate::Arguments>("simulate").waiting(a_minute),
@@ -68,15 +66,9 @@ static COMMANDS: [Command; 16] = [
     Command::of::<materials::Arguments>("materials").waiting(a_minute),
     Command::of::<optimize::Arguments>("optimize").waiting(a_minute),
     Command::of::<stability::Arguments>("stability"),
-    Command::of::<audit::Arguments>("audit")
-        .writing(Formats::Words)
-        .judged(),
-    Command::of::<audit::PaperArguments>("paper")
-        .writing(Formats::Words)
-        .judged(),
-    Command::of::<certify::Arguments>("certify")
-        .writing(Formats::Words)
-        .waiting(derive::patience),
+    Command::of::<audit::Arguments>("audit").writing(Formats::Words).judged(),
+    Command::of::<audit::PaperArguments>("paper").writing(Formats::Words).judged(),
+    Command::of::<certify::Arguments>("certify").writing(Formats::Words).waiting(derive::patience),
     Command::of::<certify::CheckArguments>("check")
         .writing(Formats::Words)
         .limited(certify::LONGEST_CHECK),
@@ -148,18 +140,12 @@ impl Command {
 
     /// The command with a time limit in seconds where none is given.
     const fn limited(self, seconds: f64) -> Self {
-        Self {
-            limit: Some(seconds),
-            ..self
-        }
+        Self { limit: Some(seconds), ..self }
     }
 
     /// The command with an exit code that tells its verdict.
     const fn judged(self) -> Self {
-        Self {
-            is_judged: true,
-            ..self
-        }
+        Self { is_judged: true, ..self }
     }
 
     /// The command as the parser of the command line knows it.
@@ -167,9 +153,8 @@ impl Command {
         let command = (self.augment)(clap::Command::new(self.name));
         match self.formats {
             Formats::One => command,
-            formats => command.mut_arg("format", |format| {
-                format.value_parser(format_parser(formats.listed()))
-            }),
+            formats => command
+                .mut_arg("format", |format| format.value_parser(format_parser(formats.listed()))),
         }
     }
 
@@ -178,11 +163,7 @@ impl Command {
         let is_taken = matches!(self.formats, Formats::One)
             || Format::OF_ALL.contains(&format)
             || self.formats.listed().contains(&format);
-        if is_taken {
-            Ok(())
-        } else {
-            answer::no_such(format)
-        }
+        if is_taken { Ok(()) } else { answer::no_such(format) }
     }
 }
 
@@ -272,10 +253,7 @@ impl Format {
     /// All of them.
     fn all() -> impl Iterator<Item = Self> {
         let programs = Language::ALL.map(Self::Code);
-        Self::OF_ALL
-            .into_iter()
-            .chain([Self::Svg, Self::Csv])
-            .chain(programs)
+        Self::OF_ALL.into_iter().chain([Self::Svg, Self::Csv]).chain(programs)
     }
 
     /// That of files whose names end so; none for `txt` and everything unknown.
@@ -318,11 +296,8 @@ fn format_parser(
     let values = Format::all()
         .map(|format| PossibleValue::new(format.name()).hide(!listed.contains(&format)));
     let unknown = || "no format of this name".to_owned();
-    PossibleValuesParser::new(values).try_map(move |name| {
-        Format::all()
-            .find(|format| format.name() == name)
-            .ok_or_else(unknown)
-    })
+    PossibleValuesParser::new(values)
+        .try_map(move |name| Format::all().find(|format| format.name() == name).ok_or_else(unknown))
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -336,9 +311,7 @@ impl Common {
     /// The format asked for: by name, or by the ending of the file.
     fn format(&self) -> Format {
         let ending = || self.output.as_ref()?.extension()?.to_str();
-        self.format
-            .or_else(|| ending().and_then(Format::of_ending))
-            .unwrap_or_default()
+        self.format.or_else(|| ending().and_then(Format::of_ending)).unwrap_or_default()
     }
 
     /// Whether the picture is asked for, beside the result or as it.
@@ -375,11 +348,9 @@ impl Failure {
     /// A refusal with what else may be behind it.
     fn with_notes(self, notes: &[String]) -> Self {
         match self {
-            Self::Refused(text) => Self::Refused(
-                notes
-                    .iter()
-                    .fold(text, |text, note| text + "\n  note: " + note),
-            ),
+            Self::Refused(text) => {
+                Self::Refused(notes.iter().fold(text, |text, note| text + "\n  note: " + note))
+            }
             Self::Usage(text) => Self::Usage(text),
         }
     }
@@ -399,10 +370,7 @@ fn in_flags(advice: &Advice) -> String {
         Setting::Amplitude(convention) => format!("--amplitude {}", convention.name()),
         Setting::Small(name) => format!("--small {name}"),
         Setting::Taylor => "--taylor DEGREE".to_owned(),
-        Setting::About {
-            coordinate,
-            position,
-        } => format!("--about {coordinate}={position}"),
+        Setting::About { coordinate, position } => format!("--about {coordinate}={position}"),
         Setting::Values => "--at".to_owned(),
         Setting::Resonance(driving, linear) => format!("--resonance {driving}:{linear}"),
         other => other.to_string(),
@@ -484,10 +452,9 @@ pub fn run() -> ExitCode {
         (Some(Some(Err(Failure::Refused(message)))), _) => fail(1, &message),
         (Some(Some(Err(Failure::Usage(message)))), _) => fail(2, &message),
         (None, Some((code, message))) => fail(code, &message),
-        (Some(None), _) | (None, None) => fail(
-            70,
-            "internal error: please report the command and its input",
-        ),
+        (Some(None), _) | (None, None) => {
+            fail(70, "internal error: please report the command and its input")
+        }
     }
 }
 
@@ -612,11 +579,7 @@ fn finish(outcome: Outcome, common: &Common, judged: bool) -> ExitCode {
     }
     let written = files::write(common.output.as_deref(), outcome.result);
     if let (Ok(()), Some(reason)) = (&written, &no_picture) {
-        let _ = writeln!(
-            std::io::stderr(),
-            "error: no picture: {}",
-            printable(reason)
-        );
+        let _ = writeln!(std::io::stderr(), "error: no picture: {}", printable(reason));
     }
     match written {
         Err(error) => fail(1, &error),
@@ -649,11 +612,7 @@ fn read_at_most(path: &Path, length: usize) -> Result<String, Failure> {
     let limit = length as u64 + 1;
     let mut bytes = Vec::new();
     if path.as_os_str() == "-" {
-        std::io::stdin()
-            .lock()
-            .take(limit)
-            .read_to_end(&mut bytes)
-            .map_err(failure)?;
+        std::io::stdin().lock().take(limit).read_to_end(&mut bytes).map_err(failure)?;
     } else {
         std::fs::File::open(path)
             .map_err(failure)?
@@ -663,9 +622,7 @@ fn read_at_most(path: &Path, length: usize) -> Result<String, Failure> {
     }
     String::from_utf8(bytes).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
-        Failure::Refused(format!(
-            "{name} is not UTF-8 text: byte {place} belongs to no character"
-        ))
+        Failure::Refused(format!("{name} is not UTF-8 text: byte {place} belongs to no character"))
     })
 }
 
@@ -677,17 +634,11 @@ fn tolerance(common: &Common) -> f64 {
 fn json_text(document: &impl Serialize) -> Result<String, Failure> {
     match serde_json::to_string_pretty(document) {
         // JSON leaves some characters as they are that steer a terminal; they are in strings alone.
-        Ok(text)
-            if text
-                .chars()
-                .any(|letter| letter != '\n' && is_invisible(letter)) =>
-        {
-            let escaped = text
-                .chars()
-                .map(|letter| match letter != '\n' && is_invisible(letter) {
-                    true => format!("\\u{:04x}", u32::from(letter)),
-                    false => letter.to_string(),
-                });
+        Ok(text) if text.chars().any(|letter| letter != '\n' && is_invisible(letter)) => {
+            let escaped = text.chars().map(|letter| match letter != '\n' && is_invisible(letter) {
+                true => format!("\\u{:04x}", u32::from(letter)),
+                false => letter.to_string(),
+            });
             Ok(escaped.collect::<String>() + "\n")
         }
         Ok(text) => Ok(text + "\n"),

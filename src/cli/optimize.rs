@@ -101,9 +101,8 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             "--tolerance belongs to a verdict, and a search has none: leave it out".to_owned(),
         ));
     }
-    let mut question = problem
-        .optimize()
-        .map_err(|error| Failure::refused(&error, error.help()))?;
+    let mut question =
+        problem.optimize().map_err(|error| Failure::refused(&error, error.help()))?;
     question.seed = arguments.seed.unwrap_or(question.seed);
     question.runs = arguments.runs.map_or(question.runs, |runs| runs as usize);
     if let Some(Budget::Evaluations(evaluations)) = arguments.budget {
@@ -139,11 +138,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         )),
         (None, true) => None,
     };
-    Ok(Outcome {
-        note,
-        partial: !study.complete,
-        ..answer.outcome(common)?
-    })
+    Ok(Outcome { note, partial: !study.complete, ..answer.outcome(common)? })
 }
 
 fn search(
@@ -204,16 +199,9 @@ const LARGEST_RECORD: usize = 1 << 30;
 
 impl Record {
     fn open(arguments: &Arguments, question: &Question) -> Result<Self, Failure> {
-        let none = Self {
-            path: None,
-            known: vec![],
-            file: Mutex::new(None),
-            trouble: Mutex::new(None),
-        };
-        let named = [
-            ("--record", &arguments.record),
-            ("--resume", &arguments.resume),
-        ];
+        let none =
+            Self { path: None, known: vec![], file: Mutex::new(None), trouble: Mutex::new(None) };
+        let named = [("--record", &arguments.record), ("--resume", &arguments.resume)];
         for (option, path) in named {
             let Some(path) = path else { continue };
             if is_standard(path) {
@@ -221,11 +209,7 @@ impl Record {
                     "{option} needs a file: runs are written to it"
                 )));
             }
-            let others = [
-                &arguments.common.output,
-                &arguments.common.plot,
-                &arguments.file,
-            ];
+            let others = [&arguments.common.output, &arguments.common.plot, &arguments.file];
             if others.into_iter().flatten().any(|other| same(other, path)) {
                 return Err(Failure::Usage(format!(
                     "{option} {} is read or written as something else: give another name",
@@ -269,28 +253,19 @@ impl Record {
                 file
             }
         };
-        Ok(Self {
-            path: Some(path.clone()),
-            known,
-            file: Mutex::new(Some(file)),
-            ..none
-        })
+        Ok(Self { path: Some(path.clone()), known, file: Mutex::new(Some(file)), ..none })
     }
 
     fn create(path: &Path) -> Result<File, Failure> {
-        OpenOptions::new()
-            .write(true)
-            .create_new(true)
-            .open(path)
-            .map_err(|error| {
-                Failure::Refused(match error.kind() {
-                    std::io::ErrorKind::AlreadyExists => format!(
-                        "--record {0} exists: take it up with --resume {0}, or give another name",
-                        path.display()
-                    ),
-                    kind => format!("cannot write {}: {kind}", path.display()),
-                })
+        OpenOptions::new().write(true).create_new(true).open(path).map_err(|error| {
+            Failure::Refused(match error.kind() {
+                std::io::ErrorKind::AlreadyExists => format!(
+                    "--record {0} exists: take it up with --resume {0}, or give another name",
+                    path.display()
+                ),
+                kind => format!("cannot write {}: {kind}", path.display()),
             })
+        })
     }
 
     /// Writes a run as a whole line; what goes wrong is told at the end.
@@ -301,10 +276,7 @@ impl Record {
         let Some(open) = file.as_mut() else { return };
         let written = record_line(run)
             .map_err(|error| error.to_string())
-            .and_then(|line| {
-                open.write_all(line.as_bytes())
-                    .map_err(|error| error.to_string())
-            });
+            .and_then(|line| open.write_all(line.as_bytes()).map_err(|error| error.to_string()));
         if let Err(error) = written {
             *file = None;
             if let Ok(mut trouble) = self.trouble.lock() {

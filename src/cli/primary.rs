@@ -40,15 +40,8 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
 fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
     let (common, file) = (asked.common, problem.primary_case(&[]));
     let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
-    let settings = PrimarySettings {
-        interrupt: Interrupt::by(&STOP),
-        ..file.settings
-    };
-    if let Some(late) = asked
-        .samples
-        .iter()
-        .find(|sample| **sample > settings.duration)
-    {
+    let settings = PrimarySettings { interrupt: Interrupt::by(&STOP), ..file.settings };
+    if let Some(late) = asked.samples.iter().find(|sample| **sample > settings.duration) {
         return Err(Failure::Refused(format!(
             "--sample {late} lies beyond the duration {}\n  help: raise `duration` in [run]",
             settings.duration
@@ -56,11 +49,7 @@ fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
     }
     let motion =
         simulate_primary(file.case, &settings).map_err(|error| Failure::refused(&error, None))?;
-    let report = PrimaryReport {
-        motion: &motion,
-        units: &file.units,
-        samples: asked.samples,
-    };
+    let report = PrimaryReport { motion: &motion, units: &file.units, samples: asked.samples };
     let answer = Answer {
         document: &report::primary(&report),
         width: width(common.output.as_deref()),
@@ -74,10 +63,9 @@ fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
     let kept = motion.energy.residual <= common.tolerance.unwrap_or(TRUSTED);
     Ok(Outcome {
         note: match report.doubt() {
-            _ if !motion.is_complete() => Some(format!(
-                "warning: stopped early, what there is is kept: {}",
-                motion.stop
-            )),
+            _ if !motion.is_complete() => {
+                Some(format!("warning: stopped early, what there is is kept: {}", motion.stop))
+            }
             doubt => doubt.map(|doubt| format!("warning: {doubt}")),
         },
         verdict: Some(Verdict::of(kept && motion.is_complete())),
@@ -97,25 +85,16 @@ fn many(problem: &Problem, asked: &Asked, axes: &[Axis]) -> Result<Outcome, Fail
     if let Some(index) =
         (1..parameters.len()).find(|index| parameters[..*index].contains(&parameters[*index]))
     {
-        return Err(Failure::Usage(format!(
-            "`{}` is swept twice",
-            parameters[index].name()
-        )));
+        return Err(Failure::Usage(format!("`{}` is swept twice", parameters[index].name())));
     }
     let total = grid_size(axes).map_err(|error| Failure::refused(&error, None))?;
     let (mut motions, mut units) = (Vec::with_capacity(total), Vec::with_capacity(total));
     for number in 0..total {
-        let varied: Vec<(PrimaryParameter, f64)> = parameters
-            .iter()
-            .copied()
-            .zip(grid_values(axes, number))
-            .collect();
+        let varied: Vec<(PrimaryParameter, f64)> =
+            parameters.iter().copied().zip(grid_values(axes, number)).collect();
         let file = problem.primary_case(&varied);
         let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
-        let settings = PrimarySettings {
-            interrupt: Interrupt::by(&STOP),
-            ..file.settings
-        };
+        let settings = PrimarySettings { interrupt: Interrupt::by(&STOP), ..file.settings };
         motions.push((file.case, settings));
         units.push(file.units);
     }
@@ -123,12 +102,7 @@ fn many(problem: &Problem, asked: &Asked, axes: &[Axis]) -> Result<Outcome, Fail
     let rows = sweep_primary(&motions, |done| bar.inc(done as u64))
         .map_err(|(number, error)| Failure::Refused(format!("motion {}: {error}", number + 1)))?;
     bar.finish_and_clear();
-    let report = PrimarySweepReport {
-        axes,
-        parameters: &parameters,
-        rows: &rows,
-        units: &units,
-    };
+    let report = PrimarySweepReport { axes, parameters: &parameters, rows: &rows, units: &units };
     let draw: Draw = &|| sweep_picture(&report);
     let answer = Answer {
         document: &report::primary_sweep(&report),
@@ -140,10 +114,7 @@ fn many(problem: &Problem, asked: &Asked, axes: &[Axis]) -> Result<Outcome, Fail
             format => no_such(format),
         },
     };
-    let broken = rows
-        .iter()
-        .filter(|row| row.stop != PrimaryStop::Duration)
-        .count();
+    let broken = rows.iter().filter(|row| row.stop != PrimaryStop::Duration).count();
     Ok(Outcome {
         note: (broken > 0)
             .then(|| format!("warning: {broken} of {} motions stopped early", rows.len())),

@@ -37,31 +37,22 @@ pub(super) fn from_file(path: &Path) -> Result<Problem, Failure> {
     // Only TOML assigns to a bare key.
     let is_toml = text.lines().any(|line| {
         let line = line.trim_start();
-        let key: String = line
-            .chars()
-            .take_while(|c| c.is_alphanumeric() || *c == '_')
-            .collect();
+        let key: String = line.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
         line.starts_with('[') || (key.len() > 1 && line[key.len()..].trim_start().starts_with('='))
     });
     if is_standard(path) && !is_toml {
         return from_words(text.trim_end());
     }
     text.parse().map_err(|error: ProblemError| {
-        let name = if is_standard(path) {
-            "standard input".into()
-        } else {
-            path.to_string_lossy()
-        };
+        let name = if is_standard(path) { "standard input".into() } else { path.to_string_lossy() };
         Failure::refused(&format!("{name}: {error}"), error.help())
     })
 }
 
 /// A name of the catalogue, or an equation.
 fn from_words(text: &str) -> Result<Problem, Failure> {
-    let with_equation = |equation: &str| Problem {
-        equation: Some(equation.to_owned()),
-        ..Problem::default()
-    };
+    let with_equation =
+        |equation: &str| Problem { equation: Some(equation.to_owned()), ..Problem::default() };
     if let Some(entry) = catalog::find(text.trim()) {
         return Ok(with_equation(entry.equation));
     }
@@ -70,9 +61,7 @@ fn from_words(text: &str) -> Result<Problem, Failure> {
     let word = text.trim();
     let is_word = word.len() > 1
         && word.starts_with(|letter: char| letter.is_ascii_alphabetic())
-        && word
-            .chars()
-            .all(|letter| letter.is_ascii_alphanumeric() || "-_./".contains(letter));
+        && word.chars().all(|letter| letter.is_ascii_alphanumeric() || "-_./".contains(letter));
     if is_word {
         let help = match nearest(word, catalog::CATALOG.iter().map(|entry| entry.name)) {
             Some(near) => format!("did you mean `{near}`?"),

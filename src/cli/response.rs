@@ -74,10 +74,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
     };
     let Some(vary) = arguments.vary.as_deref().or(problem.vary.as_deref()) else {
-        let name = oscillator
-            .parameters
-            .first()
-            .map_or("Omega", |name| name.name());
+        let name = oscillator.parameters.first().map_or("Omega", |name| name.name());
         return Err(Failure::Refused(format!(
             "nothing varies\n  help: --vary {name}=FROM:TO, or vary = \"{name}=FROM:TO\" in the file"
         )));
@@ -89,9 +86,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         parameter,
         range,
         // Slow equations are held against as many harmonics as it takes.
-        harmonics: order
-            .filter(|_| method == Method::HarmonicBalance)
-            .map(|count| count as usize),
+        harmonics: order.filter(|_| method == Method::HarmonicBalance).map(|count| count as usize),
         periods: arguments.periods.or(problem.periods).unwrap_or(1) as usize,
         tolerance: tolerance(&arguments.common),
         interrupt: Interrupt::by(&STOP),
@@ -102,9 +97,8 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         method => Some(slow_equations(&question, method, order)?),
     };
     // Slow equations relative to a base that moves are held against motions in that coordinate.
-    if let Some(slow) = slow
-        .as_ref()
-        .filter(|slow| slow.coordinate() != question.oscillator.coordinate)
+    if let Some(slow) =
+        slow.as_ref().filter(|slow| slow.coordinate() != question.oscillator.coordinate)
     {
         question.oscillator = Oscillator::from_equation(&slow.equation)
             .map_err(|error| Failure::advised(&error, error.help()))?;
@@ -131,12 +125,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
                 response.branches.len()
             )
         }),
-        verdict: Some(
-            response
-                .slow
-                .as_ref()
-                .map_or(response.verdict, |slow| slow.verdict),
-        ),
+        verdict: Some(response.slow.as_ref().map_or(response.verdict, |slow| slow.verdict)),
         partial: !response.complete,
         ..answer.outcome(&arguments.common)?
     })
@@ -175,29 +164,19 @@ fn slow_equations(
             method.name()
         )));
     }
-    let options = Options {
-        method: Some(method),
-        order,
-        resonance: Some((1, 1)),
-        ..Options::default()
-    };
+    let options =
+        Options { method: Some(method), order, resonance: Some((1, 1)), ..Options::default() };
     solve(&question.oscillator, &options)
         .map_err(|refusal| refused_term(&question.oscillator, &refusal))
 }
 
 /// A name and a range: `Omega=0.5:1.5`.
 fn range(text: &str) -> Result<(Symbol, [f64; 2]), Failure> {
-    let form = || {
-        Failure::Usage(format!(
-            "--vary {text}: expected NAME=FROM:TO, such as Omega=0.5:1.5"
-        ))
-    };
+    let form =
+        || Failure::Usage(format!("--vary {text}: expected NAME=FROM:TO, such as Omega=0.5:1.5"));
     let (name, range) = text.split_once('=').ok_or_else(form)?;
     let (from, to) = range.split_once(':').ok_or_else(form)?;
-    let name = parse_expression(name)
-        .ok()
-        .and_then(|name| name.as_symbol())
-        .ok_or_else(form)?;
+    let name = parse_expression(name).ok().and_then(|name| name.as_symbol()).ok_or_else(form)?;
     let number = |text: &str| {
         let value = parse_expression(text)
             .map_err(|error| Failure::Usage(format!("--vary {text}: {error}")))?;

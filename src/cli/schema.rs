@@ -22,10 +22,7 @@ pub struct Arguments {
 impl Work for Arguments {
     /// The place of the schema, which has no other format and no verdict.
     fn common(&self) -> Common {
-        Common {
-            output: self.output.clone(),
-            ..Common::default()
-        }
+        Common { output: self.output.clone(), ..Common::default() }
     }
 
     fn run(&self) -> Result<Outcome, Failure> {

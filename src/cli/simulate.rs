@@ -119,11 +119,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return own(arguments, &problem);
     }
     let foreign = [
-        (
-            "--from",
-            !arguments.from.is_empty(),
-            "start and speed in [pendulum]",
-        ),
+        ("--from", !arguments.from.is_empty(), "start and speed in [pendulum]"),
         ("--until", arguments.until.is_some(), "duration in [run]"),
         ("--at", !arguments.at.is_empty(), "the keys of a file"),
         ("--every", arguments.every.is_some(), "--sample"),
@@ -252,10 +248,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     };
     let others = baseline(&motion).map_err(|error| Failure::refused(&error, None))?;
     let units = asked.units.as_ref();
-    let dissipation = asked
-        .case
-        .dissipation(units)
-        .map_err(|error| refused(error.into()))?;
+    let dissipation = asked.case.dissipation(units).map_err(|error| refused(error.into()))?;
     let report = Report {
         motion: &motion,
         baseline: others.as_ref(),
@@ -265,11 +258,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         samples: &arguments.sample,
         dissipation: Some(&dissipation),
         units,
-        known_until: if arguments.chain {
-            None
-        } else {
-            known_until(&motion)
-        },
+        known_until: if arguments.chain { None } else { known_until(&motion) },
     };
     let draw: Option<Draw> = Some(&|| picture(&report));
     let text = match arguments.common.format() {
@@ -286,12 +275,8 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         .into_iter()
         .flatten()
         .find(|motion| !motion.stop.is_complete());
-    let note = broken.map(|motion| {
-        format!(
-            "warning: stopped early, what there is is kept: {}",
-            motion.stop
-        )
-    });
+    let note = broken
+        .map(|motion| format!("warning: stopped early, what there is is kept: {}", motion.stop));
     Ok(Outcome {
         result: whole(text),
         picture,
@@ -309,20 +294,10 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
 /// The settings of the file. A chain goes on to rest, unless the file says how long or nothing
 /// damps the swing.
 fn settings(arguments: &Arguments, asked: &Simulate) -> Settings {
-    let settings = Settings {
-        interrupt: Interrupt::by(&STOP),
-        ..asked.settings
-    };
-    let damped = asked
-        .case
-        .motion()
-        .is_ok_and(|(model, _)| model.zeta > 0.0 || model.alpha > 0.0);
+    let settings = Settings { interrupt: Interrupt::by(&STOP), ..asked.settings };
+    let damped = asked.case.motion().is_ok_and(|(model, _)| model.zeta > 0.0 || model.alpha > 0.0);
     match arguments.chain && !asked.duration_given && (damped || !arguments.sweep.is_empty()) {
-        true => Settings {
-            duration: LONGEST_CHAIN,
-            stop_at_rest: true,
-            ..settings
-        },
+        true => Settings { duration: LONGEST_CHAIN, stop_at_rest: true, ..settings },
         false => settings,
     }
 }
@@ -406,22 +381,13 @@ fn add_baseline(
     settings: &Settings,
     follow: impl Fn(&[(Model, Start)], &Settings) -> Result<Vec<Summary>, Failure>,
 ) -> Result<(), Failure> {
-    let longer = Settings {
-        duration: BASELINE_DURATIONS * settings.duration,
-        ..*settings
-    };
+    let longer = Settings { duration: BASELINE_DURATIONS * settings.duration, ..*settings };
     let others = |change: fn(Model) -> Model| {
-        let changed: Vec<_> = motions
-            .iter()
-            .map(|(model, start)| (change(*model), *start))
-            .collect();
+        let changed: Vec<_> =
+            motions.iter().map(|(model, start)| (change(*model), *start)).collect();
         follow(&changed, &longer)
     };
-    let without = others(|model| Model {
-        left: None,
-        right: None,
-        ..model
-    })?;
+    let without = others(|model| Model { left: None, right: None, ..model })?;
     let lossless = others(|model| Model { mu: 0.0, ..model })?;
     for (row, (without, lossless)) in rows.iter_mut().zip(without.iter().zip(&lossless)) {
         row.baseline = Some([without.rest_time, lossless.rest_time]);
@@ -451,10 +417,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         add_baseline(&mut rows, &motions, &settings, follow)?;
     }
     bar.finish_and_clear();
-    let report = SweepReport {
-        axes: &arguments.sweep,
-        rows: &rows,
-    };
+    let report = SweepReport { axes: &arguments.sweep, rows: &rows };
     let draw: Option<Draw> = Some(&|| sweep_picture(&report));
     let picture = pictured(&arguments.common, draw);
     let incomplete = rows.iter().filter(|row| !row.stop.is_complete()).count();
@@ -480,10 +443,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         result: match made_whole {
             Some(text) => whole(text),
             None => Box::new(move |to| {
-                let report = SweepReport {
-                    axes: &axes,
-                    rows: &rows,
-                };
+                let report = SweepReport { axes: &axes, rows: &rows };
                 write(&report, to)
             }),
         },

@@ -77,9 +77,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     };
     let options = Options {
         order: arguments.order.or(order).unwrap_or(usual.order),
-        tongues: arguments
-            .tongues
-            .map_or(usual.tongues, |tongues| tongues as usize),
+        tongues: arguments.tongues.map_or(usual.tongues, |tongues| tongues as usize),
         small: match arguments.small.is_empty() {
             true => formula.small.map(str::to_owned).into_iter().collect(),
             false => arguments.small.clone(),
@@ -108,9 +106,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         false => None,
         true => Some(charts(&curves, &values)?),
     };
-    let drawn = charts
-        .as_ref()
-        .map(|(by, charts)| || picture(&curves, *by, charts, &values));
+    let drawn = charts.as_ref().map(|(by, charts)| || picture(&curves, *by, charts, &values));
     let answer = Answer {
         document: &report::stability(&report),
         width: width(arguments.common.output.as_deref()),
@@ -121,18 +117,13 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             (format, _) => no_such(format),
         },
     };
-    Ok(Outcome {
-        verdict: report.passes().map(Verdict::of),
-        ..answer.outcome(&arguments.common)?
-    })
+    Ok(Outcome { verdict: report.passes().map(Verdict::of), ..answer.outcome(&arguments.common)? })
 }
 
 /// A refusal, with the term that it names shown in the equation.
 fn refused(typed: &lindstedt::expr::Typed, error: &HillError) -> Failure {
     let place = error.term().and_then(|term| typed.place(term));
-    let shown = place.map_or(String::new(), |[line, carets]| {
-        format!("\n  {line}\n  {carets}")
-    });
+    let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
     Failure::refused(&format!("{error}{shown}"), error.help())
 }
 
@@ -142,20 +133,16 @@ fn unjudged(error: &TruthError) -> Failure {
         TruthError::Missing(_) => {
             Failure::refused(error, Some("give it with --at NAME=VALUE".to_owned()))
         }
-        TruthError::NotConfirmed(_) | TruthError::Coefficients => Failure::refused(
-            error,
-            Some("take smaller values, or fewer tongues".to_owned()),
-        ),
+        TruthError::NotConfirmed(_) | TruthError::Coefficients => {
+            Failure::refused(error, Some("take smaller values, or fewer tongues".to_owned()))
+        }
         _ => Failure::refused(error, None),
     }
 }
 
 /// The curves from nothing small up to the value of the first small parameter that has one.
 fn charts(curves: &TransitionCurves, values: &Values) -> Result<(Symbol, Vec<Chart>), Failure> {
-    let sizes = curves
-        .small
-        .iter()
-        .filter_map(|name| Some((*name, values.get(*name)?)));
+    let sizes = curves.small.iter().filter_map(|name| Some((*name, values.get(*name)?)));
     let eps = Symbol::new("eps");
     let Some((by, upto)) = sizes.max_by_key(|(name, _)| *name == eps) else {
         return Err(Failure::Refused(format!(
@@ -181,9 +168,7 @@ fn picture(
     values: &Values,
 ) -> Result<String, Failure> {
     let others = values.iter().filter(|(name, _)| *name != by);
-    let others: Vec<String> = others
-        .map(|(name, value)| format!("; {name} = {value}"))
-        .collect();
+    let others: Vec<String> = others.map(|(name, value)| format!("; {name} = {value}")).collect();
     let caption = format!("{}{}", curves.equation, others.concat());
     stability::picture(curves, by, charts, &caption).map_err(|error| Failure::refused(&error, None))
 }

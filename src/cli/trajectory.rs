@@ -52,11 +52,7 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
     if !asked.sweep.is_empty() {
         return many(&course, asked);
     }
-    if let Some(late) = asked
-        .samples
-        .iter()
-        .find(|sample| **sample > course.duration)
-    {
+    if let Some(late) = asked.samples.iter().find(|sample| **sample > course.duration) {
         return Err(Failure::Refused(format!(
             "--sample {late} lies beyond the duration {}\n  help: raise --until",
             course.duration
@@ -87,10 +83,8 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
             format => no_such(format),
         },
     };
-    let broken = [Some(&motion), judge.as_ref()]
-        .into_iter()
-        .flatten()
-        .find(|motion| !motion.is_complete());
+    let broken =
+        [Some(&motion), judge.as_ref()].into_iter().flatten().find(|motion| !motion.is_complete());
     let allowed = common.tolerance.unwrap_or(TRUSTED);
     let doubt = report.doubt();
     // A section is looked at for what motions nearby have in common.
@@ -157,9 +151,9 @@ fn by_both(course: &Course) -> Result<[Trajectory; 2], Failure> {
 
 fn refused(error: TrajectoryError) -> Failure {
     let help = match &error {
-        TrajectoryError::Missing(names) => names
-            .first()
-            .map(|name| format!("--at {name}=VALUE, or [values] in the file")),
+        TrajectoryError::Missing(names) => {
+            names.first().map(|name| format!("--at {name}=VALUE, or [values] in the file"))
+        }
         _ => None,
     };
     Failure::refused(&error, help)
@@ -167,17 +161,11 @@ fn refused(error: TrajectoryError) -> Failure {
 
 /// The course of the file with the start, the values and the duration of the command line.
 fn course(problem: &Problem, asked: &Asked) -> Result<Course, Failure> {
-    let mut course = problem
-        .course()
-        .map_err(|error| Failure::refused(&error, error.help()))?;
+    let mut course = problem.course().map_err(|error| Failure::refused(&error, error.help()))?;
     course.section = section(&course, asked)?;
     let needed = course.parameters();
     let values = exact_values(asked.at, problem.values_with(&needed))?.unwrap_or_default();
-    if let Some(unknown) = values
-        .numbers()
-        .into_keys()
-        .find(|name| !needed.contains(name))
-    {
+    if let Some(unknown) = values.numbers().into_keys().find(|name| !needed.contains(name)) {
         return Err(refused(TrajectoryError::Unknown(unknown)));
     }
     course.values = values.numbers();
@@ -198,10 +186,8 @@ fn course(problem: &Problem, asked: &Asked) -> Result<Course, Failure> {
                 .to_owned(),
         ));
     }
-    let starts_swept = asked
-        .sweep
-        .iter()
-        .any(|axis| course.rates.states.contains(&Symbol::new(axis.name())));
+    let starts_swept =
+        asked.sweep.iter().any(|axis| course.rates.states.contains(&Symbol::new(axis.name())));
     if asked.from.is_empty() && !starts_swept {
         let name = course.coordinates.first().map_or("x", |name| name.name());
         return Err(Failure::Refused(format!(
@@ -210,11 +196,8 @@ fn course(problem: &Problem, asked: &Asked) -> Result<Course, Failure> {
     }
     let mut begun: Vec<Symbol> = Vec::new();
     for part in asked.from.iter().flat_map(|text| text.split(',')) {
-        let form = || {
-            Failure::Usage(format!(
-                "--from {part}: expected NAME=VALUE, such as x=1.5 or v=0"
-            ))
-        };
+        let form =
+            || Failure::Usage(format!("--from {part}: expected NAME=VALUE, such as x=1.5 or v=0"));
         let (name, value) = part.split_once('=').ok_or_else(form)?;
         let value = parse_expression(value)
             .map_err(|error| Failure::Usage(format!("--from {part}: {error}")))?;
@@ -276,19 +259,12 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
                 .to_owned(),
         ));
     }
-    let names: Vec<Symbol> = asked
-        .sweep
-        .iter()
-        .map(|axis| Symbol::new(axis.name()))
-        .collect();
+    let names: Vec<Symbol> = asked.sweep.iter().map(|axis| Symbol::new(axis.name())).collect();
     let parameters = course.parameters();
     for (index, name) in names.iter().enumerate() {
         if !parameters.contains(name) && !course.rates.states.contains(name) {
-            let known: Vec<String> = parameters
-                .iter()
-                .chain(&course.rates.states)
-                .map(ToString::to_string)
-                .collect();
+            let known: Vec<String> =
+                parameters.iter().chain(&course.rates.states).map(ToString::to_string).collect();
             return Err(Failure::Refused(format!(
                 "--sweep: `{name}` is neither a parameter nor a state of the equations, so nothing would vary: choose one of {}",
                 known.join(", ")
@@ -304,9 +280,7 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
         }
     }
     let total = grid_size(asked.sweep).map_err(|error| Failure::refused(&error, None))?;
-    let grid: Vec<Vec<f64>> = (0..total)
-        .map(|number| grid_values(asked.sweep, number))
-        .collect();
+    let grid: Vec<Vec<f64>> = (0..total).map(|number| grid_values(asked.sweep, number)).collect();
     let bar = progress::bar(total, MOTIONS);
     let motions = sweep(course, &names, &grid, || bar.inc(1)).map_err(|(number, error)| {
         let Failure::Refused(message) = refused(error) else {
@@ -315,11 +289,7 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
         Failure::Refused(format!("motion {}: {message}", number + 1))
     })?;
     bar.finish_and_clear();
-    let report = MotionSweep {
-        course,
-        names: &names,
-        motions: &motions,
-    };
+    let report = MotionSweep { course, names: &names, motions: &motions };
     let answer = Answer {
         document: &report::motion_sweep(&report),
         width: width(common.output.as_deref()),
@@ -331,38 +301,22 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
         },
     };
     let note = stopped_early(&motions, total);
-    Ok(Outcome {
-        partial: note.is_some(),
-        note,
-        ..answer.outcome(common)?
-    })
+    Ok(Outcome { partial: note.is_some(), note, ..answer.outcome(common)? })
 }
 
 /// What is missing of so many motions, where anything is.
 fn stopped_early(motions: &[SweptMotion], all: usize) -> Option<String> {
     let kept = "stopped early, what there is is kept";
-    let interrupted = motions
-        .iter()
-        .filter(|motion| motion.reason == End::Interrupted)
-        .count();
+    let interrupted = motions.iter().filter(|motion| motion.reason == End::Interrupted).count();
     if motions.len() < all || interrupted > 0 {
         let cut = match interrupted {
             0 => String::new(),
             some => format!(", {some} of them not to the end"),
         };
-        return Some(format!(
-            "warning: {kept}: {} of {all} motions{cut}",
-            motions.len()
-        ));
+        return Some(format!("warning: {kept}: {} of {all} motions{cut}", motions.len()));
     }
-    let number = motions
-        .iter()
-        .position(|motion| motion.reason != End::Reached)?;
-    Some(format!(
-        "warning: motion {} {kept}: {}",
-        number + 1,
-        in_words(motions[number].reason)
-    ))
+    let number = motions.iter().position(|motion| motion.reason != End::Reached)?;
+    Some(format!("warning: motion {} {kept}: {}", number + 1, in_words(motions[number].reason)))
 }
 
 #[cfg(not(feature = "plot"))]
@@ -377,10 +331,7 @@ fn sweep_picture(report: &MotionSweep) -> Result<String, Failure> {
 
 /// Complete, the energy accounted for, and where there is a judge, agreed with.
 fn verdict(motion: &Trajectory, judge: Option<&Trajectory>, allowed: f64) -> Verdict {
-    let kept = motion
-        .balance
-        .as_ref()
-        .is_none_or(|balance| balance.residual <= allowed);
+    let kept = motion.balance.as_ref().is_none_or(|balance| balance.residual <= allowed);
     let agreed =
         judge.is_none_or(|judge| judge.is_complete() && motion.difference(judge) <= allowed);
     Verdict::of(kept && agreed && motion.is_complete())

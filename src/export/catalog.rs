@@ -10,11 +10,7 @@ use crate::catalog::{CATALOG, Entry, methods};
 /// assert!(lindstedt::export::catalog::text().starts_with("pendulum: "));
 /// ```
 pub fn text() -> String {
-    CATALOG
-        .iter()
-        .map(entry_as_text)
-        .collect::<Vec<_>>()
-        .join("\n")
+    CATALOG.iter().map(entry_as_text).collect::<Vec<_>>().join("\n")
 }
 
 /// Every entry as an item of a list: its equation and what is published.
@@ -24,10 +20,7 @@ pub fn text() -> String {
 /// ```
 pub fn latex() -> String {
     let items: Vec<String> = CATALOG.iter().map(item).collect();
-    format!(
-        "\\begin{{description}}\n{}\n\\end{{description}}\n",
-        items.join("\n")
-    )
+    format!("\\begin{{description}}\n{}\n\\end{{description}}\n", items.join("\n"))
 }
 
 fn entry_as_text(entry: &Entry) -> String {
@@ -62,9 +55,7 @@ fn wrapped(start: &str, names: &[&str], end: &str) -> Vec<String> {
     let mut lines = vec![start.to_owned()];
     for (index, name) in names.iter().enumerate() {
         let separator = if index + 1 < names.len() { ", " } else { end };
-        let full = lines
-            .last()
-            .is_some_and(|line| line.len() + name.len() > WIDTH);
+        let full = lines.last().is_some_and(|line| line.len() + name.len() > WIDTH);
         if full {
             lines.push("    ".to_owned());
         }
@@ -76,10 +67,7 @@ fn wrapped(start: &str, names: &[&str], end: &str) -> Vec<String> {
     if names.is_empty() {
         vec![]
     } else {
-        lines
-            .iter()
-            .map(|line| line.trim_end().to_owned())
-            .collect()
+        lines.iter().map(|line| line.trim_end().to_owned()).collect()
     }
 }
 
@@ -87,14 +75,8 @@ fn wrapped(start: &str, names: &[&str], end: &str) -> Vec<String> {
 fn item(entry: &Entry) -> String {
     let law = entry.published.map(|law| {
         let law = law.to_string();
-        format!(
-            ", published $ {} $",
-            latex::typed(law.trim_end_matches(" + ..."))
-        )
+        format!(", published $ {} $", latex::typed(law.trim_end_matches(" + ...")))
     });
     let (equation, law) = (latex::typed(entry.equation), law.unwrap_or_default());
-    format!(
-        "\\item[{}] {}: $ {equation} ${law}",
-        entry.name, entry.title
-    )
+    format!("\\item[{}] {}: $ {equation} ${law}", entry.name, entry.title)
 }

@@ -183,9 +183,7 @@ struct Syntax {
 
 /// A text as a comment, line by line.
 fn commented(text: &str, prefix: &str) -> String {
-    text.lines()
-        .map(|line| format!("{prefix} {line}").trim_end().to_owned() + "\n")
-        .collect()
+    text.lines().map(|line| format!("{prefix} {line}").trim_end().to_owned() + "\n").collect()
 }
 
 /// The base of a power.

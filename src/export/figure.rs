@@ -229,10 +229,7 @@ pub fn impact_figure(data: &ImpactFigure) -> Result<String, FigureError> {
     const LEFT: &str = "left barrier";
     const RIGHT: &str = "barrier x_c";
     let motions = data.motions.iter();
-    let phase: Vec<_> = motions
-        .clone()
-        .map(|motion| phase_points(motion.samples))
-        .collect();
+    let phase: Vec<_> = motions.clone().map(|motion| phase_points(motion.samples)).collect();
     let time: Vec<_> = motions.map(|motion| time_points(motion.samples)).collect();
     let barriers = |guide: fn(f64, &'static str) -> Guide<'static>| {
         let left = data.left_barrier.map(|at| guide(at, LEFT));
@@ -245,41 +242,16 @@ pub fn impact_figure(data: &ImpactFigure) -> Result<String, FigureError> {
         Some(unit) => format!("{words} {}", &axis[unit..]),
         None => words.to_owned(),
     };
-    let enlarged = [
-        with_unit("time since touch", time),
-        with_unit("depth", displacement),
-    ];
+    let enlarged = [with_unit("time since touch", time), with_unit("depth", displacement)];
     let mut panels = vec![
-        panel(
-            "Phase plane",
-            [displacement, "velocity x′"],
-            orbits,
-            barriers(Guide::X),
-        ),
-        panel(
-            "Motion in time",
-            [time, displacement],
-            motions,
-            barriers(Guide::Y),
-        ),
+        panel("Phase plane", [displacement, "velocity x′"], orbits, barriers(Guide::X)),
+        panel("Motion in time", [time, displacement], motions, barriers(Guide::Y)),
     ];
-    let touching = data
-        .motions
-        .iter()
-        .filter(|motion| !motion.contact.is_empty());
-    let contacts: Vec<_> = touching
-        .map(|m| curve(m.label, m.contact, m.style))
-        .collect();
+    let touching = data.motions.iter().filter(|motion| !motion.contact.is_empty());
+    let contacts: Vec<_> = touching.map(|m| curve(m.label, m.contact, m.style)).collect();
     if !contacts.is_empty() {
         let labels = enlarged.each_ref().map(String::as_str);
-        let touch = vec![Guide::Y(
-            0.0,
-            if data.right_barrier.is_some() {
-                RIGHT
-            } else {
-                LEFT
-            },
-        )];
+        let touch = vec![Guide::Y(0.0, if data.right_barrier.is_some() { RIGHT } else { LEFT })];
         panels.push(panel("Contact, enlarged", labels, contacts, touch));
     }
     figure(&panels, data.caption)
@@ -336,27 +308,17 @@ pub struct MotionFigure<'a> {
 /// ```
 pub fn motion_figure(data: &MotionFigure) -> Result<String, FigureError> {
     let (formula, truth, name) = (data.formula, data.truth, data.coordinate);
-    let same = formula
-        .iter()
-        .zip(truth)
-        .take_while(|(f, t)| f.0 == t.0)
-        .count();
+    let same = formula.iter().zip(truth).take_while(|(f, t)| f.0 == t.0).count();
     if same < formula.len().max(truth.len()) {
         return Err(FigureError::DifferentTimes(same));
     }
-    let difference: Vec<(f64, f64)> = formula
-        .iter()
-        .zip(truth)
-        .map(|(f, t)| (f.0, f.1 - t.1))
-        .collect();
+    let difference: Vec<(f64, f64)> =
+        formula.iter().zip(truth).map(|(f, t)| (f.0, f.1 - t.1)).collect();
     let (formula_time, truth_time) = (time_points(formula), time_points(truth));
     let (formula_phase, truth_phase) = (phase_points(formula), phase_points(truth));
     let over = |formula, truth| {
         let truth = curve("Runge-Kutta", truth, CurveStyle::RUNGE_KUTTA);
-        vec![
-            truth,
-            curve(data.formula_label, formula, CurveStyle::FORMULA),
-        ]
+        vec![truth, curve(data.formula_label, formula, CurveStyle::FORMULA)]
     };
     let with_unit = |quantity: String, unit| match unit {
         "" => quantity,
@@ -368,11 +330,7 @@ pub fn motion_figure(data: &MotionFigure) -> Result<String, FigureError> {
     let deviation = with_unit("formula − Runge-Kutta".to_owned(), data.displacement_unit);
     let mut motions = over(&formula_time, &truth_time);
     for (k, envelope) in data.envelopes.iter().enumerate() {
-        let label = if k == 0 {
-            "envelope of the formula"
-        } else {
-            ""
-        };
+        let label = if k == 0 { "envelope of the formula" } else { "" };
         motions.push(curve(label, envelope, CurveStyle::DIFFERENCE));
     }
     let shown = match data.envelopes.is_empty() {
@@ -384,12 +342,7 @@ pub fn motion_figure(data: &MotionFigure) -> Result<String, FigureError> {
     let panels = [
         panel(shown, [&time, &displacement], motions, vec![]),
         panel("Phase plane", [&displacement, &velocity], orbits, vec![]),
-        panel(
-            "Difference",
-            [&time, &deviation],
-            deviations,
-            vec![Guide::Y(0.0, "")],
-        ),
+        panel("Difference", [&time, &deviation], deviations, vec![Guide::Y(0.0, "")]),
     ];
     figure(&panels, data.caption)
 }
@@ -418,10 +371,8 @@ pub fn backbone_figure(
     marked: Option<f64>,
     caption: &str,
 ) -> Result<String, FigureError> {
-    let drawn: Vec<&Backbone> = curves
-        .iter()
-        .filter(|backbone| backbone.points.len() > 1)
-        .collect();
+    let drawn: Vec<&Backbone> =
+        curves.iter().filter(|backbone| backbone.points.len() > 1).collect();
     let mut caption = caption.to_owned();
     let label = |backbone: &&Backbone| match backbone.methods.as_slice() {
         [only] => only.clone(),
@@ -436,10 +387,8 @@ pub fn backbone_figure(
         }
     };
     let labels: Vec<String> = drawn.iter().map(label).collect();
-    let errors: Vec<Vec<(f64, f64)>> = drawn
-        .iter()
-        .map(|backbone| errors_in_percent(&backbone.points, &truth.points))
-        .collect();
+    let errors: Vec<Vec<(f64, f64)>> =
+        drawn.iter().map(|backbone| errors_in_percent(&backbone.points, &truth.points)).collect();
     let style = |index: usize| CurveStyle::SERIES[index % CurveStyle::SERIES.len()];
     let mut frequencies = vec![curve("true motion", &truth.points, CurveStyle::RUNGE_KUTTA)];
     let mut deviations = Vec::new();
@@ -451,20 +400,11 @@ pub fn backbone_figure(
     }
     let amplitude = "amplitude A";
     let mark = || marked.map(|at| Guide::X(at, "")).into_iter();
-    let mut panels = vec![panel(
-        "Frequency",
-        [amplitude, "frequency \u{3c9}"],
-        frequencies,
-        mark().collect(),
-    )];
+    let mut panels =
+        vec![panel("Frequency", [amplitude, "frequency \u{3c9}"], frequencies, mark().collect())];
     if !deviations.is_empty() {
         let guides = mark().chain([Guide::Y(1.0, "")]).collect();
-        let mut below = panel(
-            "Error",
-            [amplitude, "|error| of \u{3c9} (%)"],
-            deviations,
-            guides,
-        );
+        let mut below = panel("Error", [amplitude, "|error| of \u{3c9} (%)"], deviations, guides);
         below.y_scale = Scale::Logarithmic;
         panels.push(below);
     }
@@ -528,11 +468,7 @@ fn arranged(
         let columns = 1 + usize::from(alone);
         let (lines, layout) = drawn(panel, columns)?;
         let key = |entry: &LegendEntry| {
-            (
-                entry.label.clone(),
-                entry.color.clone(),
-                entry.dasharray.clone(),
-            )
+            (entry.label.clone(), entry.color.clone(), entry.dasharray.clone())
         };
         for entry in collect_legend_entries(&lines) {
             if entries.iter().all(|other| key(other) != key(&entry)) {
@@ -546,30 +482,15 @@ fn arranged(
         cells.push((first..first + columns).collect());
     }
     entries.sort_by_key(|entry| entry.color == CurveStyle::GUIDE.0);
-    let longest = entries
-        .iter()
-        .map(|entry| entry.label.chars().count())
-        .max();
-    let rows = if abreast {
-        panels.len().div_ceil(2)
-    } else {
-        panels.len()
-    };
+    let longest = entries.iter().map(|entry| entry.label.chars().count()).max();
+    let rows = if abreast { panels.len().div_ceil(2) } else { panels.len() };
     let abreast = (97 / (longest.unwrap_or(0) + 7)).clamp(1, 4);
     let legend_height = 1.0 + 22.0 * entries.len().div_ceil(abreast) as f64;
-    let legend = LegendPlot::from_entries(entries)
-        .with_cols(abreast)
-        .with_max_cols(abreast);
+    let legend = LegendPlot::from_entries(entries).with_cols(abreast).with_max_cols(abreast);
     plots.push(vec![Plot::LegendPlot(legend.without_box())]);
     // A small font at a large scale: longer samples of the lines beside text of the usual size.
-    let layout = Layout::new((0.0, 1.0), (0.0, 1.0))
-        .with_scale(1.5)
-        .with_body_size(8);
-    layouts.push(
-        layout
-            .with_force_margins(16.0, 0.0)
-            .with_force_margins_y(6.0, 0.0),
-    );
+    let layout = Layout::new((0.0, 1.0), (0.0, 1.0)).with_scale(1.5).with_body_size(8);
+    layouts.push(layout.with_force_margins(16.0, 0.0).with_force_margins_y(6.0, 0.0));
     cells.push(vec![0, 1]);
 
     let letters: Vec<String> = ('A'..='Z').take(panels.len()).map(String::from).collect();
@@ -577,10 +498,7 @@ fn arranged(
         .with_structure(cells)
         .with_plots(plots)
         .with_layouts(layouts)
-        .with_labels_custom(
-            letters.iter().map(String::as_str).collect(),
-            LabelConfig::default(),
-        )
+        .with_labels_custom(letters.iter().map(String::as_str).collect(), LabelConfig::default())
         .with_padding(MARGIN)
         .with_cell_size((PAGE - 2.0 * MARGIN - 15.0) / 2.0, 290.0)
         .with_row_height(0, legend_height)
@@ -590,17 +508,11 @@ fn arranged(
 
 fn curves<'a>(motions: &[ImpactMotion<'a>], points: &'a [Vec<(f64, f64)>]) -> Vec<Curve<'a>> {
     let pairs = motions.iter().zip(points);
-    pairs
-        .map(|(m, points)| curve(m.label, points, m.style))
-        .collect()
+    pairs.map(|(m, points)| curve(m.label, points, m.style)).collect()
 }
 
 fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
-    Curve {
-        label,
-        points,
-        style,
-    }
+    Curve { label, points, style }
 }
 
 fn panel<'a>(
@@ -609,14 +521,7 @@ fn panel<'a>(
     curves: Vec<Curve<'a>>,
     guides: Vec<Guide<'a>>,
 ) -> Panel<'a> {
-    Panel {
-        title,
-        x_label: labels[0],
-        y_label: labels[1],
-        curves,
-        guides,
-        ..Panel::default()
-    }
+    Panel { title, x_label: labels[0], y_label: labels[1], curves, guides, ..Panel::default() }
 }
 
 fn time_points(samples: &[(f64, f64, f64)]) -> Vec<(f64, f64)> {
@@ -624,19 +529,14 @@ fn time_points(samples: &[(f64, f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 fn phase_points(samples: &[(f64, f64, f64)]) -> Vec<(f64, f64)> {
-    samples
-        .iter()
-        .map(|&(_, x, velocity)| (x, velocity))
-        .collect()
+    samples.iter().map(|&(_, x, velocity)| (x, velocity)).collect()
 }
 
 /// Words as they stand: the library reads `$...$` as mathematics, and XML has no control
 /// characters.
 fn printable(text: &str) -> String {
-    text.replace('$', "\\$").replace(
-        |c: char| c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}'),
-        " ",
-    )
+    text.replace('$', "\\$")
+        .replace(|c: char| c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}'), " ")
 }
 
 /// The scene and its caption as SVG, without the library's version, and with the clip regions,
@@ -660,13 +560,10 @@ pub(super) fn written(mut scene: Scene, caption: &str) -> String {
             color: None,
         });
     }
-    let clips = scene
-        .elements
-        .iter_mut()
-        .filter_map(|element| match element {
-            Primitive::ClipStart { id, .. } => Some(id),
-            _ => None,
-        });
+    let clips = scene.elements.iter_mut().filter_map(|element| match element {
+        Primitive::ClipStart { id, .. } => Some(id),
+        _ => None,
+    });
     for (number, id) in clips.enumerate() {
         let (old, new) = (format!("\"{id}\""), format!("clip-{number}"));
         for region in &mut scene.defs {
@@ -676,12 +573,11 @@ pub(super) fn written(mut scene: Scene, caption: &str) -> String {
     }
     let svg = SvgBackend::new().with_pretty(true).render_scene(&scene);
     // A mitred corner of a thick line sticks out: a graze would seem to go far into the barrier.
-    svg.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1)
-        .replacen(
-            &format!("  <!-- Generated by kuva {} -->\n", kuva::VERSION),
-            "",
-            1,
-        )
+    svg.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1).replacen(
+        &format!("  <!-- Generated by kuva {} -->\n", kuva::VERSION),
+        "",
+        1,
+    )
 }
 
 #[cfg(test)]
@@ -709,20 +605,11 @@ mod tests {
     }
 
     fn impact() -> String {
-        let samples: Vec<_> = (0..50)
-            .map(|i| f64::from(i) / 8.0)
-            .map(|t| (t, t.cos(), -t.sin()))
-            .collect();
-        let motions = [
-            ("Runge-Kutta", CurveStyle::RUNGE_KUTTA),
-            ("paper", CurveStyle::FORMULA),
-        ];
-        let motion = |(label, style)| ImpactMotion {
-            label,
-            style,
-            samples: &samples,
-            contact: &WAVE,
-        };
+        let samples: Vec<_> =
+            (0..50).map(|i| f64::from(i) / 8.0).map(|t| (t, t.cos(), -t.sin())).collect();
+        let motions = [("Runge-Kutta", CurveStyle::RUNGE_KUTTA), ("paper", CurveStyle::FORMULA)];
+        let motion =
+            |(label, style)| ImpactMotion { label, style, samples: &samples, contact: &WAVE };
         let (motions, right_barrier) = (&motions.map(motion), Some(0.3));
         impact_figure(&ImpactFigure {
             left_barrier: None,
@@ -737,29 +624,12 @@ mod tests {
     #[test]
     fn three_lettered_panels_share_one_legend_and_the_truth_lies_below() {
         let svg = impact();
-        for words in [
-            "A",
-            "B",
-            "C",
-            "Contact, enlarged",
-            "Runge-Kutta",
-            "paper",
-            "barrier x_c",
-            "End.",
-        ] {
-            assert_eq!(
-                svg.matches(&format!(">{words}</text>")).count(),
-                1,
-                "{words}"
-            );
+        for words in
+            ["A", "B", "C", "Contact, enlarged", "Runge-Kutta", "paper", "barrier x_c", "End."]
+        {
+            assert_eq!(svg.matches(&format!(">{words}</text>")).count(), 1, "{words}");
         }
-        assert_eq!(
-            (
-                svg.matches("<clipPath").count(),
-                svg.matches("<path").count()
-            ),
-            (3, 9)
-        );
+        assert_eq!((svg.matches("<clipPath").count(), svg.matches("<path").count()), (3, 9));
         assert!(
             svg.find(CurveStyle::RUNGE_KUTTA.0).unwrap() < svg.find(CurveStyle::FORMULA.0).unwrap()
         );
@@ -793,18 +663,9 @@ mod tests {
     #[test]
     fn a_power_of_ten_moves_from_the_numbers_to_the_label() {
         let draw = |factor: f64| {
-            one(
-                Scale::Linear,
-                "",
-                &WAVE.map(|(x, y)| (x, y * factor)),
-                vec![],
-            )
-            .unwrap()
+            one(Scale::Linear, "", &WAVE.map(|(x, y)| (x, y * factor)), vec![]).unwrap()
         };
-        assert_eq!(
-            (path(&draw(1.0)).len(), path(&draw(1e-7))),
-            (1, path(&draw(1.0)))
-        );
+        assert_eq!((path(&draw(1.0)).len(), path(&draw(1e-7))), (1, path(&draw(1.0))));
         assert!(draw(1e-7).contains(">y (10⁻⁷ rad)<") && draw(1.0).contains(">y (rad)<"));
         assert!(!draw(1e-310).contains("NaN") && !draw(8e307).contains("inf"));
     }
@@ -816,15 +677,9 @@ mod tests {
         let svg = draw(&errors).unwrap();
         assert!(svg.contains(">10⁻¹⁸<") && svg.contains(">10⁻¹²<"));
         assert_eq!(path(&svg), path(&draw(&errors[1..]).unwrap()));
-        assert!(matches!(
-            draw(&errors[..2]),
-            Err(FigureError::TooFewPoints(_))
-        ));
+        assert!(matches!(draw(&errors[..2]), Err(FigureError::TooFewPoints(_))));
         let refused = draw(&[(0.0, 1.0), (1.0, -0.5)]).unwrap_err().to_string();
-        assert!(
-            refused.starts_with("point (1.0, -0.5) of \"e\" in panel \"T\""),
-            "{refused}"
-        );
+        assert!(refused.starts_with("point (1.0, -0.5) of \"e\" in panel \"T\""), "{refused}");
     }
 
     #[test]
@@ -832,33 +687,16 @@ mod tests {
         let points = [(1e4, 1.0), (1e6, 2.0), (1e9, 3.0)];
         let curves = vec![curve("", &points, CurveStyle::FORMULA)];
         let panel = panel("T", ["stiffness", "y"], curves, vec![Guide::X(1e5, "")]);
-        let draw = |x_scale| {
-            figure(
-                &[Panel {
-                    x_scale,
-                    ..panel.clone()
-                }],
-                "",
-            )
-            .unwrap()
-        };
+        let draw = |x_scale| figure(&[Panel { x_scale, ..panel.clone() }], "").unwrap();
         let svg = draw(Scale::Logarithmic);
-        assert!(
-            ["10⁴", "10⁹"]
-                .iter()
-                .all(|tick| svg.contains(&format!(">{tick}<"))),
-            "{svg}"
-        );
+        assert!(["10⁴", "10⁹"].iter().all(|tick| svg.contains(&format!(">{tick}<"))), "{svg}");
         assert_ne!(path(&svg), path(&draw(Scale::Linear)));
     }
 
     #[test]
     fn what_cannot_be_drawn_is_refused() {
         assert!(matches!(figure(&[], ""), Err(FigureError::Empty(_))));
-        assert!(matches!(
-            figure(&[Panel::default()], ""),
-            Err(FigureError::Empty(_))
-        ));
+        assert!(matches!(figure(&[Panel::default()], ""), Err(FigureError::Empty(_))));
         assert!(matches!(
             one(Scale::Linear, "", &WAVE[..1], vec![]),
             Err(FigureError::TooFewPoints(_))
@@ -871,20 +709,12 @@ mod tests {
                 ));
             }
             let guides = vec![Guide::X(bad, "g")];
-            assert!(matches!(
-                one(Scale::Linear, "", &WAVE, guides),
-                Err(FigureError::OffAxes(_))
-            ));
+            assert!(matches!(one(Scale::Linear, "", &WAVE, guides), Err(FigureError::OffAxes(_))));
         }
         let [formula, truth] = [1.0, 1.1].map(|end| vec![(0.0, 1.0, 0.0), (end, 0.5, 0.2)]);
         let draw = |formula, truth| {
-            let [
-                coordinate,
-                displacement_unit,
-                time_unit,
-                formula_label,
-                caption,
-            ] = ["x", "rad", "s", "f", ""];
+            let [coordinate, displacement_unit, time_unit, formula_label, caption] =
+                ["x", "rad", "s", "f", ""];
             motion_figure(&MotionFigure {
                 coordinate,
                 displacement_unit,
@@ -897,19 +727,13 @@ mod tests {
             })
         };
         assert_eq!(draw(&formula, &truth), Err(FigureError::DifferentTimes(1)));
-        assert!(
-            draw(&truth, &truth)
-                .unwrap()
-                .contains(">formula − Runge-Kutta (rad)<")
-        );
+        assert!(draw(&truth, &truth).unwrap().contains(">formula − Runge-Kutta (rad)<"));
     }
 
     #[test]
     fn thinning_keeps_every_peak() {
-        let mut points: Vec<_> = (0..100_000)
-            .map(f64::from)
-            .map(|x| (x, (x / 5e3).sin()))
-            .collect();
+        let mut points: Vec<_> =
+            (0..100_000).map(f64::from).map(|x| (x, (x / 5e3).sin())).collect();
         points[77_777].1 = 9.0;
         let kept = thinned(&points);
         assert!(kept.len() <= MOST_POINTS + 1 && kept.contains(&points[77_777]));

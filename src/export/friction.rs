@@ -33,9 +33,8 @@ pub fn csv(study: &FrictionStudy) -> String {
     );
     for row in Table::of(study).rows {
         let laws = row.laws;
-        let [value, error] = row
-            .printed
-            .map_or([""; 2], |entries| entries.map(|entry| entry.printed));
+        let [value, error] =
+            row.printed.map_or([""; 2], |entries| entries.map(|entry| entry.printed));
         let _ = writeln!(
             text,
             "{},{},{},{},{value},{error}",
@@ -66,32 +65,18 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
     const NEAR_ZERO: f64 = 0.1;
     let near_rest = &study.near_rest;
     let (stop, creep) = (near_rest.stop, &near_rest.creep);
-    let sign = [
-        (-NEAR_ZERO, -1.0),
-        (0.0, -1.0),
-        (0.0, 1.0),
-        (NEAR_ZERO, 1.0),
-    ];
+    let sign = [(-NEAR_ZERO, -1.0), (0.0, -1.0), (0.0, 1.0), (NEAR_ZERO, 1.0)];
     let smooth: Vec<(f64, f64)> = (-200..=200)
         .map(|index| NEAR_ZERO * f64::from(index) / 200.0)
         .map(|speed| (speed, arctangent(speed, std::f64::consts::PI)))
         .collect();
     let from = (stop.t - 10.0).max(0.0);
-    let [coulomb, by_arctangent] = near_rest
-        .motions
-        .each_ref()
-        .map(|motion| points(motion, from));
+    let [coulomb, by_arctangent] = near_rest.motions.each_ref().map(|motion| points(motion, from));
     let crept = points(&creep.motion, 0.0);
     let held = [(0.0, stop.x), (creep.motion.end_time, stop.x)];
-    let formula: Vec<(f64, f64)> = crept
-        .iter()
-        .filter_map(|(t, _)| Some((*t, creep.formula(*t)?)))
-        .collect();
-    let curve = |label, points, style| Curve {
-        label,
-        points,
-        style,
-    };
+    let formula: Vec<(f64, f64)> =
+        crept.iter().filter_map(|(t, _)| Some((*t, creep.formula(*t)?))).collect();
+    let curve = |label, points, style| Curve { label, points, style };
     let mut after = vec![
         curve("sgn", &held, CurveStyle::RUNGE_KUTTA),
         curve("arctangent", &crept, CurveStyle::DIFFERENCE),
@@ -121,12 +106,7 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
             pair(&sign, &smooth),
             Vec::new(),
         ),
-        panel(
-            "Coming to rest",
-            [TIME, PLACE],
-            pair(&coulomb, &by_arctangent),
-            zero(),
-        ),
+        panel("Coming to rest", [TIME, PLACE], pair(&coulomb, &by_arctangent), zero()),
         panel("From rest where sgn holds it", [TIME, PLACE], after, zero()),
     ];
     let caption = format!(
@@ -145,7 +125,5 @@ fn points(motion: &Simulation, from: f64) -> Vec<(f64, f64)> {
     const POINTS: usize = 800;
     let times =
         (0..=POINTS).map(|index| from + (motion.end_time - from) * (index as f64 / POINTS as f64));
-    times
-        .filter_map(|t| motion.path.at(t).map(|(x, _)| (t, x)))
-        .collect()
+    times.filter_map(|t| motion.path.at(t).map(|(x, _)| (t, x))).collect()
 }

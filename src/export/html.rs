@@ -46,19 +46,13 @@ pub struct Page<'a> {
 /// ```
 pub fn document(document: &Document, page: &Page) -> String {
     let typesetter = Typesetter::default();
-    let mut body = Body {
-        typesetter: &typesetter,
-        text: String::new(),
-        rows: Vec::new(),
-        titled: false,
-    };
+    let mut body =
+        Body { typesetter: &typesetter, text: String::new(), rows: Vec::new(), titled: false };
     for section in &document.sections {
         section.iter().for_each(|block| body.add(block));
         body.flush();
     }
-    let derivation = page
-        .derivation
-        .map(|(solution, open)| (steps::rows(solution), open));
+    let derivation = page.derivation.map(|(solution, open)| (steps::rows(solution), open));
     if let Some((rows, open)) = derivation.filter(|(rows, _)| !rows.is_empty()) {
         let open = if open { " open" } else { "" };
         let rows = typesetter.display(&rows);
@@ -90,10 +84,7 @@ fn heading(page: &Page) -> String {
 /// assert!(page.contains("<pre>a &lt; b\n</pre>"));
 /// ```
 pub fn lines(text: &str, page: &Page) -> String {
-    whole(
-        &format!("{}<pre>{}</pre>\n", heading(page), escaped(text)),
-        page,
-    )
+    whole(&format!("{}<pre>{}</pre>\n", heading(page), escaped(text)), page)
 }
 
 /// The page around its body.
@@ -124,11 +115,9 @@ fn scaled(picture: &str) -> String {
         rest.split_once('"').map(|(value, _)| value)
     };
     match (attribute("width"), attribute("height")) {
-        (Some(width), Some(height)) if !picture.contains("viewBox") => picture.replacen(
-            "<svg ",
-            &format!("<svg viewBox=\"0 0 {width} {height}\" "),
-            1,
-        ),
+        (Some(width), Some(height)) if !picture.contains("viewBox") => {
+            picture.replacen("<svg ", &format!("<svg viewBox=\"0 0 {width} {height}\" "), 1)
+        }
         _ => picture.to_owned(),
     }
 }
@@ -161,9 +150,7 @@ impl Body<'_> {
         }
         match block {
             // With the columns that only text and pages have room for.
-            Block::Methods {
-                rows, tolerance, ..
-            } => self.table(&methods(rows, *tolerance)),
+            Block::Methods { rows, tolerance, .. } => self.table(&methods(rows, *tolerance)),
             // A heading here, a row of its equations in an article.
             Block::Reading { .. } => {}
             _ => match latex::setting(block) {
@@ -205,17 +192,9 @@ impl Body<'_> {
                 let names: Vec<&str> = names.iter().map(|name| name.written()).collect();
                 paragraph(&format!("for {}:", names.join(", ")))
             }
-            Block::Entries {
-                heading: of,
-                entries,
-            } => heading(of) + &definitions("long", entries),
+            Block::Entries { heading: of, entries } => heading(of) + &definitions("long", entries),
             Block::Facts(facts) => definitions("", facts),
-            Block::Judged {
-                verification,
-                series_of_omega,
-                hbar,
-                tolerance,
-            } => {
+            Block::Judged { verification, series_of_omega, hbar, tolerance } => {
                 let (of, facts) =
                     text::judgement(verification, *series_of_omega, *hbar, *tolerance);
                 heading(&of) + &definitions("", &facts)
@@ -233,12 +212,7 @@ impl Body<'_> {
                     false => String::new(),
                 }
             }
-            Block::Quantities {
-                columns,
-                deviations,
-                shapes,
-                ..
-            } => {
+            Block::Quantities { columns, deviations, shapes, .. } => {
                 let size = |size: f64| format!("{} %", significant(100.0 * size, 3));
                 let of = |(column, (deviation, [approach, contact, back])): (
                     &crate::impact::Reading,
@@ -253,30 +227,21 @@ impl Body<'_> {
                     );
                     (column.name(), words)
                 };
-                let facts: Vec<(&str, String)> = columns
-                    .iter()
-                    .zip(deviations.iter().zip(shapes))
-                    .map(of)
-                    .collect();
+                let facts: Vec<(&str, String)> =
+                    columns.iter().zip(deviations.iter().zip(shapes)).map(of).collect();
                 heading("Largest deviation") + &definitions("", &facts)
             }
-            Block::Verdicts {
-                verdicts,
-                tolerance,
-            } => {
+            Block::Verdicts { verdicts, tolerance } => {
                 let within = significant(100.0 * tolerance, 3);
                 let facts = verdicts
                     .iter()
                     .map(|(reading, verdict)| (reading.name(), verdict.name().to_owned()));
-                heading(&format!(
-                    "Verdict: every number and phase within {within} %"
-                )) + &definitions("", &facts.collect::<Vec<_>>())
+                heading(&format!("Verdict: every number and phase within {within} %"))
+                    + &definitions("", &facts.collect::<Vec<_>>())
             }
-            Block::Shortcoming {
-                reading,
-                errors,
-                cause,
-            } => paragraph(text::impact::shortcoming(*reading, errors, cause).trim()),
+            Block::Shortcoming { reading, errors, cause } => {
+                paragraph(text::impact::shortcoming(*reading, errors, cause).trim())
+            }
             // Formulas and tables have been set.
             Block::Question(_)
             | Block::QuestionAsTyped(_)
@@ -309,13 +274,7 @@ impl Body<'_> {
             first.is_none_or(|first| first.is_ascii_digit() || "+-<".contains(first))
         };
         let place = |(column, place): (usize, char)| {
-            let numbers = || {
-                table
-                    .rows
-                    .iter()
-                    .filter_map(|row| row.get(column))
-                    .all(is_number)
-            };
+            let numbers = || table.rows.iter().filter_map(|row| row.get(column)).all(is_number);
             match place == 'r' && numbers() {
                 true => " class=\"number\"",
                 false => "",
@@ -325,10 +284,7 @@ impl Body<'_> {
         let line = |cells: &[String], tag: &str| {
             let cells = cells.iter().zip(&places);
             let cells = cells.map(|(cell, place)| {
-                format!(
-                    "<{tag}{place}>{}</{tag}>",
-                    verdict(&self.typesetter.mixed(cell))
-                )
+                format!("<{tag}{place}>{}</{tag}>", verdict(&self.typesetter.mixed(cell)))
             });
             format!("<tr>{}</tr>\n", cells.collect::<String>())
         };
@@ -369,25 +325,14 @@ fn methods(rows: &[MethodRow], tolerance: f64) -> Table {
         .map(|(cells, formula)| cells.map(plain).into_iter().chain([formula]).collect())
         .collect();
     let head = lines.remove(0);
-    Table {
-        places: "lrrrlrl".to_owned(),
-        head,
-        rows: lines,
-        framed: true,
-    }
+    Table { places: "lrrrlrl".to_owned(), head, rows: lines, framed: true }
 }
 
 /// Methods that do not apply, those for the same reason together.
 fn refusals(refused: &[Refused]) -> Vec<(String, String)> {
-    let named = refused.iter().map(|refused| {
-        (
-            refused.method.title().to_owned(),
-            refused.reason.reason(refused.method),
-        )
-    });
+    let named = refused
+        .iter()
+        .map(|refused| (refused.method.title().to_owned(), refused.reason.reason(refused.method)));
     let grouped = text::comparison::grouped(named);
-    grouped
-        .into_iter()
-        .map(|(names, reason)| (names.join(", "), reason))
-        .collect()
+    grouped.into_iter().map(|(names, reason)| (names.join(", "), reason)).collect()
 }

@@ -71,11 +71,7 @@ fn scientific_text(text: &str) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn equation(equation: &Equation) -> String {
-    format!(
-        "{} = {}",
-        expression(&equation.left),
-        expression(&equation.right)
-    )
+    format!("{} = {}", expression(&equation.left), expression(&equation.right))
 }
 
 /// An equation, `left = right`, or an expression, as it was typed.
@@ -248,11 +244,7 @@ fn zero_is(relation: &Sum) -> String {
 
 /// A method that does not apply, and why.
 fn not_applicable(refused: &Refused) -> String {
-    format!(
-        "not applicable: {}: {}",
-        refused.method.title(),
-        refused.reason
-    )
+    format!("not applicable: {}: {}", refused.method.title(), refused.reason)
 }
 
 /// The verdict on every column.
@@ -299,37 +291,22 @@ pub(super) fn setting(block: &Block) -> Setting {
         Block::Relation(relation) => Setting::Equations(vec![zero_is(relation)]),
         Block::Equality { left, right } => equation_of(expression(left), expression(right)),
         Block::Line(line) => Setting::Equations(super::steps::line_as_latex(line.as_ref())),
-        Block::CycleAmplitude {
-            symbol: name,
-            amplitude,
-        } => equation_of(symbol(*name), sum(amplitude)),
+        Block::CycleAmplitude { symbol: name, amplitude } => {
+            equation_of(symbol(*name), sum(amplitude))
+        }
         Block::Motion(solution) => Setting::Equations(motion(solution)),
         Block::Definition(definition) => {
             equation_of(symbol(definition.symbol), constant(&definition.meaning))
         }
         Block::Value { name, value, .. } => equation_of(symbol(*name), scientific(*value)),
         Block::Reading { reading, .. } => Setting::Equations(vec![impact::reading(*reading)]),
-        Block::Fitted {
-            fitted,
-            barrier,
-            rule,
-            letters,
-            per_stiffness,
-        } => Setting::Equations(vec![impact::fitted(
-            fitted,
-            *barrier,
-            *rule,
-            *letters,
-            *per_stiffness,
-        )]),
+        Block::Fitted { fitted, barrier, rule, letters, per_stiffness } => Setting::Equations(
+            vec![impact::fitted(fitted, *barrier, *rule, *letters, *per_stiffness)],
+        ),
         Block::Phase { phase, letters, .. } => Setting::Equations(impact::phase(phase, *letters)),
-        Block::SiValue {
-            name,
-            formula,
-            value,
-            unit,
-            ..
-        } => Setting::Equations(vec![impact::si_value(name, *formula, *value, unit)]),
+        Block::SiValue { name, formula, value, unit, .. } => {
+            Setting::Equations(vec![impact::si_value(name, *formula, *value, unit)])
+        }
         Block::Table { head, rows } => Setting::Table(table::table(head, rows)),
         Block::Methods { rows, at, .. } => Setting::Table(comparison::methods(rows, at)),
         Block::Quantities { columns, rows, .. } => {
@@ -384,25 +361,15 @@ impl Page {
             }
             Block::Note(words) | Block::Sentence(words) => self.comment(Rank::Note, words.clone()),
             Block::Remark(words) => self.comment(Rank::Remark, words.clone()),
-            Block::Value {
-                name,
-                source: Some(source),
-                ..
-            } => self.comment(Rank::Note, format!("{name}: {source}")),
-            Block::Judged {
-                verification,
-                series_of_omega,
-                tolerance,
-                ..
-            } => self.comment(
-                Rank::Verdict,
-                judged(verification, *series_of_omega, *tolerance),
-            ),
-            Block::Truth {
-                equation,
-                frequency,
-                ..
-            } => self.comment(Rank::Note, comparison::truth(equation, frequency)),
+            Block::Value { name, source: Some(source), .. } => {
+                self.comment(Rank::Note, format!("{name}: {source}"))
+            }
+            Block::Judged { verification, series_of_omega, tolerance, .. } => {
+                self.comment(Rank::Verdict, judged(verification, *series_of_omega, *tolerance))
+            }
+            Block::Truth { equation, frequency, .. } => {
+                self.comment(Rank::Note, comparison::truth(equation, frequency))
+            }
             Block::Facts(facts) => {
                 let facts = facts.iter().map(|(name, value)| format!("{name}: {value}"));
                 self.comments(Rank::Remark, facts);
@@ -428,33 +395,25 @@ impl Page {
     fn flush(&mut self) {
         let mut comments = std::mem::take(&mut self.comments);
         comments.sort_by_key(|comment| comment.0);
-        self.text
-            .extend(comments.iter().map(|(_, words)| format!("% {words}\n")));
+        self.text.extend(comments.iter().map(|(_, words)| format!("% {words}\n")));
         let mut rows = std::mem::take(&mut self.questions);
         rows.append(&mut self.laws);
         rows.append(&mut self.rows);
         if !rows.is_empty() {
             let rows = rows.join(" \\\\\n");
-            self.text
-                .push_str(&format!("\\begin{{align*}}\n{rows}\n\\end{{align*}}\n"));
+            self.text.push_str(&format!("\\begin{{align*}}\n{rows}\n\\end{{align*}}\n"));
         }
     }
 }
 
 /// The verdict in one line.
 fn judged(verification: &Verification, series_of_omega: Option<f64>, tolerance: f64) -> String {
-    let error = verification
-        .relative_error
-        .map(|error| match error.abs() < 1e-9 {
-            true => super::text::percent(error),
-            false => decimal(100.0 * error) + " %",
-        });
-    let other = series_of_omega.map(|other| {
-        format!(
-            "; of the series of {FREQUENCY} itself {} %",
-            decimal(100.0 * other)
-        )
+    let error = verification.relative_error.map(|error| match error.abs() < 1e-9 {
+        true => super::text::percent(error),
+        false => decimal(100.0 * error) + " %",
     });
+    let other = series_of_omega
+        .map(|other| format!("; of the series of {FREQUENCY} itself {} %", decimal(100.0 * other)));
     format!(
         "true {FREQUENCY} {}, relative error {} (by {}{}), verdict {}",
         decimal(verification.true_frequency),
@@ -497,11 +456,7 @@ fn motion(solution: &Solution) -> Vec<String> {
     }
     let waves = waves(&solution.displacement, solution);
     let mut lines = terms::lines(&waves, &format!("{coordinate}(t) &= "), "&\\quad ");
-    lines.push(format!(
-        "{} &= {}",
-        symbol(solution.phase()),
-        angle(solution)
-    ));
+    lines.push(format!("{} &= {}", symbol(solution.phase()), angle(solution)));
     lines
 }
 
@@ -517,10 +472,7 @@ fn angle(solution: &Solution) -> String {
     let driven = Expr::from(i64::from(resonance.times_driving))
         * &resonance.driving_frequency
         * Expr::symbol("t");
-    let angle = Expr::divide(
-        &(driven - phase),
-        &Expr::from(i64::from(resonance.times_linear)),
-    );
+    let angle = Expr::divide(&(driven - phase), &Expr::from(i64::from(resonance.times_linear)));
     angle.map_or_else(|_| String::new(), |angle| expression(&angle))
 }
 

@@ -38,8 +38,5 @@ pub(crate) fn rounding_noise(motion: &FourierSeries<Doubles>) -> f64 {
     /// Beside the largest swing.
     const NOISE: f64 = 1e-14;
     let swing = |k: usize| motion.cosine(k).mean().0.hypot(motion.sine(k).mean().0);
-    NOISE
-        * (1..=motion.highest_harmonic())
-            .map(swing)
-            .fold(0.0, f64::max)
+    NOISE * (1..=motion.highest_harmonic()).map(swing).fold(0.0, f64::max)
 }

@@ -102,28 +102,18 @@ pub fn sweep_csv(report: &PrimarySweepReport) -> String {
         ("length_unit", "m"),
         ("complete", "-"),
     ];
-    let swept = report
-        .parameters
-        .iter()
-        .map(|parameter| match parameter.unit() {
-            "" => (parameter.name(), "1"),
-            unit => (parameter.name(), unit),
-        });
+    let swept = report.parameters.iter().map(|parameter| match parameter.unit() {
+        "" => (parameter.name(), "1"),
+        unit => (parameter.name(), unit),
+    });
     let columns: Vec<(&str, &str)> = swept.chain(RESULTS).collect();
-    let units: Vec<String> = columns
-        .iter()
-        .map(|(name, unit)| format!("{name} {unit}"))
-        .collect();
+    let units: Vec<String> = columns.iter().map(|(name, unit)| format!("{name} {unit}")).collect();
     let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
     let mut text = format!("# units: {}\n{}\n", units.join(", "), names.join(","));
     let or_none = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
     for (number, (row, units)) in report.rows.iter().zip(report.units).enumerate() {
         let count = |count: usize| {
-            if row.is_begun() {
-                count.to_string()
-            } else {
-                String::new()
-            }
+            if row.is_begun() { count.to_string() } else { String::new() }
         };
         let Others { locked, without } = row.others;
         let mut cells: Vec<String> = report.values(number).iter().map(f64::to_string).collect();
@@ -131,11 +121,7 @@ pub fn sweep_csv(report: &PrimarySweepReport) -> String {
         cells.extend([amplitude, locked.amplitude, without.amplitude].map(or_none));
         cells.push(count(row.impacts));
         cells.extend([rest_time(row), locked.rest_time, without.rest_time].map(or_none));
-        cells.extend([
-            count(row.all_impacts),
-            units.time().to_string(),
-            units.length.to_string(),
-        ]);
+        cells.extend([count(row.all_impacts), units.time().to_string(), units.length.to_string()]);
         cells.push((row.stop == PrimaryStop::Duration).to_string());
         let _ = writeln!(text, "{}", cells.join(","));
     }
@@ -168,26 +154,13 @@ pub(super) fn rest_time(row: &PrimaryRow) -> Option<f64> {
 pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
     let motion = report.motion;
     let (second, metre) = (report.units.time(), report.units.length);
-    let all = PrimaryReport {
-        samples: &[],
-        ..*report
-    };
-    let states: Vec<_> = times(&all)
-        .into_iter()
-        .filter_map(|t| Some((t, motion.at(t)?)))
-        .collect();
-    let with: Vec<(f64, f64)> = states
-        .iter()
-        .map(|(t, state)| (t * second, state.y * metre))
-        .collect();
-    let angle: Vec<(f64, f64)> = states
-        .iter()
-        .map(|(t, state)| (t * second, state.x))
-        .collect();
-    let energy: Vec<(f64, f64)> = states
-        .iter()
-        .map(|(t, state)| (t * second, motion.case.energy(*state)))
-        .collect();
+    let all = PrimaryReport { samples: &[], ..*report };
+    let states: Vec<_> = times(&all).into_iter().filter_map(|t| Some((t, motion.at(t)?))).collect();
+    let with: Vec<(f64, f64)> =
+        states.iter().map(|(t, state)| (t * second, state.y * metre)).collect();
+    let angle: Vec<(f64, f64)> = states.iter().map(|(t, state)| (t * second, state.x)).collect();
+    let energy: Vec<(f64, f64)> =
+        states.iter().map(|(t, state)| (t * second, motion.case.energy(*state))).collect();
     let [locked, without] = [motion.case.primary.mass + 1.0, motion.case.primary.mass];
     // The first swings whole, and how all of them decay.
     let first: Vec<f64> = states
@@ -205,47 +178,22 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
     let some_times: Vec<f64> = states.iter().step_by(10).map(|(t, _)| *t).collect();
     let [locked_decay, decay_without] =
         [locked, without].map(|mass| decay_alone(report, mass, &some_times));
-    let curve = |label, points, style| Curve {
-        label,
-        points,
-        style,
-    };
+    let curve = |label, points, style| Curve { label, points, style };
     let own = |points| curve("with its damper", points, CurveStyle::DIFFERENCE);
     let (mut all, mut some) = (vec![own(with.as_slice())], vec![own(early.as_slice())]);
     // Driven, the closed forms are those of the long run alone.
     if motion.case.primary.force == 0.0 {
-        some.insert(
-            0,
-            curve(
-                "without",
-                swings_without.as_slice(),
-                CurveStyle::RUNGE_KUTTA,
-            ),
-        );
+        some.insert(0, curve("without", swings_without.as_slice(), CurveStyle::RUNGE_KUTTA));
         some.insert(
             1,
-            curve(
-                "damper locked",
-                locked_swings.as_slice(),
-                CurveStyle::SECOND_FORMULA,
-            ),
+            curve("damper locked", locked_swings.as_slice(), CurveStyle::SECOND_FORMULA),
         );
         if let (Some(locked), Some(without)) = (&locked_decay, &decay_without) {
-            all.push(curve(
-                "without",
-                without.as_slice(),
-                CurveStyle::RUNGE_KUTTA,
-            ));
-            all.push(curve(
-                "damper locked",
-                locked.as_slice(),
-                CurveStyle::SECOND_FORMULA,
-            ));
+            all.push(curve("without", without.as_slice(), CurveStyle::RUNGE_KUTTA));
+            all.push(curve("damper locked", locked.as_slice(), CurveStyle::SECOND_FORMULA));
         }
     }
-    let barriers = [motion.case.model.left, motion.case.model.right]
-        .into_iter()
-        .flatten();
+    let barriers = [motion.case.model.left, motion.case.model.right].into_iter().flatten();
     let barriers = barriers.map(|place| Guide::Y(place, "barrier")).collect();
     const TIME: &str = "time t (s)";
     const PLACE: &str = "displacement y (m)";
@@ -264,21 +212,13 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
             ..panel(
                 "Pendulum",
                 "angle x (rad)",
-                vec![curve(
-                    "pendulum",
-                    angle.as_slice(),
-                    CurveStyle::THIRD_FORMULA,
-                )],
+                vec![curve("pendulum", angle.as_slice(), CurveStyle::THIRD_FORMULA)],
             )
         },
         panel(
             "Energy of both",
             "energy (m g L)",
-            vec![curve(
-                "energy",
-                energy.as_slice(),
-                CurveStyle::THIRD_FORMULA,
-            )],
+            vec![curve("energy", energy.as_slice(), CurveStyle::THIRD_FORMULA)],
         ),
     ];
     let caption = format!(
@@ -297,10 +237,7 @@ fn swings_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Vec<(f64, f
     let (case, units) = (&report.motion.case, report.units);
     let [.., y, speed] = case.start;
     let height = |t: f64| case.primary.alone_at(mass, [y, speed], t) * units.length;
-    times
-        .iter()
-        .map(|t| (t * units.time(), height(*t)))
-        .collect()
+    times.iter().map(|t| (t * units.time(), height(*t))).collect()
 }
 
 /// The amplitude of these swings; nothing where the mass creeps back.
@@ -343,13 +280,9 @@ pub fn sweep_picture(report: &PrimarySweepReport) -> Result<String, FigureError>
     };
     let driven = report.is_driven();
     let points = |value: &dyn Fn(&PrimaryRow, &Units) -> Option<f64>| -> Vec<(f64, f64)> {
-        let rows = axis
-            .values()
-            .iter()
-            .zip(report.rows.iter().zip(report.units));
-        let mut points: Vec<(f64, f64)> = rows
-            .filter_map(|(place, (row, units))| Some((*place, value(row, units)?)))
-            .collect();
+        let rows = axis.values().iter().zip(report.rows.iter().zip(report.units));
+        let mut points: Vec<(f64, f64)> =
+            rows.filter_map(|(place, (row, units))| Some((*place, value(row, units)?))).collect();
         // A list may go to and fro, a curve does not.
         points.sort_by(|one, other| one.0.total_cmp(&other.0));
         points
@@ -364,10 +297,7 @@ pub fn sweep_picture(report: &PrimarySweepReport) -> Result<String, FigureError>
         true => row.is_begun().then_some(row.amplitude * units.length),
         false => Some(rest_time(row)? * units.time()),
     });
-    let (locked, without) = (
-        alone(|others| others.locked),
-        alone(|others| others.without),
-    );
+    let (locked, without) = (alone(|others| others.locked), alone(|others| others.without));
     let curves = [
         ("without", &without, CurveStyle::RUNGE_KUTTA),
         ("damper locked", &locked, CurveStyle::SECOND_FORMULA),
@@ -386,22 +316,12 @@ pub fn sweep_picture(report: &PrimarySweepReport) -> Result<String, FigureError>
             false => "Rest of the main mass",
         },
         x_label: &x_label,
-        y_label: if driven {
-            "amplitude (m)"
-        } else {
-            "rest time (s)"
-        },
+        y_label: if driven { "amplitude (m)" } else { "rest time (s)" },
         x_scale: match is_logarithmic {
             true => Scale::Logarithmic,
             false => Scale::Linear,
         },
-        curves: curves
-            .map(|(label, points, style)| Curve {
-                label,
-                points,
-                style,
-            })
-            .collect(),
+        curves: curves.map(|(label, points, style)| Curve { label, points, style }).collect(),
         ..Panel::default()
     };
     let caption = match driven {

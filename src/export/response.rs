@@ -90,11 +90,7 @@ pub fn csv(response: &Response) -> String {
         );
     }
     for point in response.backbone.iter().flatten() {
-        let _ = writeln!(
-            text,
-            "backbone,,{},{},,,,,",
-            point.parameter, point.amplitude
-        );
+        let _ = writeln!(text, "backbone,,{},{},,,,,", point.parameter, point.amplitude);
     }
     text
 }
@@ -138,12 +134,8 @@ impl Height {
 fn pieces(height: Height, points: &[Point], stable: bool) -> Vec<Line> {
     let mut pieces: Vec<Line> = Vec::new();
     let mut open = false;
-    let place = |point: &Point| {
-        (
-            point.parameter,
-            height.of(point.amplitude, point.peak, point.frequency),
-        )
-    };
+    let place =
+        |point: &Point| (point.parameter, height.of(point.amplitude, point.peak, point.frequency));
     for pair in points.windows(2) {
         let [from, to] = pair else { continue };
         if (to.stable == Some(true)) != stable {
@@ -163,31 +155,11 @@ fn pieces(height: Height, points: &[Point], stable: bool) -> Vec<Line> {
 #[cfg(feature = "plot")]
 const MARKS: [(BifurcationKind, &str, CurveStyle); 6] = [
     (BifurcationKind::Fold, "fold", CurveStyle::MARKED_POINTS),
-    (
-        BifurcationKind::BranchPoint,
-        "branch point",
-        CurveStyle::SECOND_MARKED_POINTS,
-    ),
-    (
-        BifurcationKind::PeriodDoubling,
-        "period doubling",
-        CurveStyle::THIRD_MARKED_POINTS,
-    ),
-    (
-        BifurcationKind::NeimarkSacker,
-        "Neimark-Sacker",
-        CurveStyle::FOURTH_MARKED_POINTS,
-    ),
-    (
-        BifurcationKind::Hopf,
-        "Hopf",
-        CurveStyle::SECOND_MARKED_POINTS,
-    ),
-    (
-        BifurcationKind::Centre,
-        "centre",
-        CurveStyle::THIRD_MARKED_POINTS,
-    ),
+    (BifurcationKind::BranchPoint, "branch point", CurveStyle::SECOND_MARKED_POINTS),
+    (BifurcationKind::PeriodDoubling, "period doubling", CurveStyle::THIRD_MARKED_POINTS),
+    (BifurcationKind::NeimarkSacker, "Neimark-Sacker", CurveStyle::FOURTH_MARKED_POINTS),
+    (BifurcationKind::Hopf, "Hopf", CurveStyle::SECOND_MARKED_POINTS),
+    (BifurcationKind::Centre, "centre", CurveStyle::THIRD_MARKED_POINTS),
 ];
 
 /// The curves of a panel, with what they are called.
@@ -203,50 +175,28 @@ fn curves<'a>(
     };
     let of_stability = |stable: bool| {
         let branches = response.branches.iter();
-        branches
-            .flat_map(|branch| pieces(height, &branch.points, stable))
-            .collect::<Vec<_>>()
+        branches.flat_map(|branch| pieces(height, &branch.points, stable)).collect::<Vec<_>>()
     };
     if response.question.periods == 1 {
         let curves = response.backbone.iter();
-        let lines = curves.map(|curve| {
-            curve
-                .iter()
-                .map(|point| (point.parameter, point.amplitude))
-                .collect()
-        });
-        draw(
-            "free, without damping",
-            lines.collect(),
-            CurveStyle::BACKBONE,
-        );
+        let lines = curves
+            .map(|curve| curve.iter().map(|point| (point.parameter, point.amplitude)).collect());
+        draw("free, without damping", lines.collect(), CurveStyle::BACKBONE);
     }
     draw("unstable", of_stability(false), CurveStyle::UNSTABLE);
     draw("stable", of_stability(true), CurveStyle::DIFFERENCE);
     let states = response.slow.iter().flat_map(|slow| &slow.states);
-    let states = states
-        .map(|state| (state.parameter, state.amplitude))
-        .collect();
+    let states = states.map(|state| (state.parameter, state.amplitude)).collect();
     draw(slow_title, vec![states], CurveStyle::SLOW);
     let simulated = response.simulated.iter().map(|found| {
         let height = height.of(found.amplitude, found.peak, found.frequency);
         (found.parameter, height)
     });
-    draw(
-        "simulated",
-        vec![simulated.collect()],
-        CurveStyle::SIMULATED,
-    );
+    draw("simulated", vec![simulated.collect()], CurveStyle::SIMULATED);
     for (kind, label, style) in MARKS {
-        let of_kind = response
-            .bifurcations
-            .iter()
-            .filter(|found| found.kind == kind);
+        let of_kind = response.bifurcations.iter().filter(|found| found.kind == kind);
         let places = of_kind.map(|found| {
-            (
-                found.parameter,
-                height.of(found.amplitude, found.peak, found.frequency),
-            )
+            (found.parameter, height.of(found.amplitude, found.peak, found.frequency))
         });
         draw(label, vec![places.collect()], style);
     }
@@ -277,10 +227,8 @@ pub fn picture(response: &Response) -> Result<String, FigureError> {
     };
     let title = response.slow.as_ref().map(|slow| slow.solution.title());
     let title = title.unwrap_or_default();
-    let drawn: Vec<Vec<(&str, Line, CurveStyle)>> = heights
-        .iter()
-        .map(|height| curves(response, *height, &title))
-        .collect();
+    let drawn: Vec<Vec<(&str, Line, CurveStyle)>> =
+        heights.iter().map(|height| curves(response, *height, &title)).collect();
     let panels: Vec<Panel> = heights
         .iter()
         .zip(&drawn)
@@ -290,27 +238,16 @@ pub fn picture(response: &Response) -> Result<String, FigureError> {
             y_label: height.label(),
             curves: drawn
                 .iter()
-                .map(|(label, points, style)| Curve {
-                    label,
-                    points,
-                    style: *style,
-                })
+                .map(|(label, points, style)| Curve { label, points, style: *style })
                 .collect(),
             ..Panel::default()
         })
         .collect();
     let values = asked.values.numbers().into_iter();
-    let values: Vec<String> = values
-        .map(|(name, value)| format!("{name} = {}", super::decimal(value)))
-        .collect();
+    let values: Vec<String> =
+        values.map(|(name, value)| format!("{name} = {}", super::decimal(value))).collect();
     let equation = asked.oscillator.equation();
-    let values = values
-        .iter()
-        .map(|value| format!("; {value}"))
-        .collect::<String>();
-    let caption = format!(
-        "{} = 0{values}; harmonics 0 to {}.",
-        equation.left, response.harmonics
-    );
+    let values = values.iter().map(|value| format!("; {value}")).collect::<String>();
+    let caption = format!("{} = 0{values}; harmonics 0 to {}.", equation.left, response.harmonics);
     figure(&panels, &caption)
 }

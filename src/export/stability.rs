@@ -26,12 +26,8 @@ pub fn csv(curves: &TransitionCurves, by: Symbol, charts: &[Chart]) -> String {
     let unknown = curves.unknown.symbol();
     let mut text = format!("curve,{by},{unknown}_formula,{unknown}_true\n");
     for chart in charts {
-        let mut sizes: Vec<f64> = chart
-            .formula
-            .iter()
-            .chain(&chart.truth)
-            .map(|point| point.1)
-            .collect();
+        let mut sizes: Vec<f64> =
+            chart.formula.iter().chain(&chart.truth).map(|point| point.1).collect();
         sizes.sort_by(f64::total_cmp);
         sizes.dedup();
         let at = |points: &[(f64, f64)], size: f64| {
@@ -64,16 +60,10 @@ pub fn picture(
     caption: &str,
 ) -> Result<String, FigureError> {
     let unknown = curves.unknown.symbol().to_string();
-    let all = || {
-        charts
-            .iter()
-            .flat_map(|chart| &chart.truth)
-            .map(|point| point.0)
-    };
-    let (least, most) = all().fold(
-        (f64::INFINITY, f64::NEG_INFINITY),
-        |(least, most), value| (least.min(value), most.max(value)),
-    );
+    let all = || charts.iter().flat_map(|chart| &chart.truth).map(|point| point.0);
+    let (least, most) = all().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
+        (least.min(value), most.max(value))
+    });
     // A formula far beyond its range would leave nothing of the rest to be seen.
     let margin = 0.1 * (most - least);
     let formulas: Vec<Vec<(f64, f64)>> = charts
@@ -84,23 +74,17 @@ pub fn picture(
         })
         .collect();
     let drawn = |points: &[(f64, f64)]| points.len() > 1;
-    let truths = charts
-        .iter()
-        .filter(|chart| drawn(&chart.truth))
-        .map(|chart| Curve {
-            label: "true motion",
-            points: &chart.truth,
-            style: CurveStyle::RUNGE_KUTTA,
-        });
+    let truths = charts.iter().filter(|chart| drawn(&chart.truth)).map(|chart| Curve {
+        label: "true motion",
+        points: &chart.truth,
+        style: CurveStyle::RUNGE_KUTTA,
+    });
     let label = format!("order {}", curves.order);
-    let formulas = formulas
-        .iter()
-        .filter(|points| drawn(points))
-        .map(|points| Curve {
-            label: &label,
-            points,
-            style: CurveStyle::FORMULA,
-        });
+    let formulas = formulas.iter().filter(|points| drawn(points)).map(|points| Curve {
+        label: &label,
+        points,
+        style: CurveStyle::FORMULA,
+    });
     let panel = Panel {
         title: "Transition curves: rest is unstable inside the tongues",
         x_label: &unknown,

@@ -23,10 +23,7 @@ fn is_homotopy(solution: &Solution) -> bool {
 /// What the orders `y_n` are multiplied by: the amplitude, or that of a limit cycle before its
 /// corrections.
 fn unit(solution: &Solution) -> Symbol {
-    let leading = solution
-        .steps
-        .first()
-        .and_then(|step| step.amplitude.as_ref());
+    let leading = solution.steps.first().and_then(|step| step.amplitude.as_ref());
     leading.map_or(solution.amplitude.symbol(), |condition| condition.unknown)
 }
 
@@ -60,10 +57,7 @@ pub fn text(solution: &Solution) -> String {
     let mut text = String::from("Derivation\n");
     if !solution.steps.is_empty() {
         let (name, unit, [y, w]) = (solution.coordinate(), unit(solution), letters(solution));
-        let (p, omega0) = (
-            fresh("p", &solution.names()),
-            solution.linear_frequency_name(),
-        );
+        let (p, omega0) = (fresh("p", &solution.names()), solution.linear_frequency_name());
         let phase = solution.phase();
         let frame = match is_homotopy(solution) {
             true => [
@@ -150,12 +144,7 @@ fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
         }
     }
     lines.push(format!("    with                {}", conditions.join(", ")));
-    if let Some(AmplitudeCondition {
-        sine,
-        unknown,
-        value,
-    }) = &step.amplitude
-    {
+    if let Some(AmplitudeCondition { sine, unknown, value }) = &step.amplitude {
         lines.push(format!(
             "    no secular sin({phase}) at order {}:  {} = 0",
             n + 1,
@@ -165,9 +154,7 @@ fn order_as_text(step: &Step, solution: &Solution) -> Vec<String> {
             0 => "the amplitude of the limit cycle".to_owned(),
             _ => format!("the cos({phase}) of {y}{n}"),
         };
-        lines.push(format!(
-            "    fixes               {unknown} = {value}, {what}"
-        ));
+        lines.push(format!("    fixes               {unknown} = {value}, {what}"));
     }
     lines.push(format!("    {y}{n} = {}", waves(&step.displacement)));
     lines
@@ -204,10 +191,7 @@ pub fn latex(solution: &Solution) -> String {
     let _letters = solution.letters().in_force();
     match rows(solution) {
         rows if rows.is_empty() => String::new(),
-        rows => format!(
-            "\\begin{{align*}}\n{}\n\\end{{align*}}\n",
-            rows.join(" \\\\\n")
-        ),
+        rows => format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", rows.join(" \\\\\n")),
     }
 }
 
@@ -215,21 +199,13 @@ pub fn latex(solution: &Solution) -> String {
 pub(super) fn rows(solution: &Solution) -> Vec<String> {
     let mut lines = Vec::new();
     if !solution.steps.is_empty() {
-        let (name, unit, omega) = (
-            symbol(solution.coordinate()),
-            symbol(unit(solution)),
-            symbol(FREQUENCY),
-        );
+        let (name, unit, omega) =
+            (symbol(solution.coordinate()), symbol(unit(solution)), symbol(FREQUENCY));
         let [y, w] = letters(solution);
-        let [p, omega0] = [
-            fresh("p", &solution.names()),
-            solution.linear_frequency_name(),
-        ]
-        .map(symbol);
-        let ([y0, y1, y2], [w1, w2]) = (
-            [0, 1, 2].map(|n| indexed(&y, n)),
-            [1, 2].map(|n| indexed(&w, n)),
-        );
+        let [p, omega0] =
+            [fresh("p", &solution.names()), solution.linear_frequency_name()].map(symbol);
+        let ([y0, y1, y2], [w1, w2]) =
+            ([0, 1, 2].map(|n| indexed(&y, n)), [1, 2].map(|n| indexed(&w, n)));
         let (motion, squared) = match is_homotopy(solution) {
             true => (
                 format!("{y0} + {p} {y1} + {p}^{{2}} {y2} + \\dots"),
@@ -317,11 +293,7 @@ pub(super) fn line_as_latex(line: &Line) -> Vec<String> {
     }
     if let Some((first, rest)) = line.equal.split_first() {
         let rest: Vec<String> = rest.iter().map(formula_as_latex).collect();
-        rows.push(format!(
-            "{} &= {}",
-            formula_as_latex(first),
-            rest.join(" = ")
-        ));
+        rows.push(format!("{} &= {}", formula_as_latex(first), rest.join(" = ")));
     }
     rows
 }
@@ -342,13 +314,7 @@ fn formula_as_latex(formula: &Formula) -> String {
         Formula::AtZero { of, derivatives } => {
             format!("{}{}(0)", symbol(*of), "'".repeat(*derivatives))
         }
-        Formula::Integral {
-            factor,
-            from,
-            to,
-            integrand,
-            variable,
-        } => {
+        Formula::Integral { factor, from, to, integrand, variable } => {
             let inside = match integrand.as_ref() {
                 Formula::Expression(sum) if sum.terms().len() > 1 => {
                     format!("\\left({}\\right)", latex::inside(sum))

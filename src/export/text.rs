@@ -61,10 +61,7 @@ pub fn solution(
     tolerance: f64,
 ) -> String {
     let _letters = solution.letters().in_force();
-    document(
-        &report::solution(solution, verification, tolerance),
-        usize::MAX,
-    )
+    document(&report::solution(solution, verification, tolerance), usize::MAX)
 }
 
 /// Every method in one table, and below it those that do not apply, in lines of at most `width`
@@ -184,18 +181,10 @@ pub fn mechanism(study: &MechanismStudy, width: usize) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn document(document: &Document, width: usize) -> String {
-    let page = Page {
-        width,
-        longest_title: comparison::longest_title(document),
-    };
+    let page = Page { width, longest_title: comparison::longest_title(document) };
     let sections = document.sections.iter();
     let sections: Vec<String> = sections
-        .map(|blocks| {
-            blocks
-                .iter()
-                .map(|block| page.block(block, blocks))
-                .collect()
-        })
+        .map(|blocks| blocks.iter().map(|block| page.block(block, blocks)).collect())
         .collect();
     sections.join("\n")
 }
@@ -233,91 +222,45 @@ impl Page {
             }
             Block::Motion(solution) => motion(solution),
             Block::Definition(definition) => {
-                format!(
-                    "  {} = {}\n",
-                    definition.symbol,
-                    definition.meaning_in_words()
-                )
+                format!("  {} = {}\n", definition.symbol, definition.meaning_in_words())
             }
-            Block::Value {
-                name,
-                value,
-                source,
-            } => {
-                let width = section
-                    .iter()
-                    .filter_map(name_of_value)
-                    .map(|name| name.written().len())
-                    .max();
+            Block::Value { name, value, source } => {
+                let width =
+                    section.iter().filter_map(name_of_value).map(|name| name.written().len()).max();
                 let source = source.map_or(String::new(), |source| format!("   ({source})"));
                 let width = width.unwrap_or(0);
-                format!(
-                    "  {:<width$} = {}{source}\n",
-                    name.written(),
-                    decimal(*value)
-                )
+                format!("  {:<width$} = {}{source}\n", name.written(), decimal(*value))
             }
-            Block::Judged {
-                verification,
-                series_of_omega,
-                hbar,
-                tolerance,
-            } => judged(verification, *series_of_omega, *hbar, *tolerance),
-            Block::Truth {
-                equation,
-                at,
-                frequency,
-            } => comparison::truth(equation, at, frequency),
-            Block::Methods {
-                rows, tolerance, ..
-            } => comparison::methods(rows, *tolerance, self),
+            Block::Judged { verification, series_of_omega, hbar, tolerance } => {
+                judged(verification, *series_of_omega, *hbar, *tolerance)
+            }
+            Block::Truth { equation, at, frequency } => comparison::truth(equation, at, frequency),
+            Block::Methods { rows, tolerance, .. } => comparison::methods(rows, *tolerance, self),
             Block::Entries { heading, entries } => comparison::entries(heading, entries, self),
             Block::Facts(facts) => facts_in_lines(facts),
             Block::Refused(refused) => comparison::refused(refused, self),
             Block::TrueMotion(lines) => comparison::true_motion(lines, self.width),
             Block::Closing(words) => comparison::wrapped(words, self.width, "", "") + "\n",
             Block::Reading { words, .. } => format!("{words}\n"),
-            Block::Fitted {
-                fitted,
-                barrier,
-                rule,
-                letters,
-                per_stiffness,
-            } => impact::fitted(fitted, *barrier, *rule, *letters, *per_stiffness),
-            Block::Phase {
-                phase,
-                letters,
-                release,
-            } => impact::phase(phase, *letters, release),
-            Block::Quantities {
-                columns,
-                rows,
-                deviations,
-                shapes,
-            } => impact::quantities(columns, rows, deviations, shapes),
+            Block::Fitted { fitted, barrier, rule, letters, per_stiffness } => {
+                impact::fitted(fitted, *barrier, *rule, *letters, *per_stiffness)
+            }
+            Block::Phase { phase, letters, release } => impact::phase(phase, *letters, release),
+            Block::Quantities { columns, rows, deviations, shapes } => {
+                impact::quantities(columns, rows, deviations, shapes)
+            }
             Block::ContactLaws { rows } => impact::contact_laws(rows),
-            Block::ImpactMethods {
-                rows,
-                truth,
-                tolerance,
-            } => impact::methods(rows, *truth, *tolerance, self.width),
-            Block::SiValue {
-                name,
-                formula,
-                value,
-                unit,
-                words,
-            } => impact::si_value(name, *formula, *value, unit, words),
+            Block::ImpactMethods { rows, truth, tolerance } => {
+                impact::methods(rows, *truth, *tolerance, self.width)
+            }
+            Block::SiValue { name, formula, value, unit, words } => {
+                impact::si_value(name, *formula, *value, unit, words)
+            }
             Block::SiQuantities { columns, rows } => impact::si_quantities(columns, rows),
-            Block::Verdicts {
-                verdicts,
-                tolerance,
-            } => impact::verdicts(verdicts, *tolerance),
-            Block::Shortcoming {
-                reading,
-                errors,
-                cause,
-            } => impact::shortcoming(*reading, errors, cause),
+            Block::Verdicts { verdicts, tolerance } => impact::verdicts(verdicts, *tolerance),
+            Block::Shortcoming { reading, errors, cause } => {
+                impact::shortcoming(*reading, errors, cause)
+            }
         }
     }
 }
@@ -331,11 +274,7 @@ fn name_of_value(block: &Block) -> Option<Symbol> {
 
 /// Quantities and their numbers, one a line.
 fn facts_in_lines(facts: &[(&str, String)]) -> String {
-    let width = facts
-        .iter()
-        .map(|(name, _)| name.chars().count())
-        .max()
-        .unwrap_or(0);
+    let width = facts.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
     let line = |(name, value): &(&str, String)| format!("  {name:<width$}  {value}\n");
     facts.iter().map(line).collect()
 }
@@ -365,11 +304,7 @@ fn motion(solution: &Solution) -> String {
     );
     let first = format!("  {}(t) = ", solution.coordinate());
     let mut lines = terms::lines(&waves, &first, "         ");
-    lines.push(format!(
-        "         {} = {}\n",
-        solution.phase(),
-        angle(solution)
-    ));
+    lines.push(format!("         {} = {}\n", solution.phase(), angle(solution)));
     lines.join("\n")
 }
 
@@ -394,24 +329,16 @@ fn angle(solution: &Solution) -> String {
 
 /// How a motion that is not periodic was followed, name by name.
 fn followed(followed: &Followed) -> Vec<(&'static str, String)> {
-    let mut lines = vec![(
-        "followed to",
-        format!("t = {}: {}", decimal(followed.until), followed.reason),
-    )];
+    let mut lines =
+        vec![("followed to", format!("t = {}: {}", decimal(followed.until), followed.reason))];
     if let Some(error) = followed.amplitude_error {
         let error = size_in_percent(error);
-        lines.push((
-            "error of amplitude",
-            format!("{error} of that at the start"),
-        ));
+        lines.push(("error of amplitude", format!("{error} of that at the start")));
     }
     let time = |time: Option<f64>| time.map_or("not seen".to_owned(), decimal);
     if followed.tenth.or(followed.true_tenth).is_some() {
         let [formula, truth] = [followed.tenth, followed.true_tenth].map(time);
-        lines.push((
-            "a tenth is left at",
-            format!("t = {formula}; true t = {truth}"),
-        ));
+        lines.push(("a tenth is left at", format!("t = {formula}; true t = {truth}")));
         if let Some(action) = followed.tenth_by_action {
             lines.push(("by the action at", format!("t = {}", decimal(action))));
         }
@@ -428,9 +355,7 @@ fn judged(
 ) -> String {
     let (heading, facts) = judgement(verification, series_of_omega, hbar, tolerance);
     let line = |(name, value): (String, String)| format!("  {name:<20}{value}\n");
-    facts
-        .into_iter()
-        .fold(heading + "\n", |text, fact| text + &line(fact))
+    facts.into_iter().fold(heading + "\n", |text, fact| text + &line(fact))
 }
 
 /// What was judged where, and each number with its name.
@@ -443,30 +368,17 @@ pub(super) fn judgement(
     /// Of the frequency: no order that there is takes such an error into the last digits at once.
     const LARGE: f64 = 1e-5;
     let at = verification.at.iter();
-    let at: Vec<String> = at
-        .map(|(name, value)| format!("{name} = {}", constant_in_words(value)))
-        .collect();
+    let at: Vec<String> =
+        at.map(|(name, value)| format!("{name} = {}", constant_in_words(value))).collect();
     let heading = match at.is_empty() {
         true => "Judged against the true motion".to_owned(),
         false => format!("Judged against the true motion at {}", at.join(", ")),
     };
     let mut facts = Vec::new();
     let mut line = |name: &str, value: String| facts.push((name.to_owned(), value));
-    let reason = || {
-        verification
-            .reason
-            .as_ref()
-            .map(ToString::to_string)
-            .unwrap_or_default()
-    };
-    line(
-        FREQUENCY.written(),
-        verification.frequency.map_or_else(reason, decimal),
-    );
-    line(
-        &format!("true {FREQUENCY}"),
-        decimal(verification.true_frequency),
-    );
+    let reason = || verification.reason.as_ref().map(ToString::to_string).unwrap_or_default();
+    line(FREQUENCY.written(), verification.frequency.map_or_else(reason, decimal));
+    line(&format!("true {FREQUENCY}"), decimal(verification.true_frequency));
     if let Some(error) = verification.relative_error {
         line("relative error", percent(error));
     }
@@ -498,15 +410,10 @@ pub(super) fn judgement(
         line(name, value);
     }
     if let Some(residual) = verification.residual {
-        line(
-            "residual",
-            format!("{} of the force (rms)", size_in_percent(residual)),
-        );
+        line("residual", format!("{} of the force (rms)", size_in_percent(residual)));
     }
     // An error that is large now does not vanish in rounding when the small parameter is halved.
-    let large = verification
-        .relative_error
-        .is_some_and(|error| error.abs() > LARGE);
+    let large = verification.relative_error.is_some_and(|error| error.abs() > LARGE);
     let unknown = match (verification.over_several_wells, large) {
         (true, _) => "not measured: motions over both wells do not become small",
         (false, true) => "not measured",
@@ -527,11 +434,7 @@ pub(super) fn judgement(
     };
     line("slope of the error", slope);
     for (name, value) in &verification.chosen {
-        let how = if *name == hbar {
-            " (least squared residual)"
-        } else {
-            ""
-        };
+        let how = if *name == hbar { " (least squared residual)" } else { "" };
         line(name.written(), format!("{}{how}", significant(*value, 6)));
     }
     for range in &verification.ranges {

@@ -21,9 +21,7 @@ const POINTS: u32 = 2000;
 fn times(report: &TrajectoryReport) -> Vec<f64> {
     let end = report.motion.end();
     match report.samples.is_empty() {
-        true => (0..=POINTS)
-            .map(|point| end * f64::from(point) / f64::from(POINTS))
-            .collect(),
+        true => (0..=POINTS).map(|point| end * f64::from(point) / f64::from(POINTS)).collect(),
         false => report.samples.to_vec(),
     }
 }
@@ -45,21 +43,11 @@ fn times(report: &TrajectoryReport) -> Vec<f64> {
 /// ```
 pub fn csv(report: &TrajectoryReport) -> String {
     let motion = report.motion;
-    let names: Vec<&str> = motion
-        .course
-        .rates
-        .states
-        .iter()
-        .map(|name| name.name())
-        .collect();
+    let names: Vec<&str> = motion.course.rates.states.iter().map(|name| name.name()).collect();
     let mut text = format!("t,{}\n", names.join(","));
     let on_section = motion.course.section.is_some() && report.samples.is_empty();
     let times = match on_section {
-        true => motion
-            .crossings()
-            .iter()
-            .map(|crossing| crossing.time)
-            .collect(),
+        true => motion.crossings().iter().map(|crossing| crossing.time).collect(),
         false => times(report),
     };
     for time in times {
@@ -105,66 +93,31 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
     if let Some(section) = &course.section {
         return on_section(motion, section);
     }
-    let whole = TrajectoryReport {
-        samples: &[],
-        ..*report
-    };
-    let states: Vec<(f64, Vec<f64>)> = times(&whole)
-        .into_iter()
-        .filter_map(|time| Some((time, motion.at(time)?)))
-        .collect();
+    let whole = TrajectoryReport { samples: &[], ..*report };
+    let states: Vec<(f64, Vec<f64>)> =
+        times(&whole).into_iter().filter_map(|time| Some((time, motion.at(time)?))).collect();
     let in_time: Vec<Vec<(f64, f64)>> = (0..count)
-        .map(|index| {
-            states
-                .iter()
-                .map(|(time, state)| (*time, state[index]))
-                .collect()
-        })
+        .map(|index| states.iter().map(|(time, state)| (*time, state[index])).collect())
         .collect();
     let planes: Vec<Vec<(f64, f64)>> = (0..count)
-        .map(|index| {
-            states
-                .iter()
-                .map(|(_, state)| (state[index], state[count + index]))
-                .collect()
-        })
+        .map(|index| states.iter().map(|(_, state)| (state[index], state[count + index])).collect())
         .collect();
-    let names: Vec<[String; 2]> = course
-        .coordinates
-        .iter()
-        .map(|name| [name.to_string(), format!("{name}′")])
-        .collect();
+    let names: Vec<[String; 2]> =
+        course.coordinates.iter().map(|name| [name.to_string(), format!("{name}′")]).collect();
     let mut panels = Vec::new();
     for (name, (in_time, plane)) in names.iter().zip(in_time.iter().zip(&planes)) {
         let panel = |title, x_label, y_label, points| Panel {
             title,
             x_label,
             y_label,
-            curves: vec![Curve {
-                label: "",
-                points,
-                style: CurveStyle::DIFFERENCE,
-            }],
+            curves: vec![Curve { label: "", points, style: CurveStyle::DIFFERENCE }],
             ..Panel::default()
         };
-        panels.push(panel(
-            "Motion",
-            "time t",
-            name[0].as_str(),
-            in_time.as_slice(),
-        ));
-        panels.push(panel(
-            "Phase plane",
-            name[0].as_str(),
-            name[1].as_str(),
-            plane.as_slice(),
-        ));
+        panels.push(panel("Motion", "time t", name[0].as_str(), in_time.as_slice()));
+        panels.push(panel("Phase plane", name[0].as_str(), name[1].as_str(), plane.as_slice()));
     }
-    let equations: Vec<String> = course
-        .equations
-        .iter()
-        .map(|left| format!("{left} = 0"))
-        .collect();
+    let equations: Vec<String> =
+        course.equations.iter().map(|left| format!("{left} = 0")).collect();
     figure(&panels, &format!("{}.", equations.join(", ")))
 }
 
@@ -173,31 +126,21 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
 fn on_section(motion: &Trajectory, section: &Section) -> Result<String, FigureError> {
     let course = &motion.course;
     let count = course.coordinates.len();
-    let names: Vec<[String; 2]> = course
-        .coordinates
-        .iter()
-        .map(|name| [name.to_string(), format!("{name}′")])
-        .collect();
+    let names: Vec<[String; 2]> =
+        course.coordinates.iter().map(|name| [name.to_string(), format!("{name}′")]).collect();
     let point = |index: usize| {
         move |crossing: &Crossing| (crossing.state[index], crossing.state[count + index])
     };
-    let points: Vec<Vec<(f64, f64)>> = (0..count)
-        .map(|index| motion.crossings().iter().map(point(index)).collect())
-        .collect();
+    let points: Vec<Vec<(f64, f64)>> =
+        (0..count).map(|index| motion.crossings().iter().map(point(index)).collect()).collect();
     let panels: Vec<Panel> = names
         .iter()
         .zip(&points)
         .map(|(name, points)| dots("Poincaré section", [&name[0], &name[1]], points))
         .collect();
-    let equations: Vec<String> = course
-        .equations
-        .iter()
-        .map(|left| format!("{left} = 0"))
-        .collect();
-    figure(
-        &panels,
-        &format!("{}. {}", equations.join(", "), section_in_words(section)),
-    )
+    let equations: Vec<String> =
+        course.equations.iter().map(|left| format!("{left} = 0")).collect();
+    figure(&panels, &format!("{}. {}", equations.join(", "), section_in_words(section)))
 }
 
 #[cfg(feature = "plot")]
@@ -206,11 +149,7 @@ fn dots<'a>(title: &'a str, labels: [&'a str; 2], points: &'a [(f64, f64)]) -> P
         title,
         x_label: labels[0],
         y_label: labels[1],
-        curves: vec![Curve {
-            label: "",
-            points,
-            style: CurveStyle::DOTS,
-        }],
+        curves: vec![Curve { label: "", points, style: CurveStyle::DOTS }],
         ..Panel::default()
     }
 }
@@ -231,11 +170,7 @@ pub fn sweep_csv(sweep: &MotionSweep) -> String {
             let _ = writeln!(text, "{},t,{}", varied.join(","), states.join(","));
             for motion in sweep.motions {
                 for crossing in &motion.crossings {
-                    let line = motion
-                        .values
-                        .iter()
-                        .chain([&crossing.time])
-                        .chain(&crossing.state);
+                    let line = motion.values.iter().chain([&crossing.time]).chain(&crossing.state);
                     let _ = writeln!(text, "{}", join(&mut line.copied()));
                 }
             }
@@ -282,10 +217,9 @@ pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
                         .iter()
                         .map(|crossing| (value, crossing.state[index]))
                         .collect(),
-                    false => motion.extremes[index]
-                        .iter()
-                        .map(|extreme| (value, *extreme))
-                        .collect(),
+                    false => {
+                        motion.extremes[index].iter().map(|extreme| (value, *extreme)).collect()
+                    }
                 }
             };
             sweep.motions.iter().flat_map(of).collect()
@@ -301,29 +235,12 @@ pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
         .zip(&points)
         .map(|(name, points)| dots(title, [varied, name], points))
         .collect();
-    let equations: Vec<String> = course
-        .equations
-        .iter()
-        .map(|left| format!("{left} = 0"))
-        .collect();
-    let section = course
-        .section
-        .as_ref()
-        .map(|section| format!(". {}", section_in_words(section)));
+    let equations: Vec<String> =
+        course.equations.iter().map(|left| format!("{left} = 0")).collect();
+    let section = course.section.as_ref().map(|section| format!(". {}", section_in_words(section)));
     let after = match course.after > 0.0 {
-        true => format!(
-            ", from t = {} to {}",
-            decimal(course.after),
-            decimal(course.duration)
-        ),
+        true => format!(", from t = {} to {}", decimal(course.after), decimal(course.duration)),
         false => format!(", to t = {}", decimal(course.duration)),
     };
-    figure(
-        &panels,
-        &format!(
-            "{}{}{after}",
-            equations.join(", "),
-            section.unwrap_or_default()
-        ),
-    )
+    figure(&panels, &format!("{}{}{after}", equations.join(", "), section.unwrap_or_default()))
 }

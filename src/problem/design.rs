@@ -94,12 +94,8 @@ pub enum DesignError {
 /// those of yield limits.
 const PENDULUM: [&str; 3] = ["[pendulum] mass", "[pendulum] length", "[pendulum] gravity"];
 const RADIUS: [&str; 1] = ["[sphere] radius"];
-const MODULI: [&str; 4] = [
-    "[sphere] modulus",
-    "[sphere] poisson",
-    "[barrier] modulus",
-    "[barrier] poisson",
-];
+const MODULI: [&str; 4] =
+    ["[sphere] modulus", "[sphere] poisson", "[barrier] modulus", "[barrier] poisson"];
 const YIELD: [&str; 2] = ["[sphere] yield", "[barrier] yield"];
 
 impl Problem {
@@ -112,11 +108,7 @@ impl Problem {
         let usual = Design::from(self.design);
         let (pendulum, sphere) = (&self.pendulum, &self.sphere);
         Ok(Design {
-            mass: self.one_of(
-                ["[pendulum] mass", "[design] mass"],
-                pendulum.mass,
-                usual.mass,
-            )?,
+            mass: self.one_of(["[pendulum] mass", "[design] mass"], pendulum.mass, usual.mass)?,
             radius: self.one_of(
                 ["[sphere] radius", "[design] radius"],
                 sphere.radius,
@@ -209,11 +201,9 @@ impl Problem {
         let design = self.design()?;
         let first = |keys: &[&'static str]| keys.iter().copied().find(|key| self.gives(key));
         let silent = |groups: &[&[&'static str]]| first(&groups.concat());
-        let [sphere_yield, barrier_yield] = [
-            (YIELD[0], self.sphere.yield_limit),
-            (YIELD[1], self.barrier.yield_limit),
-        ]
-        .map(|(key, limit)| limit.map(|limit| positive(key, limit)).transpose());
+        let [sphere_yield, barrier_yield] =
+            [(YIELD[0], self.sphere.yield_limit), (YIELD[1], self.barrier.yield_limit)]
+                .map(|(key, limit)| limit.map(|limit| positive(key, limit)).transpose());
         let units = Units {
             mass: design.mass,
             length: design.length,
@@ -242,16 +232,11 @@ impl Problem {
         let given =
             |name: &str, own: &str| self.gives(own) || self.gives(&format!("[design] {name}"));
         let needed = ["mass", "length", "gravity"].into_iter().zip(PENDULUM);
-        let missing: Vec<&str> = needed
-            .filter(|(name, own)| !given(name, own))
-            .map(|(name, _)| name)
-            .collect();
+        let missing: Vec<&str> =
+            needed.filter(|(name, own)| !given(name, own)).map(|(name, _)| name).collect();
         if !missing.is_empty() {
             return match silent(&[&PENDULUM, &RADIUS, &YIELD]) {
-                Some(key) => Err(DesignError::Incomplete {
-                    key,
-                    missing: missing.join(" and "),
-                }),
+                Some(key) => Err(DesignError::Incomplete { key, missing: missing.join(" and ") }),
                 None => Ok(None),
             };
         }
@@ -265,11 +250,7 @@ impl Problem {
         if let Some(radius) = radius {
             positive("[design] radius", radius)?;
         }
-        Ok(Some(Units {
-            radius,
-            modulus: None,
-            ..units
-        }))
+        Ok(Some(Units { radius, modulus: None, ..units }))
     }
 }
 
@@ -327,23 +308,11 @@ mod tests {
         let rigid = design("[barrier]\nmodulus = 2e9\npoisson = 0.5").unwrap();
         assert!((rigid.modulus / (2e9 / 0.75) - 1.0).abs() < 1e-15);
         for (text, words) in [
-            (
-                "[sphere]\nmodulus = 2e11",
-                ["[sphere] modulus", "[sphere] poisson"],
-            ),
-            (
-                "[sphere]\npoisson = 0.3",
-                ["[sphere] poisson", "[sphere] modulus"],
-            ),
-            (
-                "[sphere]\nmodulus = 2e11\npoisson = 0.3",
-                ["[sphere] modulus", "[barrier] poisson"],
-            ),
+            ("[sphere]\nmodulus = 2e11", ["[sphere] modulus", "[sphere] poisson"]),
+            ("[sphere]\npoisson = 0.3", ["[sphere] poisson", "[sphere] modulus"]),
+            ("[sphere]\nmodulus = 2e11\npoisson = 0.3", ["[sphere] modulus", "[barrier] poisson"]),
             ("[barrier]\npoisson = -1", ["[barrier] poisson", "-1"]),
-            (
-                "[design]\nmodulus = -2\n[barrier]\npoisson = 0.3",
-                ["[design] modulus", "-2"],
-            ),
+            ("[design]\nmodulus = -2\n[barrier]\npoisson = 0.3", ["[design] modulus", "-2"]),
         ] {
             let error = design(text).unwrap_err().to_string();
             assert!(words.iter().all(|word| error.contains(word)), "{error}");
@@ -357,18 +326,10 @@ mod tests {
         assert_eq!(units("[design]\nmass = 0.02"), Ok(None));
         let all = "[design]\nmass = 0.02\n[pendulum]\nlength = 0.25\ngravity = 1.6\n";
         let found = units(all).unwrap().unwrap();
-        assert_eq!(
-            (found.radius, found.modulus, found.length),
-            (None, None, 0.25)
-        );
-        let found = units(&format!("{all}[sphere]\nradius = 0.01\nyield = 1e9"))
-            .unwrap()
-            .unwrap();
+        assert_eq!((found.radius, found.modulus, found.length), (None, None, 0.25));
+        let found = units(&format!("{all}[sphere]\nradius = 0.01\nyield = 1e9")).unwrap().unwrap();
         assert_eq!((found.radius, found.sphere_yield), (Some(0.01), Some(1e9)));
-        assert!(matches!(
-            units("[pendulum]\nmass = 1"),
-            Err(DesignError::Incomplete { .. })
-        ));
+        assert!(matches!(units("[pendulum]\nmass = 1"), Err(DesignError::Incomplete { .. })));
         assert!(matches!(
             units(&format!("{all}[barrier]\nyield = 1e9")),
             Err(DesignError::NoPressure { .. })

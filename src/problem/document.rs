@@ -75,10 +75,7 @@ pub struct Problem {
 
 /// A whole number, or the degrees of an approximant: `order = 4`, `order = [2, 1]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(
-    untagged,
-    expecting = "expected a whole number, or two: [numerator, denominator]"
-)]
+#[serde(untagged, expecting = "expected a whole number, or two: [numerator, denominator]")]
 pub enum Order {
     /// The highest power kept, or what the method counts.
     Power(u32),
@@ -229,9 +226,7 @@ impl TryFrom<Vec<f64>> for Range {
 
     fn try_from(limits: Vec<f64>) -> Result<Self, &'static str> {
         let limits = <[f64; 2]>::try_from(limits);
-        limits
-            .map(Self)
-            .map_err(|_| "expected two limits: [lower, upper]")
+        limits.map(Self).map_err(|_| "expected two limits: [lower, upper]")
     }
 }
 
@@ -320,10 +315,7 @@ impl TryFrom<bool> for NoBarrier {
 
 /// One barrier, on the right unless `side` says otherwise, or one on either side.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(
-    untagged,
-    expecting = "expected a number, or two: [left, right], or false for none"
-)]
+#[serde(untagged, expecting = "expected a number, or two: [left, right], or false for none")]
 pub enum Barrier {
     /// `false`: none at all.
     Absent(NoBarrier),
@@ -457,8 +449,7 @@ impl Problem {
     /// Gives a value, as if it stood in `[values]`, but it wins over a key that says the same.
     pub fn set_value(&mut self, name: &str, value: &str) {
         self.overriding.push(name.to_owned());
-        self.values
-            .insert(name.to_owned(), toml::Value::String(value.to_owned()));
+        self.values.insert(name.to_owned(), toml::Value::String(value.to_owned()));
     }
 }
 
@@ -466,13 +457,7 @@ impl Contact {
     /// The damping of the contact in the form in which it is given, the first where there are
     /// several.
     pub fn given_damping(&self) -> Option<ContactDamping> {
-        let forms = [
-            self.mu,
-            self.mu_over_gamma,
-            self.lambda,
-            self.restitution,
-            self.damping,
-        ];
+        let forms = [self.mu, self.mu_over_gamma, self.lambda, self.restitution, self.damping];
         dampings(forms).first().copied()
     }
 }
@@ -481,22 +466,14 @@ impl MaterialSection {
     /// The damping of its contact in every form in which it is given: one, or none, where it makes
     /// sense.
     pub fn given_dampings(&self) -> Vec<ContactDamping> {
-        dampings([
-            self.mu,
-            self.mu_over_gamma,
-            self.lambda,
-            self.restitution,
-            self.damping,
-        ])
+        dampings([self.mu, self.mu_over_gamma, self.lambda, self.restitution, self.damping])
     }
 }
 
 /// The forms that are there, in the order of [`ContactDamping::FORMS`].
 fn dampings(values: [Option<f64>; 5]) -> Vec<ContactDamping> {
     let forms = ContactDamping::FORMS.into_iter().zip(values);
-    forms
-        .filter_map(|(form, value)| ContactDamping::given(form, value?))
-        .collect()
+    forms.filter_map(|(form, value)| ContactDamping::given(form, value?)).collect()
 }
 
 impl Default for Pendulum {
@@ -516,48 +493,20 @@ impl Default for Pendulum {
 
 impl From<DesignSection> for Design {
     fn from(section: DesignSection) -> Self {
-        let DesignSection {
-            mass,
-            radius,
-            length,
-            modulus,
-            gravity,
-        } = section;
-        Self {
-            mass,
-            radius,
-            length,
-            modulus,
-            gravity,
-        }
+        let DesignSection { mass, radius, length, modulus, gravity } = section;
+        Self { mass, radius, length, modulus, gravity }
     }
 }
 
 impl Default for DesignSection {
     fn default() -> Self {
-        let Design {
-            mass,
-            radius,
-            length,
-            modulus,
-            gravity,
-        } = Design::default();
-        Self {
-            mass,
-            radius,
-            length,
-            modulus,
-            gravity,
-        }
+        let Design { mass, radius, length, modulus, gravity } = Design::default();
+        Self { mass, radius, length, modulus, gravity }
     }
 }
 
 impl Default for Run {
     fn default() -> Self {
-        Self {
-            duration: 50.0,
-            integrator_tolerance: 1e-10,
-            step_limit: 250_000,
-        }
+        Self { duration: 50.0, integrator_tolerance: 1e-10, step_limit: 250_000 }
     }
 }

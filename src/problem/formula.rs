@@ -101,10 +101,8 @@ impl Problem {
                 toml::Value::Float(number) if number.is_finite() => number.to_string(),
                 _ => return Err(ProblemError::Value(name.clone())),
             };
-            let error = |error| ProblemError::Expression {
-                name: name.clone(),
-                error: Box::new(error),
-            };
+            let error =
+                |error| ProblemError::Expression { name: name.clone(), error: Box::new(error) };
             values.insert(Symbol::new(name), parse_expression(&text).map_err(error)?)?;
         }
         Ok(values)
@@ -148,17 +146,9 @@ mod tests {
     fn values_are_exact() {
         let problem: Problem = "[values]\nA = 0.323\nB = \"pi/3\"\nC = 2".parse().unwrap();
         let values = problem.exact_values().unwrap();
-        let texts: Vec<String> = values
-            .iter()
-            .map(|(name, value)| format!("{name} = {value}"))
-            .collect();
+        let texts: Vec<String> =
+            values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         assert_eq!(texts, ["A = 323/1000", "B = pi/3", "C = 2"]);
-        assert!(
-            "[values]\nA = \"k\""
-                .parse::<Problem>()
-                .unwrap()
-                .exact_values()
-                .is_err()
-        );
+        assert!("[values]\nA = \"k\"".parse::<Problem>().unwrap().exact_values().is_err());
     }
 }

@@ -191,10 +191,8 @@ impl TryFrom<&Problem> for Setup {
     fn try_from(problem: &Problem) -> Result<Self, ImpactFileError> {
         problem.check_keys(Reader::Impact)?;
         let (damping, contact) = (&problem.damping, &problem.contact);
-        let damps = [damping.zeta, damping.alpha]
-            .into_iter()
-            .chain(damping.viscous)
-            .chain(damping.torque);
+        let damps =
+            [damping.zeta, damping.alpha].into_iter().chain(damping.viscous).chain(damping.torque);
         if damps.into_iter().any(|number| number != 0.0) {
             return Err(ImpactFileError::Damped);
         }
@@ -234,9 +232,7 @@ impl TryFrom<&Problem> for Setup {
         let is_hertz = swing.is_none() && force.is_none();
         let has_stiffness = |force: &Expr| force.contains(Symbol::new("gamma"));
         let gamma_follows = !gives_stiffness && force.as_ref().is_none_or(has_stiffness);
-        let units = problem
-            .units(is_hertz, gamma_follows)
-            .map_err(ProblemError::from)?;
+        let units = problem.units(is_hertz, gamma_follows).map_err(ProblemError::from)?;
         let is_all = |name: &Option<String>| name.as_deref() == Some(EVERY_LAW);
         Ok(Self {
             swing,
@@ -294,10 +290,7 @@ impl Numbers {
         ];
         let values = problem.values_of_motion()?;
         let own = letters.each_ref().map(|(name, ..)| Symbol::new(name));
-        let own: Vec<Symbol> = own
-            .into_iter()
-            .filter(|name| !parameters.contains(name))
-            .collect();
+        let own: Vec<Symbol> = own.into_iter().filter(|name| !parameters.contains(name)).collect();
         let (_, others) = values.split(&own);
         let mut found = [None; 3];
         for ((written, letter, key), found) in letters.iter().zip(&mut found) {
@@ -326,12 +319,7 @@ impl Numbers {
             }
         }
         let [amplitude, barrier, stiffness] = found;
-        Ok(Self {
-            amplitude,
-            barrier,
-            stiffness,
-            others,
-        })
+        Ok(Self { amplitude, barrier, stiffness, others })
     }
 }
 
@@ -349,9 +337,7 @@ fn barrier(barrier: Barrier, side: Side, release: f64) -> Result<f64, ImpactFile
 
 /// The swing, about the equilibrium asked for.
 fn swing(problem: &Problem) -> Result<Option<Oscillator>, ImpactFileError> {
-    problem
-        .check_derived_equation()
-        .map_err(ProblemError::from)?;
+    problem.check_derived_equation().map_err(ProblemError::from)?;
     let Some(equation) = &problem.equation else {
         return match problem.about {
             None => Ok(None),
@@ -363,22 +349,12 @@ fn swing(problem: &Problem) -> Result<Option<Oscillator>, ImpactFileError> {
         return Ok(Some(swing));
     };
     let coordinate = swing.coordinate;
-    let place = text
-        .split_once('=')
-        .filter(|(name, _)| name.trim() == coordinate.name());
+    let place = text.split_once('=').filter(|(name, _)| name.trim() == coordinate.name());
     let place = place.and_then(|(_, place)| parse_expression(place).ok());
-    let known = |place: &Expr| {
-        place
-            .symbols()
-            .iter()
-            .all(|name| swing.parameters.contains(name))
-    };
+    let known = |place: &Expr| place.symbols().iter().all(|name| swing.parameters.contains(name));
     match place.filter(known) {
         Some(place) => Ok(Some(swing.about(place))),
-        None => Err(ImpactFileError::About {
-            text: text.clone(),
-            coordinate,
-        }),
+        None => Err(ImpactFileError::About { text: text.clone(), coordinate }),
     }
 }
 
@@ -388,10 +364,8 @@ fn force(problem: &Problem) -> Result<Option<Expr>, ImpactFileError> {
         return Ok(None);
     };
     let force = parse_expression(text);
-    let force = force.map_err(|error| ImpactFileError::Force {
-        text: text.clone(),
-        error: Box::new(error),
-    })?;
+    let force = force
+        .map_err(|error| ImpactFileError::Force { text: text.clone(), error: Box::new(error) })?;
     Ok(Some(force))
 }
 
@@ -411,9 +385,7 @@ fn convention(problem: &Problem) -> Result<Option<AmplitudeConvention>, ImpactFi
         return Ok(None);
     };
     let unknown = || ImpactFileError::Convention(name.clone());
-    AmplitudeConvention::from_name(name)
-        .map(Some)
-        .ok_or_else(unknown)
+    AmplitudeConvention::from_name(name).map(Some).ok_or_else(unknown)
 }
 
 /// What stands for a table in place of the name of a law or a rule.
@@ -437,10 +409,8 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Impact
         ("restitution", contact.restitution),
         ("damping", contact.damping),
     ];
-    let given: Vec<(&'static str, f64)> = losses
-        .into_iter()
-        .filter_map(|(key, value)| value.map(|value| (key, value)))
-        .collect();
+    let given: Vec<(&'static str, f64)> =
+        losses.into_iter().filter_map(|(key, value)| value.map(|value| (key, value))).collect();
     if contact.at_speed.is_some() && contact.restitution.is_none() {
         return Err(ImpactFileError::SpeedAlone);
     }
@@ -463,25 +433,14 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Impact
     if !of_restitution && (problem.equation.is_some() || contact.force.is_some()) {
         return Err(ImpactFileError::DampingOfItsOwn(key));
     }
-    let laws = [
-        ("law", &contact.law),
-        ("linearisation", &contact.linearisation),
-    ];
+    let laws = [("law", &contact.law), ("linearisation", &contact.linearisation)];
     if let Some((law, _)) = laws.into_iter().find(|(_, name)| name.is_some()) {
-        return Err(ImpactFileError::LawBesideLoss {
-            key: law,
-            loss: key,
-        });
+        return Err(ImpactFileError::LawBesideLoss { key: law, loss: key });
     }
     if of_restitution && contact.at_speed.is_none() {
         return Ok(Some(ContactLoss::Restitution(value)));
     }
-    let Design {
-        mass,
-        length,
-        gravity,
-        ..
-    } = problem.design().map_err(ProblemError::from)?;
+    let Design { mass, length, gravity, .. } = problem.design().map_err(ProblemError::from)?;
     let needed: &[(&'static str, f64)] = match key {
         "lambda" => &[("length", length), ("gravity", gravity)],
         "damping" => &[("mass", mass), ("length", length), ("gravity", gravity)],
@@ -499,19 +458,14 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Impact
         mass,
         length,
         gravity,
-        speed: contact.at_speed.map(|speed| {
-            problem
-                .speed_unit(&[])
-                .dimensionless(speed, length, gravity)
-        }),
+        speed: contact
+            .at_speed
+            .map(|speed| problem.speed_unit(&[]).dimensionless(speed, length, gravity)),
     };
     let Some(damping) = contact.given_damping() else {
         return Ok(None);
     };
-    match damping
-        .in_form(ContactDamping::MuOverGamma(0.0), &scales)?
-        .value()
-    {
+    match damping.in_form(ContactDamping::MuOverGamma(0.0), &scales)?.value() {
         ratio if ratio.is_finite() => Ok(Some(ContactLoss::Damping(ratio))),
         _ => Err(ImpactFileError::Damping { key, value }),
     }

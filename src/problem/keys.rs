@@ -59,12 +59,7 @@ const MECHANISM: [Reader; 6] = [Derive, Compare, Impact, Trajectory, Lagrange, R
 /// Every key, as messages name it, and the commands that read it, or refuse it with a reason of
 /// their own.
 pub const KEYS: [(&str, &[Reader]); 95] = [
-    (
-        "equation",
-        &[
-            Derive, Compare, Impact, Simulate, Trajectory, Stability, Response,
-        ],
-    ),
+    ("equation", &[Derive, Compare, Impact, Simulate, Trajectory, Stability, Response]),
     ("method", &[Derive, Impact, Response]),
     ("order", &[Derive, Impact, Stability, Response]),
     ("vary", &[Response]),
@@ -72,12 +67,7 @@ pub const KEYS: [(&str, &[Reader]); 95] = [
     ("small", &[Derive, Compare, Stability]),
     ("amplitude", &[Derive, Impact]),
     ("about", &[Derive, Compare, Impact]),
-    (
-        "[values]",
-        &[
-            Derive, Compare, Impact, Lagrange, Trajectory, Stability, Response,
-        ],
-    ),
+    ("[values]", &[Derive, Compare, Impact, Lagrange, Trajectory, Stability, Response]),
     ("[lagrangian] coordinates", &MECHANISM),
     ("[lagrangian] kinetic", &MECHANISM),
     ("[lagrangian] potential", &MECHANISM),
@@ -91,53 +81,26 @@ pub const KEYS: [(&str, &[Reader]); 95] = [
     ("[primary] speed", &[Simulate, Optimize]),
     ("[primary] force", &[Simulate]),
     ("[primary] frequency", &[Simulate]),
-    (
-        "[pendulum] amplitude",
-        &[Impact, Simulate, Materials, Optimize],
-    ),
-    (
-        "[pendulum] barrier",
-        &[Impact, Simulate, Materials, Optimize],
-    ),
+    ("[pendulum] amplitude", &[Impact, Simulate, Materials, Optimize]),
+    ("[pendulum] barrier", &[Impact, Simulate, Materials, Optimize]),
     ("[pendulum] side", &[Impact, Simulate]),
     ("[pendulum] start", &[Impact, Simulate, Materials, Optimize]),
     ("[pendulum] speed", &[Impact, Simulate, Materials, Optimize]),
     ("[pendulum] mass", &[Impact, Simulate, Materials, Optimize]),
-    (
-        "[pendulum] length",
-        &[Impact, Simulate, Materials, Optimize],
-    ),
-    (
-        "[pendulum] gravity",
-        &[Impact, Simulate, Materials, Optimize],
-    ),
+    ("[pendulum] length", &[Impact, Simulate, Materials, Optimize]),
+    ("[pendulum] gravity", &[Impact, Simulate, Materials, Optimize]),
     ("[contact] gamma", &[Impact, Simulate]),
     ("[contact] force", &[Impact]),
     ("[contact] mu", &[Impact, Simulate, Materials, Optimize]),
-    (
-        "[contact] mu_over_gamma",
-        &[Impact, Simulate, Materials, Optimize],
-    ),
+    ("[contact] mu_over_gamma", &[Impact, Simulate, Materials, Optimize]),
     ("[contact] lambda", &[Impact, Simulate, Materials, Optimize]),
-    (
-        "[contact] restitution",
-        &[Impact, Simulate, Materials, Optimize],
-    ),
-    (
-        "[contact] at_speed",
-        &[Impact, Simulate, Materials, Optimize],
-    ),
-    (
-        "[contact] damping",
-        &[Impact, Simulate, Materials, Optimize],
-    ),
+    ("[contact] restitution", &[Impact, Simulate, Materials, Optimize]),
+    ("[contact] at_speed", &[Impact, Simulate, Materials, Optimize]),
+    ("[contact] damping", &[Impact, Simulate, Materials, Optimize]),
     ("[contact] law", &[Impact]),
     ("[contact] linearisation", &[Impact]),
     ("[damping] zeta", &[Impact, Simulate, Materials, Optimize]),
-    (
-        "[damping] viscous",
-        &[Impact, Simulate, Materials, Optimize],
-    ),
+    ("[damping] viscous", &[Impact, Simulate, Materials, Optimize]),
     ("[damping] alpha", &[Impact, Simulate, Materials, Optimize]),
     ("[damping] torque", &[Impact, Simulate, Materials, Optimize]),
     ("[damping] friction", &[Simulate, Materials, Optimize]),
@@ -152,24 +115,12 @@ pub const KEYS: [(&str, &[Reader]); 95] = [
     ("[sphere] modulus", &[Impact, Simulate, Materials, Optimize]),
     ("[sphere] poisson", &[Impact, Simulate, Materials, Optimize]),
     ("[sphere] yield", &[Impact, Materials, Optimize]),
-    (
-        "[barrier] modulus",
-        &[Impact, Simulate, Materials, Optimize],
-    ),
+    ("[barrier] modulus", &[Impact, Simulate, Materials, Optimize]),
     ("[barrier] poisson", &[Impact, Simulate]),
     ("[barrier] yield", &[Impact, Optimize]),
-    (
-        "[run] duration",
-        &[Simulate, Materials, Trajectory, Optimize],
-    ),
-    (
-        "[run] integrator_tolerance",
-        &[Impact, Simulate, Materials, Optimize],
-    ),
-    (
-        "[run] step_limit",
-        &[Impact, Simulate, Materials, Trajectory, Optimize],
-    ),
+    ("[run] duration", &[Simulate, Materials, Trajectory, Optimize]),
+    ("[run] integrator_tolerance", &[Impact, Simulate, Materials, Optimize]),
+    ("[run] step_limit", &[Impact, Simulate, Materials, Trajectory, Optimize]),
     ("[[material]]", &[Materials, Optimize]),
     ("[limits] mass", &[Optimize]),
     ("[limits] radius", &[Optimize]),
@@ -264,10 +215,7 @@ impl Problem {
     /// # Errors
     /// [`UnreadKey`] names the first, and the commands that read it.
     pub fn check_keys(&self, reader: Reader) -> Result<(), UnreadKey> {
-        let described = self
-            .given
-            .iter()
-            .any(|key| key.starts_with('[') && key != "[values]");
+        let described = self.given.iter().any(|key| key.starts_with('[') && key != "[values]");
         if matches!(reader, Derive | Compare | Stability | Response)
             && self.equation.is_none()
             && self.lagrangian.is_none()
@@ -286,9 +234,7 @@ impl Problem {
                     }
                 }
                 if names.is_empty() {
-                    return Err(UnreadKey::Beside {
-                        key: key.to_owned(),
-                    });
+                    return Err(UnreadKey::Beside { key: key.to_owned() });
                 }
                 return Err(UnreadKey::Key {
                     key: key.to_owned(),
@@ -308,10 +254,7 @@ mod tests {
     #[test]
     fn every_parameter_of_a_study_has_its_key() {
         for parameter in crate::impact::Parameter::ALL {
-            assert!(
-                KEYS.iter().any(|(key, _)| *key == parameter.to_string()),
-                "{parameter}"
-            );
+            assert!(KEYS.iter().any(|(key, _)| *key == parameter.to_string()), "{parameter}");
         }
     }
 
@@ -342,9 +285,7 @@ mod tests {
             assert!(expected.len() > 1, "{error}");
             for name in expected {
                 let key = format!("{prefix}{name}");
-                let is_section = KEYS
-                    .iter()
-                    .any(|(known, _)| known.contains(&format!("[{name}]")));
+                let is_section = KEYS.iter().any(|(known, _)| known.contains(&format!("[{name}]")));
                 let known = KEYS.iter().any(|(known, _)| *known == key);
                 assert!(known || prefix.is_empty() && is_section, "{key}");
             }

@@ -136,11 +136,7 @@ impl Problem {
     /// damping is what is given.
     pub(super) fn for_design(&self) -> Self {
         Self {
-            sphere: SphereSection {
-                modulus: None,
-                poisson: None,
-                ..self.sphere
-            },
+            sphere: SphereSection { modulus: None, poisson: None, ..self.sphere },
             ..self.clone()
         }
     }
@@ -158,17 +154,9 @@ impl Problem {
             materials.push(material);
         }
         let two_bodies = self.sphere.modulus.is_some() || self.sphere.poisson.is_some();
-        if two_bodies
-            && self
-                .material
-                .iter()
-                .all(|material| material.poisson.is_none())
-        {
-            let key = if self.sphere.modulus.is_some() {
-                "[sphere] modulus"
-            } else {
-                "[sphere] poisson"
-            };
+        if two_bodies && self.material.iter().all(|material| material.poisson.is_none()) {
+            let key =
+                if self.sphere.modulus.is_some() { "[sphere] modulus" } else { "[sphere] poisson" };
             let missing = "[[material]] poisson";
             return Err(DesignError::Needs { key, missing }.into());
         }
@@ -181,10 +169,7 @@ impl Problem {
             return Err(MaterialsFileError::NoName);
         }
         let keys = ["[[material]] modulus", "[[material]] poisson"];
-        let of_material = |error| MaterialsFileError::Material {
-            name: name.clone(),
-            error,
-        };
+        let of_material = |error| MaterialsFileError::Material { name: name.clone(), error };
         let modulus = match section.poisson {
             None => super::design::positive(keys[0], section.modulus).map(Modulus::BarrierAlone),
             Some(_) => self.modulus_of(keys, section.modulus, section.poisson),
@@ -216,9 +201,7 @@ impl Problem {
         key: &'static str,
         limit: Option<f64>,
     ) -> Result<Option<f64>, DesignError> {
-        limit
-            .map(|limit| super::design::positive(key, limit))
-            .transpose()
+        limit.map(|limit| super::design::positive(key, limit)).transpose()
     }
 }
 
@@ -240,10 +223,7 @@ mod tests {
     #[test]
     fn an_empty_file_is_the_default_study() {
         let (of_file, of_library) = (asked("").unwrap(), MaterialQuestion::default());
-        assert_eq!(
-            (&of_file.case, &of_file.materials),
-            (&of_library.case, &of_library.materials)
-        );
+        assert_eq!((&of_file.case, &of_file.materials), (&of_library.case, &of_library.materials));
         assert_eq!(of_file.defaults, of_library.defaults);
         assert_eq!(of_file.settings.duration, of_library.settings.duration);
         assert_eq!(asked("[damping]\nviscous = 0.1").unwrap().case.zeta, 0.0);
@@ -254,17 +234,12 @@ mod tests {
         let moduli = |text: &str| {
             let asked = asked(text).unwrap();
             assert_eq!(asked.case.design, Design::default());
-            asked.materials[3..]
-                .iter()
-                .map(|material| material.modulus.value())
-                .collect::<Vec<_>>()
+            asked.materials[3..].iter().map(|material| material.modulus.value()).collect::<Vec<_>>()
         };
         let cork = "[[material]]\nname = \"cork\"\nmodulus = 2e7\n";
         assert_eq!(moduli(cork), [2e7]);
         assert_eq!(moduli(&format!("{cork}poisson = 0.5")), [2e7 / 0.75]);
-        let both = moduli(&format!(
-            "{cork}poisson = 0.5\n[sphere]\nmodulus = 1e8\npoisson = 0"
-        ));
+        let both = moduli(&format!("{cork}poisson = 0.5\n[sphere]\nmodulus = 1e8\npoisson = 0"));
         assert!((both[0] * (0.75 / 2e7 + 1.0 / 1e8) - 1.0).abs() < 1e-15);
     }
 }

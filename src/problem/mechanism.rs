@@ -92,44 +92,30 @@ impl Problem {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn mechanism(&self) -> Result<MechanismQuestion, MechanismFileError> {
-        let section = self
-            .lagrangian
-            .as_ref()
-            .ok_or(MechanismFileError::NoMechanism)?;
+        let section = self.lagrangian.as_ref().ok_or(MechanismFileError::NoMechanism)?;
         let mechanism = section.mechanism()?;
         let units = match self.units.is_empty() {
             true => None,
             false => Some(self.mechanism_units()?),
         };
-        Ok(MechanismQuestion {
-            mechanism,
-            units,
-            values: BTreeMap::new(),
-        })
+        Ok(MechanismQuestion { mechanism, units, values: BTreeMap::new() })
     }
 
     fn mechanism_units(&self) -> Result<BTreeMap<Symbol, Dimension>, MechanismFileError> {
         let unit = |(name, unit): (&String, &String)| match unit.parse() {
             Ok(unit) => Ok((Symbol::new(name), unit)),
-            Err(UnitError::Parse { error, .. }) => Err(UnitError::Parse {
-                name: name.clone(),
-                error,
-            }),
-            Err(UnitError::Unknown { unit, .. }) => Err(UnitError::Unknown {
-                name: name.clone(),
-                unit,
-            }),
-            Err(UnitError::NoProduct { unit, .. }) => Err(UnitError::NoProduct {
-                name: name.clone(),
-                unit,
-            }),
+            Err(UnitError::Parse { error, .. }) => {
+                Err(UnitError::Parse { name: name.clone(), error })
+            }
+            Err(UnitError::Unknown { unit, .. }) => {
+                Err(UnitError::Unknown { name: name.clone(), unit })
+            }
+            Err(UnitError::NoProduct { unit, .. }) => {
+                Err(UnitError::NoProduct { name: name.clone(), unit })
+            }
             Err(error) => Err(error),
         };
-        Ok(self
-            .units
-            .iter()
-            .map(unit)
-            .collect::<Result<_, UnitError>>()?)
+        Ok(self.units.iter().map(unit).collect::<Result<_, UnitError>>()?)
     }
 
     /// The same file with the equation that its energies give, where it has one coordinate: what
@@ -148,25 +134,14 @@ impl Problem {
             return Err(MechanismFileError::Twice.into());
         }
         let question = self.mechanism()?;
-        let equations = question
-            .mechanism
-            .equations()
-            .map_err(MechanismFileError::from)?;
+        let equations = question.mechanism.equations().map_err(MechanismFileError::from)?;
         if let Some(units) = &question.units {
-            question
-                .mechanism
-                .check_units(units)
-                .map_err(MechanismFileError::from)?;
+            question.mechanism.check_units(units).map_err(MechanismFileError::from)?;
         }
         // A mass that stands in all energies is a letter of the file whose value says nothing of
         // the motion.
         let cancels = |name: &Symbol| equations.left.iter().all(|left| !left.contains(*name));
-        self.cancelled = question
-            .mechanism
-            .parameters()
-            .into_iter()
-            .filter(cancels)
-            .collect();
+        self.cancelled = question.mechanism.parameters().into_iter().filter(cancels).collect();
         if let [left] = equations.left.as_slice() {
             self.equation = Some(format!("{left} = 0"));
         }
@@ -179,10 +154,7 @@ impl Problem {
     /// A coordinate of several letters, or a parameter that bears the name of an answer.
     pub(super) fn check_derived_equation(&self) -> Result<(), MechanismFileError> {
         let (Some(section), Some(equation)) = (&self.lagrangian, &self.equation) else {
-            let count = self
-                .lagrangian
-                .as_ref()
-                .map_or(1, |section| section.coordinates.len());
+            let count = self.lagrangian.as_ref().map_or(1, |section| section.coordinates.len());
             return match count {
                 1 => Ok(()),
                 count => Err(MechanismFileError::Several(count)),
@@ -191,10 +163,7 @@ impl Problem {
         let own = section.coordinates.first().cloned().unwrap_or_default();
         match parse_equation(equation) {
             Ok(_) => Ok(()),
-            Err(error) => Err(MechanismFileError::Coordinate {
-                name: own,
-                error: Box::new(error),
-            }),
+            Err(error) => Err(MechanismFileError::Coordinate { name: own, error: Box::new(error) }),
         }
     }
 }
@@ -210,31 +179,19 @@ impl LagrangianSection {
         if self.coordinates.is_empty() {
             return Err(MechanismFileError::Missing("coordinates"));
         }
-        let kinetic = self
-            .kinetic
-            .as_ref()
-            .ok_or(MechanismFileError::Missing("kinetic"))?;
+        let kinetic = self.kinetic.as_ref().ok_or(MechanismFileError::Missing("kinetic"))?;
         let or_zero = |key: &str, text: &Option<String>| {
-            text.as_ref()
-                .map_or(Ok(Expr::zero()), |text| read(key, text))
+            text.as_ref().map_or(Ok(Expr::zero()), |text| read(key, text))
         };
         let force = |(on, text): (&String, &String)| {
             Ok((Symbol::new(on), read(&format!("forces.{on}"), text)?))
         };
         Ok(Mechanism {
-            coordinates: self
-                .coordinates
-                .iter()
-                .map(|name| Symbol::new(name))
-                .collect(),
+            coordinates: self.coordinates.iter().map(|name| Symbol::new(name)).collect(),
             kinetic: read("kinetic", kinetic)?,
             potential: or_zero("potential", &self.potential)?,
             dissipation: or_zero("dissipation", &self.dissipation)?,
-            forces: self
-                .forces
-                .iter()
-                .map(force)
-                .collect::<Result<_, MechanismFileError>>()?,
+            forces: self.forces.iter().map(force).collect::<Result<_, MechanismFileError>>()?,
         })
     }
 }

@@ -33,10 +33,7 @@ pub(crate) fn in_words(text: &str, error: &toml::de::Error) -> ProblemError {
             format!("line {line}: {what}\n  {shown}\n  {carets}")
         }
     };
-    ProblemError::Toml {
-        message,
-        help: did_you_mean(said),
-    }
+    ProblemError::Toml { message, help: did_you_mean(said) }
 }
 
 /// "invalid type: string "big", expected f64" in words.
@@ -64,12 +61,8 @@ fn mismatch(message: &str) -> Option<String> {
 
 /// The nearest of the keys that "unknown field `a`, expected one of `b`, `c`" lists.
 fn did_you_mean(message: &str) -> Option<String> {
-    let names: Vec<&str> = message
-        .strip_prefix("unknown field ")?
-        .split('`')
-        .skip(1)
-        .step_by(2)
-        .collect();
+    let names: Vec<&str> =
+        message.strip_prefix("unknown field ")?.split('`').skip(1).step_by(2).collect();
     let (typed, known) = names.split_first()?;
     nearest(typed, known.iter().copied()).map(|name| format!("did you mean `{name}`?"))
 }
@@ -82,31 +75,13 @@ mod tests {
     fn mistakes_are_told_without_the_names_of_types() {
         let deep = format!("a = {}", "[".repeat(50_000));
         for (text, expected) in [
-            (
-                "[pendulum]\namplitude = \"big\"",
-                "line 2: expected a number, not text",
-            ),
+            ("[pendulum]\namplitude = \"big\"", "line 2: expected a number, not text"),
             ("equation = 3", "line 1: expected text in quotes, not 3"),
-            (
-                "[run]\nstep_limit = -3",
-                "line 2: expected a whole number, 0 or more, not -3",
-            ),
-            (
-                "[run]\nstep_limit = 2.5",
-                "line 2: expected a whole number, 0 or more, not 2.5",
-            ),
-            (
-                "pendulum = 3",
-                "line 1: expected a section in brackets, not 3",
-            ),
-            (
-                "[pendulum]\namplitude = []",
-                "line 2: expected a number, not a list",
-            ),
-            (
-                "[pendulum]\namplitude = true",
-                "line 2: expected a number, not true",
-            ),
+            ("[run]\nstep_limit = -3", "line 2: expected a whole number, 0 or more, not -3"),
+            ("[run]\nstep_limit = 2.5", "line 2: expected a whole number, 0 or more, not 2.5"),
+            ("pendulum = 3", "line 1: expected a section in brackets, not 3"),
+            ("[pendulum]\namplitude = []", "line 2: expected a number, not a list"),
+            ("[pendulum]\namplitude = true", "line 2: expected a number, not true"),
             (&deep, "line 1: nested too deep"),
         ] {
             let error = text.parse::<Problem>().expect_err("a mistake").to_string();

@@ -140,11 +140,7 @@ impl Problem {
 
     /// Whether something that damps is given by mass, length and gravity.
     fn damps_in_si_units(&self) -> bool {
-        let in_si = [
-            self.contact.damping,
-            self.damping.viscous,
-            self.damping.torque,
-        ];
+        let in_si = [self.contact.damping, self.damping.viscous, self.damping.torque];
         in_si.iter().any(Option::is_some)
     }
 
@@ -166,22 +162,10 @@ impl Problem {
         ];
         let gives = |section: &str| self.given.iter().any(|key| key.starts_with(section));
         let by_sections = sections.into_iter().any(gives) || !self.material.is_empty();
-        let parameters = [
-            Lambda,
-            ContactDamping,
-            Viscous,
-            Torque,
-            Mass,
-            Radius,
-            Length,
-            Modulus,
-            Gravity,
-        ];
-        let by_parameters = || {
-            parameters
-                .into_iter()
-                .any(|key| swept.contains(&key) || self.gives_parameter(key))
-        };
+        let parameters =
+            [Lambda, ContactDamping, Viscous, Torque, Mass, Radius, Length, Modulus, Gravity];
+        let by_parameters =
+            || parameters.into_iter().any(|key| swept.contains(&key) || self.gives_parameter(key));
         match of_pendulum && (by_sections || by_parameters()) {
             true => SpeedUnit::MetresPerSecond,
             false => SpeedUnit::RadOmega,
@@ -206,17 +190,12 @@ impl Problem {
             (false, false) => &["mass", "radius", "modulus", "poisson", "length", "gravity"],
         };
         let gives = |sections: &[&str]| {
-            let mut keys = without_say.iter().flat_map(|key| {
-                sections
-                    .iter()
-                    .map(move |section| format!("[{section}] {key}"))
-            });
+            let mut keys = without_say
+                .iter()
+                .flat_map(|key| sections.iter().map(move |section| format!("[{section}] {key}")));
             keys.any(|key| self.gives(&key))
         };
-        match (
-            gives(&["design"]),
-            gives(&["pendulum", "sphere", "barrier"]),
-        ) {
+        match (gives(&["design"]), gives(&["pendulum", "sphere", "barrier"])) {
             (true, _) => "given: [design] has no say in it",
             (false, true) => "given: masses, lengths and moduli have no say in it",
             (false, false) => "given",
@@ -255,19 +234,11 @@ mod tests {
             file.parse::<Problem>().unwrap().stiffness().unwrap().1
         };
         assert_eq!(source(""), "given");
-        assert_eq!(
-            source("[design]\nmass = 0.02"),
-            "given: [design] has no say in it"
-        );
-        for beside in [
-            "[pendulum]\nmass = 0.02",
-            "[sphere]\nradius = 0.02",
-            "[barrier]\nmodulus = 2e9",
-        ] {
-            assert_eq!(
-                source(beside),
-                "given: masses, lengths and moduli have no say in it"
-            );
+        assert_eq!(source("[design]\nmass = 0.02"), "given: [design] has no say in it");
+        for beside in
+            ["[pendulum]\nmass = 0.02", "[sphere]\nradius = 0.02", "[barrier]\nmodulus = 2e9"]
+        {
+            assert_eq!(source(beside), "given: masses, lengths and moduli have no say in it");
         }
         // mu = gamma*lambda*sqrt(g*L)
         assert_eq!(source("lambda = 0.1\n[pendulum]\nlength = 0.2"), "given");

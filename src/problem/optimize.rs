@@ -153,13 +153,11 @@ fn named<T: Clone>(
         return Ok(usual);
     };
     let found = known.iter().find(|(known, _)| known == name);
-    found
-        .map(|(_, value)| value.clone())
-        .ok_or_else(|| OptimizeFileError::Unknown {
-            key,
-            name: name.clone(),
-            known: known.iter().map(|(name, _)| *name).collect(),
-        })
+    found.map(|(_, value)| value.clone()).ok_or_else(|| OptimizeFileError::Unknown {
+        key,
+        name: name.clone(),
+        known: known.iter().map(|(name, _)| *name).collect(),
+    })
 }
 
 impl Problem {
@@ -183,10 +181,7 @@ impl Problem {
         let gives = |parameter| self.gives_parameter(parameter);
         refuse_two_forms(gives)?;
         self.check_pairs(gives)?;
-        let mut question = Question {
-            case: self.for_design().case()?,
-            ..Question::default()
-        };
+        let mut question = Question { case: self.for_design().case()?, ..Question::default() };
         let case = &mut question.case;
         if case.left.is_none() && case.right.is_none() {
             return Err(OptimizeFileError::NoBarrier);
@@ -231,9 +226,7 @@ impl Problem {
             let fixed = fixing(parameter).into_iter().find(|key| self.gives(key));
             let name = parameter.name();
             if parameter == Parameter::Modulus && !question.materials.is_empty() {
-                let key = fixed
-                    .map(str::to_owned)
-                    .or(given.map(|_| "[limits] modulus".to_owned()));
+                let key = fixed.map(str::to_owned).or(given.map(|_| "[limits] modulus".to_owned()));
                 match key {
                     Some(key) => return Err(OptimizeFileError::ModulusBesideMaterials(key)),
                     None => continue,
@@ -247,11 +240,7 @@ impl Problem {
                 (None, Some(_)) => {}
                 (given, None) => {
                     let [lower, upper] = given.map_or([lower, upper], |range| range.0);
-                    question.variables.push(Variable {
-                        parameter,
-                        lower,
-                        upper,
-                    });
+                    question.variables.push(Variable { parameter, lower, upper });
                 }
             }
         }
@@ -263,10 +252,7 @@ impl Problem {
         let limits = &self.limits;
         let of = [
             (Objective::RestTime, limits.max_rest_time),
-            (
-                Objective::DimensionlessRestTime,
-                limits.max_dimensionless_rest_time,
-            ),
+            (Objective::DimensionlessRestTime, limits.max_dimensionless_rest_time),
             (Objective::PeakForce, limits.max_peak_force),
             (Objective::PeakPressure, limits.max_peak_pressure),
             (Objective::Impacts, limits.max_impacts),
@@ -274,20 +260,11 @@ impl Problem {
         ];
         question.limits = of
             .into_iter()
-            .filter_map(|(objective, limit)| {
-                Some(Limit {
-                    objective,
-                    at_most: limit?,
-                })
-            })
+            .filter_map(|(objective, limit)| Some(Limit { objective, at_most: limit? }))
             .collect();
         question.density = limits.density;
-        let varies = |parameter| {
-            question
-                .variables
-                .iter()
-                .any(|variable| variable.parameter == parameter)
-        };
+        let varies =
+            |parameter| question.variables.iter().any(|variable| variable.parameter == parameter);
         if limits.density.is_some() && !(varies(Parameter::Mass) && varies(Parameter::Radius)) {
             return Err(OptimizeFileError::Density);
         }
@@ -301,17 +278,9 @@ impl Problem {
         let stated = [
             ("[sphere] yield", question.sphere_yield.is_some()),
             ("[barrier] yield", question.barrier_yield.is_some()),
-            (
-                "[[material]] yield",
-                materials
-                    .iter()
-                    .any(|material| material.yield_limit.is_some()),
-            ),
+            ("[[material]] yield", materials.iter().any(|material| material.yield_limit.is_some())),
         ];
-        match (
-            limits.elastic,
-            stated.into_iter().find(|(_, stated)| *stated),
-        ) {
+        match (limits.elastic, stated.into_iter().find(|(_, stated)| *stated)) {
             (true, None) => Err(OptimizeFileError::NoYield),
             (false, Some((key, _))) => Err(OptimizeFileError::YieldAlone(key)),
             _ => Ok(()),
@@ -321,12 +290,8 @@ impl Problem {
     /// What carries the pendulum, where its rest counts.
     fn carried(&self, question: &mut Question) -> Result<(), OptimizeFileError> {
         let limited = question.limits.iter().map(|limit| limit.objective);
-        let counts = question
-            .objectives
-            .iter()
-            .copied()
-            .chain(limited)
-            .any(Objective::is_of_main_mass);
+        let counts =
+            question.objectives.iter().copied().chain(limited).any(Objective::is_of_main_mass);
         match (&self.primary, counts) {
             (None, false) => {}
             (None, true) => return Err(OptimizeFileError::NoMainMass),
@@ -340,13 +305,9 @@ impl Problem {
                     question.case.start = Some(0.0);
                     question.case.speed = 0.0;
                 }
-                let pendulum = [
-                    question.case.start.unwrap_or(question.case.amplitude),
-                    question.case.speed,
-                ];
-                let moving = [main_mass.displacement, main_mass.speed]
-                    .into_iter()
-                    .chain(pendulum);
+                let pendulum =
+                    [question.case.start.unwrap_or(question.case.amplitude), question.case.speed];
+                let moving = [main_mass.displacement, main_mass.speed].into_iter().chain(pendulum);
                 if moving.into_iter().all(|value| value == 0.0) {
                     return Err(PrimaryFileError::AtRest.into());
                 }
@@ -373,14 +334,9 @@ impl Problem {
         let count = |given: Option<u32>, usual: usize| given.map_or(usual, |given| given as usize);
         options.population = count(section.population, options.population);
         options.generations = count(section.generations, options.generations);
-        options.constraint_tolerance = section
-            .constraint_tolerance
-            .unwrap_or(options.constraint_tolerance);
-        self.needs(
-            "constraint_tolerance",
-            question.density.is_some(),
-            "[limits] density",
-        )?;
+        options.constraint_tolerance =
+            section.constraint_tolerance.unwrap_or(options.constraint_tolerance);
+        self.needs("constraint_tolerance", question.density.is_some(), "[limits] density")?;
         question.seed = section.seed.unwrap_or(question.seed);
         if question.objectives.len() > 1 {
             question.runs = count(section.runs, SEVERAL_RUNS);
@@ -394,19 +350,14 @@ impl Problem {
         }
         question.runs = count(section.runs, question.runs);
         options.elite = count(section.elite, options.elite);
-        options.crossover_fraction = section
-            .crossover_fraction
-            .unwrap_or(options.crossover_fraction);
+        options.crossover_fraction =
+            section.crossover_fraction.unwrap_or(options.crossover_fraction);
         options.stall_generations = count(section.stall_generations, options.stall_generations);
-        options.function_tolerance = section
-            .function_tolerance
-            .unwrap_or(options.function_tolerance);
+        options.function_tolerance =
+            section.function_tolerance.unwrap_or(options.function_tolerance);
         self.operators(options)?;
         self.penalty(question)?;
-        let tests = [
-            ("average", StallTest::Average),
-            ("weighted", StallTest::Weighted),
-        ];
+        let tests = [("average", StallTest::Average), ("weighted", StallTest::Weighted)];
         let usual = question.genetic.stall_test;
         question.genetic.stall_test =
             named("stall_test", section.stall_test.as_ref(), usual, &tests)?;
@@ -435,12 +386,8 @@ impl Problem {
             Crossover::Heuristic(_) => Crossover::Heuristic(ratio),
             other => other,
         };
-        options.crossover = named(
-            "crossover",
-            section.crossover.as_ref(),
-            usual_crossover,
-            &crossover,
-        )?;
+        options.crossover =
+            named("crossover", section.crossover.as_ref(), usual_crossover, &crossover)?;
         let heuristic = matches!(options.crossover, Crossover::Heuristic(_));
         self.needs("crossover_ratio", heuristic, "crossover = \"heuristic\"")?;
         let rate = section.mutation_rate.unwrap_or(DEFAULT_RATE);
@@ -452,12 +399,7 @@ impl Problem {
             Mutation::BitFlips(_) => Mutation::BitFlips(rate),
             Mutation::AdaptiveFeasible => Mutation::AdaptiveFeasible,
         };
-        options.mutation = named(
-            "mutation",
-            section.mutation.as_ref(),
-            usual_mutation,
-            &mutation,
-        )?;
+        options.mutation = named("mutation", section.mutation.as_ref(), usual_mutation, &mutation)?;
         let flips = matches!(options.mutation, Mutation::BitFlips(_));
         self.needs("mutation_rate", flips, "mutation = \"bit-flip\"")?;
         Ok(())
@@ -485,25 +427,14 @@ impl Problem {
             None => Penalty::Death,
         };
         question.genetic.penalty = named("penalty", section.penalty.as_ref(), usual, &penalty)?;
-        let is_lagrangian = matches!(
-            question.genetic.penalty,
-            Penalty::AugmentedLagrangian { .. }
-        );
+        let is_lagrangian = matches!(question.genetic.penalty, Penalty::AugmentedLagrangian { .. });
         self.needs(
             "penalty",
             constrained,
             "a constraint beyond the limits of the variables, in [limits]",
         )?;
-        self.needs(
-            "initial_penalty",
-            is_lagrangian,
-            "penalty = \"augmented-lagrangian\"",
-        )?;
-        self.needs(
-            "penalty_factor",
-            is_lagrangian,
-            "penalty = \"augmented-lagrangian\"",
-        )?;
+        self.needs("initial_penalty", is_lagrangian, "penalty = \"augmented-lagrangian\"")?;
+        self.needs("penalty_factor", is_lagrangian, "penalty = \"augmented-lagrangian\"")?;
         Ok(())
     }
 
@@ -562,44 +493,26 @@ mod tests {
     #[test]
     fn an_empty_file_is_the_papers_study() {
         let (of_file, of_library) = (asked("").unwrap(), Question::default());
-        assert_eq!(
-            Question {
-                settings: of_library.settings,
-                ..of_file
-            },
-            of_library
-        );
+        assert_eq!(Question { settings: of_library.settings, ..of_file }, of_library);
     }
 
     #[test]
     fn what_would_change_nothing_is_refused() {
         for (text, words) in [
-            (
-                "[limits]\nmass = [1, 2]\n[design]\nmass = 1",
-                "[limits] mass",
-            ),
+            ("[limits]\nmass = [1, 2]\n[design]\nmass = 1", "[limits] mass"),
             (
                 "[limits]\nmodulus = [1, 2]\n[[material]]\nname = \"A\"\nmodulus = 1e9",
                 "[[material]]",
             ),
-            (
-                "[design]\nmodulus = 1e9\n[[material]]\nname = \"A\"\nmodulus = 1e9",
-                "[[material]]",
-            ),
-            (
-                "[limits]\ndensity = 7850\n[design]\nradius = 0.01",
-                "density",
-            ),
+            ("[design]\nmodulus = 1e9\n[[material]]\nname = \"A\"\nmodulus = 1e9", "[[material]]"),
+            ("[limits]\ndensity = 7850\n[design]\nradius = 0.01", "density"),
             ("[limits]\nelastic = true", "yield limit"),
             ("[sphere]\nyield = 1e9", "elastic"),
             ("[genetic]\npenalty = \"death\"", "penalty"),
             ("[genetic]\ninitial_penalty = 10", "initial_penalty"),
             ("[genetic]\nbits = 8", "bits"),
             ("[genetic]\nmutation_rate = 0.1", "bit-flip"),
-            (
-                "[genetic]\nobjective = [\"mass\", \"rest_time\"]\nelite = 2",
-                "NSGA-II",
-            ),
+            ("[genetic]\nobjective = [\"mass\", \"rest_time\"]\nelite = 2", "NSGA-II"),
             ("[genetic]\nobjective = \"rest\"", "unknown"),
         ] {
             let error = asked(text).expect_err(text).to_string();

@@ -92,12 +92,8 @@ fn long_enough(primary: &Primary) -> f64 {
     const USUAL: f64 = 300.0;
     const LONGEST: f64 = 3000.0;
     let others = primary.others();
-    let rests = [others.locked.rest_time, others.without.rest_time]
-        .into_iter()
-        .flatten();
-    rests
-        .fold(USUAL, |longest, rest| longest.max(1.2 * rest))
-        .min(LONGEST)
+    let rests = [others.locked.rest_time, others.without.rest_time].into_iter().flatten();
+    rests.fold(USUAL, |longest, rest| longest.max(1.2 * rest)).min(LONGEST)
 }
 
 impl Problem {
@@ -135,18 +131,10 @@ impl Problem {
                 _ => None,
             })
             .collect();
-        let swept: Vec<Parameter> = of_pendulum
-            .iter()
-            .map(|(parameter, _)| *parameter)
-            .collect();
+        let swept: Vec<Parameter> = of_pendulum.iter().map(|(parameter, _)| *parameter).collect();
         let starts = [Parameter::Amplitude, Parameter::Start, Parameter::Speed];
-        let hanging = Self {
-            pendulum: Pendulum {
-                start: Some(0.0),
-                ..self.pendulum
-            },
-            ..self.clone()
-        };
+        let hanging =
+            Self { pendulum: Pendulum { start: Some(0.0), ..self.pendulum }, ..self.clone() };
         let start_is_swept = starts.iter().any(|start| swept.contains(start));
         let file = match self.hangs_at_rest() && !start_is_swept {
             true => &hanging,
@@ -158,11 +146,7 @@ impl Problem {
         }
         let (model, Start { x, velocity }) = case.motion().map_err(SimulateError::from)?;
         let units = in_si(&case.design);
-        let main_mass = self
-            .primary
-            .unwrap_or_default()
-            .with(varied, &units)?
-            .main_mass()?;
+        let main_mass = self.primary.unwrap_or_default().with(varied, &units)?.main_mass()?;
         let primary = main_mass.primary(&units);
         let [displacement, speed] = main_mass.start(&units);
         let start = [x, velocity, displacement, speed];
@@ -172,11 +156,7 @@ impl Problem {
         let usual = PrimarySettings::default();
         let given = |key: &str| self.gives(&format!("[run] {key}"));
         Ok(PrimaryProblem {
-            case: PrimaryCase {
-                primary,
-                model,
-                start,
-            },
+            case: PrimaryCase { primary, model, start },
             settings: PrimarySettings {
                 duration: match given("duration") {
                     true => self.run.duration,
@@ -262,9 +242,7 @@ impl PrimarySection {
     /// A key that is missing, alone, or no such number.
     pub(super) fn main_mass(&self) -> Result<MainMass, PrimaryFileError> {
         let mass = self.mass.ok_or(PrimaryFileError::Missing("mass"))?;
-        let stiffness = self
-            .stiffness
-            .ok_or(PrimaryFileError::Missing("stiffness"))?;
+        let stiffness = self.stiffness.ok_or(PrimaryFileError::Missing("stiffness"))?;
         let alone = |key, other| Err(PrimaryFileError::Alone { key, other });
         match (self.force, self.frequency) {
             (Some(_), None) => return alone("force", "frequency"),

@@ -231,10 +231,7 @@ impl Problem {
             left,
             right,
             gamma: self.contact.gamma,
-            contact_damping: self
-                .contact
-                .given_damping()
-                .unwrap_or(ContactDamping::Mu(0.0)),
+            contact_damping: self.contact.given_damping().unwrap_or(ContactDamping::Mu(0.0)),
             at_speed: self.contact.at_speed,
             speed_unit: self.speed_unit(&[]),
             zeta: self.damping.zeta,
@@ -305,35 +302,25 @@ impl Problem {
             first.map_or(Ok(()), |key| Err(SimulateError::NoBarrier(key)))?;
         }
         if self.contact.gamma == Some(0.0) && !swept.contains(&Gamma) {
-            let first = swept
-                .iter()
-                .copied()
-                .find(|key| *key == Place || of_contact(key));
+            let first = swept.iter().copied().find(|key| *key == Place || of_contact(key));
             first.map_or(Ok(()), |key| Err(SimulateError::Zero { key, other: Gamma }))?;
         }
         if swept.contains(&FrequencyRatio) && gives(Beta) && zero(Beta, Some(self.excitation.beta))
         {
-            return Err(SimulateError::Zero {
-                key: FrequencyRatio,
-                other: Beta,
-            });
+            return Err(SimulateError::Zero { key: FrequencyRatio, other: Beta });
         }
         let of_two = [
             ("[sphere] modulus", self.sphere.modulus.is_some()),
             ("[barrier] poisson", self.barrier.poisson.is_some()),
         ];
-        if let (true, Some((key, _))) = (
-            swept.contains(&Modulus),
-            of_two.into_iter().find(|(_, given)| *given),
-        ) {
+        if let (true, Some((key, _))) =
+            (swept.contains(&Modulus), of_two.into_iter().find(|(_, given)| *given))
+        {
             return Err(SimulateError::ModulusOfTwo(key));
         }
         let without_loss = self.contact.restitution == Some(1.0) && !swept.contains(&Restitution);
         if swept.contains(&AtSpeed) && without_loss {
-            return Err(SimulateError::NoEffect {
-                key: AtSpeed,
-                other: Restitution,
-            });
+            return Err(SimulateError::NoEffect { key: AtSpeed, other: Restitution });
         }
         let without_say = |parameter: &Parameter| match parameter {
             Radius | Modulus => true,
@@ -342,12 +329,7 @@ impl Problem {
             Length | Gravity => !in_si && !at_speed_in_si && zero(Lambda, self.contact.lambda),
             _ => false,
         };
-        match swept
-            .iter()
-            .copied()
-            .find(without_say)
-            .filter(|_| gives(Gamma))
-        {
+        match swept.iter().copied().find(without_say).filter(|_| gives(Gamma)) {
             Some(key) => Err(SimulateError::NoEffect { key, other: Gamma }),
             None => Ok(()),
         }
@@ -389,10 +371,7 @@ impl Problem {
         }
         let friction = "[damping] friction";
         if self.gives(friction) && !gives(Parameter::Alpha) && !gives(Parameter::Torque) {
-            return Err(SimulateError::Alone {
-                key: friction,
-                other: Parameter::Alpha,
-            });
+            return Err(SimulateError::Alone { key: friction, other: Parameter::Alpha });
         }
         Ok(())
     }
@@ -435,13 +414,7 @@ mod tests {
     fn the_release_is_from_rest_unless_the_file_says_otherwise() {
         let start = |text: &str| asked(text).unwrap().case.motion().unwrap().1;
         assert_eq!(start(""), Start::default());
-        assert_eq!(
-            start("[pendulum]\nstart = 0.1\nspeed = -2"),
-            Start {
-                x: 0.1,
-                velocity: -2.0
-            }
-        );
+        assert_eq!(start("[pendulum]\nstart = 0.1\nspeed = -2"), Start { x: 0.1, velocity: -2.0 });
     }
 
     #[test]
@@ -459,10 +432,7 @@ mod tests {
             ("[contact]\nlambda = 0.1", &[Parameter::AtSpeed]),
             ("[damping]\nviscous = 0.1", &[Parameter::Zeta]),
             ("[damping]\nalpha = 0.1", &[Parameter::Torque]),
-            (
-                "[contact]\ngamma = 1e6\nmu_over_gamma = 0.1",
-                &[Parameter::Length],
-            ),
+            ("[contact]\ngamma = 1e6\nmu_over_gamma = 0.1", &[Parameter::Length]),
         ] {
             assert!(sweep(text, swept).is_err(), "{text} {swept:?}");
         }

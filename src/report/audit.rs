@@ -19,11 +19,8 @@ use crate::decimal::{decimal, significant};
 pub fn audit(audit: &Audit) -> Document<'_> {
     let mut sections = vec![summary(audit)];
     for verdict in Verdict::ALL {
-        let found: Vec<&Finding> = audit
-            .findings
-            .iter()
-            .filter(|finding| finding.verdict == verdict)
-            .collect();
+        let found: Vec<&Finding> =
+            audit.findings.iter().filter(|finding| finding.verdict == verdict).collect();
         if !found.is_empty() {
             sections.push(table(verdict, &found));
         }
@@ -45,11 +42,7 @@ fn summary(audit: &Audit) -> Vec<Block<'_>> {
         true => "Audit".to_owned(),
         false => audit.title.clone(),
     };
-    let unexpected = audit
-        .findings
-        .iter()
-        .filter(|finding| !finding.is_as_expected())
-        .count();
+    let unexpected = audit.findings.iter().filter(|finding| !finding.is_as_expected()).count();
     let expected = match unexpected {
         0 => "every verdict is the expected one".to_owned(),
         1 => "one verdict is not the expected one".to_owned(),
@@ -57,11 +50,7 @@ fn summary(audit: &Audit) -> Vec<Block<'_>> {
     };
     vec![
         Block::Heading(title),
-        Block::Note(format!(
-            "{}: {}",
-            claims(audit.findings.len()),
-            counts.join(", ")
-        )),
+        Block::Note(format!("{}: {}", claims(audit.findings.len()), counts.join(", "))),
         Block::Note(expected),
     ]
 }
@@ -85,12 +74,7 @@ fn table<'a>(verdict: Verdict, findings: &[&Finding]) -> Vec<Block<'a>> {
     vec![
         Block::Note(format!("verdict: {name}")),
         Block::Table {
-            head: head
-                .map(|word| Heading {
-                    text: word,
-                    latex: word,
-                })
-                .collect(),
+            head: head.map(|word| Heading { text: word, latex: word }).collect(),
             rows: findings.iter().map(row).collect(),
         },
     ]
@@ -121,18 +105,13 @@ pub(crate) fn computed(finding: &Finding) -> String {
     let Some(shown) = finding.shown() else {
         return String::new();
     };
-    let trend = matches!(
-        finding.claim.entries.first().map(|entry| &entry.stated),
-        Some(Stated::Trend(_))
-    );
+    let trend =
+        matches!(finding.claim.entries.first().map(|entry| &entry.stated), Some(Stated::Trend(_)));
     match &shown.computed[..] {
-        [_] => entry(finding, shown, 0)
-            .or_else(|| demanded(finding))
-            .unwrap_or_default(),
+        [_] => entry(finding, shown, 0).or_else(|| demanded(finding)).unwrap_or_default(),
         several if trend => {
-            let each: Vec<String> = (0..several.len())
-                .filter_map(|index| entry(finding, shown, index))
-                .collect();
+            let each: Vec<String> =
+                (0..several.len()).filter_map(|index| entry(finding, shown, index)).collect();
             each.join(", ")
         }
         several => {
@@ -145,11 +124,7 @@ pub(crate) fn computed(finding: &Finding) -> String {
 /// What a claim would need of an unknown number that may not be so.
 fn demanded(finding: &Finding) -> Option<String> {
     let demand = finding.demand?;
-    Some(format!(
-        "needs {} = {}",
-        demand.unknown.name,
-        significant(demand.value, 3)
-    ))
+    Some(format!("needs {} = {}", demand.unknown.name, significant(demand.value, 3)))
 }
 
 /// What is computed for an entry, with two digits more than are printed; in the unit of what is
@@ -176,16 +151,8 @@ pub(crate) fn entry(finding: &Finding, tried: &Tried, index: usize) -> Option<St
 /// A claim and what speaks for its verdict.
 fn story(finding: &Finding) -> Vec<Block<'_>> {
     let claim = &finding.claim;
-    let place = if claim.place.is_empty() {
-        &claim.id
-    } else {
-        &claim.place
-    };
-    let says = if claim.says.is_empty() {
-        String::new()
-    } else {
-        format!(": {}", claim.says)
-    };
+    let place = if claim.place.is_empty() { &claim.id } else { &claim.place };
+    let says = if claim.says.is_empty() { String::new() } else { format!(": {}", claim.says) };
     let mut blocks = vec![
         Block::Heading(place.clone()),
         Block::Sentence(format!("{}, {}{says}", claim.id, finding.verdict.name())),

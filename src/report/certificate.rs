@@ -134,11 +134,9 @@ impl AnyCertificate<'_> {
 
     fn block(&self) -> String {
         let (odd, highest, harmonics) = match self {
-            Self::Motion(certificate) => (
-                certificate.odd,
-                certificate.highest,
-                certificate.coefficients.len(),
-            ),
+            Self::Motion(certificate) => {
+                (certificate.odd, certificate.highest, certificate.coefficients.len())
+            }
             Self::Damped(certificate) => (
                 certificate.odd,
                 certificate.highest,
@@ -174,9 +172,7 @@ impl CertificateReport<'_> {
     /// Whether the formula is proved to be within the tolerance; `None` where no formula is judged.
     pub fn verdict(&self) -> Option<Verdict> {
         let errors = self.certified.formula.as_ref()?;
-        Some(Verdict::of(
-            errors.relative.upper <= not_above_typed(self.tolerance),
-        ))
+        Some(Verdict::of(errors.relative.upper <= not_above_typed(self.tolerance)))
     }
 }
 
@@ -216,35 +212,23 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
         ],
         None => {
             let left = certificate.left_side();
-            vec![vec![Block::Line(Cow::Owned(Line::equation(
-                left,
-                Expr::zero(),
-            )))]]
+            vec![vec![Block::Line(Cow::Owned(Line::equation(left, Expr::zero())))]]
         }
     };
-    let letter = report
-        .question
-        .map_or(coordinate(), |(solution, _)| solution.coordinate());
+    let letter = report.question.map_or(coordinate(), |(solution, _)| solution.coordinate());
     let values = report.question.map(|(_, at)| {
-        let values: Vec<String> = at
-            .iter()
-            .map(|(name, value)| format!("{name} = {value}"))
-            .collect();
+        let values: Vec<String> =
+            at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         values.join(", ")
     });
     let mut blocks = vec![Block::Heading("Proved".to_owned())];
-    let at = values
-        .filter(|values| !values.is_empty())
-        .map(|values| ("at", values));
+    let at = values.filter(|values| !values.is_empty()).map(|values| ("at", values));
     let mut facts: Vec<(&str, String)> = at.into_iter().collect();
     facts.push(("motion", certificate.motion(letter)));
     match (&report.certified.amplitude, certificate.harmonic()) {
         (Some(amplitude), Some(harmonic)) => {
-            let of = if harmonic == 1 {
-                String::new()
-            } else {
-                format!("of harmonic {harmonic}: ")
-            };
+            let of =
+                if harmonic == 1 { String::new() } else { format!("of harmonic {harmonic}: ") };
             facts.push(("amplitude", of + &enclosed(amplitude)));
             facts.push(("stability", "not proved".to_owned()));
         }
@@ -261,10 +245,9 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     }
     match &report.certified.formula {
         Some(errors) => facts.extend(of_formula(errors, report)),
-        None => facts.push((
-            "formula",
-            "none is judged: the proof is of the motion alone".to_owned(),
-        )),
+        None => {
+            facts.push(("formula", "none is judged: the proof is of the motion alone".to_owned()))
+        }
     }
     blocks.push(Block::Facts(facts));
     sections.push(blocks);
@@ -288,11 +271,7 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
                 ("block", certificate.block()),
             ]
             .into_iter()
-            .chain(
-                certificate
-                    .left_open()
-                    .map(|words| ("left open", words.to_owned())),
-            )
+            .chain(certificate.left_open().map(|words| ("left open", words.to_owned())))
             .collect(),
         ),
     ]);
@@ -307,10 +286,7 @@ fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> 
         false => value.to_string(),
     };
     // What is not proved is not said: six digits, the last one towards the inside of the range.
-    let inside = [
-        &neighbours(&validity.from, 6)[1],
-        &neighbours(&validity.to, 6)[0],
-    ];
+    let inside = [&neighbours(&validity.from, 6)[1], &neighbours(&validity.to, 6)[0]];
     let [from, to] = match inside[0] <= inside[1] {
         true => inside.map(|end| significant_fraction(end, 6)),
         false => [&validity.from, &validity.to].map(ToString::to_string),
@@ -318,10 +294,9 @@ fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> 
     let within = percent(tolerance);
     let beyond = match &validity.beyond {
         Beyond::Asked => None,
-        Beyond::Further(place) => Some(format!(
-            "omega is off by more at A = {}, proved",
-            amplitude(place)
-        )),
+        Beyond::Further(place) => {
+            Some(format!("omega is off by more at A = {}, proved", amplitude(place)))
+        }
         Beyond::Open(place) => Some(format!(
             "at A = {} omega is neither proved to be within nor beyond",
             amplitude(place)
@@ -329,10 +304,7 @@ fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> 
         Beyond::Unproved(place, reason) => Some(format!("at A = {}: {reason}", amplitude(place))),
         Beyond::Stopped => Some("stopped before the end".to_owned()),
     };
-    let proved = format!(
-        "omega within {within} % for every A from {} to {}",
-        from, to
-    );
+    let proved = format!("omega within {within} % for every A from {} to {}", from, to);
     let proved = match validity.intervals {
         0 => "omega is not proved to be within the tolerance at the first amplitude".to_owned(),
         _ => proved,
@@ -346,16 +318,9 @@ fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> 
 }
 
 fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str, String)> {
-    let letter = report
-        .question
-        .map_or(coordinate(), |(solution, _)| solution.coordinate());
-    let formula = report
-        .certificate
-        .formula()
-        .filter(|_| report.question.is_none());
-    let formula = formula
-        .map(|formula| numbers_of(formula, report))
-        .unwrap_or_default();
+    let letter = report.question.map_or(coordinate(), |(solution, _)| solution.coordinate());
+    let formula = report.certificate.formula().filter(|_| report.question.is_none());
+    let formula = formula.map(|formula| numbers_of(formula, report)).unwrap_or_default();
     let copies = match report.certified.copies {
         1 => None,
         copies => Some((
@@ -366,11 +331,7 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
         )),
     };
     let within = percent(report.tolerance);
-    let what = if errors.amplitude.is_some() {
-        "amplitude"
-    } else {
-        "omega"
-    };
+    let what = if errors.amplitude.is_some() { "amplitude" } else { "omega" };
     let verdict = match report.verdict() {
         Some(Verdict::Pass) => format!("pass ({what} within {within} %, proved)"),
         _ if errors.relative.lower > report.tolerance => {
@@ -388,15 +349,9 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
             verdict,
         ],
         None => vec![
-            (
-                "error of the formula's omega",
-                between(errors.frequency, ""),
-            ),
+            ("error of the formula's omega", between(errors.frequency, "")),
             ("relative error", between_percent(errors.relative)),
-            (
-                "largest deviation at one phase",
-                between(errors.deviation, ""),
-            ),
+            ("largest deviation at one phase", between(errors.deviation, "")),
             (
                 "deviation in time",
                 format!(
@@ -426,19 +381,13 @@ fn numbers_of(formula: &JudgedFormula, report: &CertificateReport) -> Vec<(&'sta
     let law = report.certified.law_is_held.then_some(("formula", law));
     let bits = report.certificate.bits();
     let number = |units: &Integer| Rational::new(units.clone(), Integer::from(1) << bits);
-    let omega = report
-        .certified
-        .formula
-        .filter(|errors| errors.amplitude.is_none());
+    let omega = report.certified.formula.filter(|errors| errors.amplitude.is_none());
     let omega = omega.map(|_| {
         let omega = significant_fraction(&rounded_fraction(&number(&formula.frequency), 12), 12);
         ("omega of the formula", omega)
     });
     let displacement = displacement([&formula.coefficients, &formula.sines], number);
-    law.into_iter()
-        .chain(omega)
-        .chain([("X of the formula", displacement)])
-        .collect()
+    law.into_iter().chain(omega).chain([("X of the formula", displacement)]).collect()
 }
 
 /// The largest harmonics of a motion, rounded, and how many more there are.
@@ -450,22 +399,15 @@ fn displacement(units: [&[Integer]; 2], number: impl Fn(&Integer) -> Rational) -
     for k in 0..cosines.len().max(sines.len()) {
         for (name, list) in [("cos", &cosines), ("sin", &sines)] {
             waves.extend(
-                list.get(k)
-                    .filter(|value| !value.is_zero())
-                    .map(|value| (k, name, value.clone())),
+                list.get(k).filter(|value| !value.is_zero()).map(|value| (k, name, value.clone())),
             );
         }
     }
     let mut sizes: Vec<Rational> = waves.iter().map(|(.., value)| value.abs()).collect();
     sizes.sort_by(|one, other| other.cmp(one));
-    let smallest = sizes
-        .get(MOST - 1)
-        .or(sizes.last())
-        .cloned()
-        .unwrap_or_default();
-    let (shown, others): (Vec<_>, Vec<_>) = waves
-        .into_iter()
-        .partition(|(.., value)| value.abs() >= smallest);
+    let smallest = sizes.get(MOST - 1).or(sizes.last()).cloned().unwrap_or_default();
+    let (shown, others): (Vec<_>, Vec<_>) =
+        waves.into_iter().partition(|(.., value)| value.abs() >= smallest);
     let term = |(k, name, value): &(usize, &str, Rational)| {
         let size = significant_fraction(&rounded_fraction(&value.abs(), 6), 6);
         let wave = match k {
@@ -524,11 +466,7 @@ pub(super) fn enclosed(enclosure: &Enclosure) -> String {
     /// More digits are not written, however many are known.
     const MOST: i32 = 34;
     let radius = enclosure.radius.value();
-    let known = if radius > 0.0 {
-        -radius.log10().floor()
-    } else {
-        f64::from(MOST)
-    };
+    let known = if radius > 0.0 { -radius.log10().floor() } else { f64::from(MOST) };
     let decimals = usize::try_from((known as i32).clamp(0, MOST)).unwrap_or(0);
     let text = plain_decimal(&enclosure.middle, decimals);
     let rounding = (&enclosure.middle - plain_fraction(&enclosure.middle, decimals)).abs();
@@ -561,10 +499,7 @@ fn between_exactly([lower, upper]: [Option<Rational>; 2], unit: &str) -> String 
     const DIGITS: [usize; 2] = [6, 4];
     let lower = lower.unwrap_or_default();
     let Some(upper) = upper else {
-        return format!(
-            "at least {}{unit}",
-            significant_fraction(&neighbours(&lower, 4)[0], 4)
-        );
+        return format!("at least {}{unit}", significant_fraction(&neighbours(&lower, 4)[0], 4));
     };
     if upper.is_zero() {
         return "none".to_owned();
@@ -573,10 +508,7 @@ fn between_exactly([lower, upper]: [Option<Rational>; 2], unit: &str) -> String 
     let is_small = upper < Rational::new(1.into(), 1_000_000_000.into());
     let agree = rounded_fraction(&lower, DIGITS[0]) == rounded_fraction(&upper, DIGITS[0]);
     let digits = DIGITS[usize::from(!agree)];
-    let [below, above] = [
-        &neighbours(&lower, digits)[0],
-        &neighbours(&upper, digits)[1],
-    ];
+    let [below, above] = [&neighbours(&lower, digits)[0], &neighbours(&upper, digits)[1]];
     let text = |end: &Rational| format!("{}{unit}", significant_fraction(end, digits));
     match below == above {
         true => text(above),

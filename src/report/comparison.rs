@@ -20,9 +20,7 @@ pub fn comparison(comparison: &Comparison) -> Document<'_> {
     let truth = Block::Truth {
         equation: &comparison.equation,
         at: &comparison.at,
-        frequency: comparison
-            .true_frequency
-            .ok_or_else(|| reason().unwrap_or_default()),
+        frequency: comparison.true_frequency.ok_or_else(|| reason().unwrap_or_default()),
     };
     let methods = Block::Methods {
         rows: comparison.rows.iter().map(method_row).collect(),
@@ -39,10 +37,7 @@ pub fn comparison(comparison: &Comparison) -> Document<'_> {
     without.dedup();
     let mut sections = vec![vec![truth], vec![methods]];
     if !without.is_empty() {
-        sections.push(vec![Block::Entries {
-            heading: "No frequency",
-            entries: without,
-        }]);
+        sections.push(vec![Block::Entries { heading: "No frequency", entries: without }]);
     }
     if !comparison.refused.is_empty() {
         sections.push(vec![Block::Refused(&comparison.refused)]);
@@ -52,11 +47,7 @@ pub fn comparison(comparison: &Comparison) -> Document<'_> {
     }
     let answer = comparison.rows.first().map(|row| &row.solution);
     let convention = answer.map(|answer| answer.amplitude.in_words(answer.coordinate()));
-    let over = match comparison
-        .rows
-        .iter()
-        .any(|row| row.solution.slow().is_some())
-    {
+    let over = match comparison.rows.iter().any(|row| row.solution.slow().is_some()) {
         true => "all of that time, of the amplitude at the start",
         false => "one period, of the amplitude",
     };

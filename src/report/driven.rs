@@ -32,10 +32,7 @@ pub(super) fn driven<'a>(
         }
         None => sections.push(motion_in_time(solution, response)),
     }
-    let notes = solution
-        .validity
-        .iter()
-        .map(|note| Block::Note(note.to_string()));
+    let notes = solution.validity.iter().map(|note| Block::Note(note.to_string()));
     let heading = Block::Heading("Validity".to_owned());
     sections.push(std::iter::once(heading).chain(notes).collect());
     if let Some(verification) = verification {
@@ -59,16 +56,11 @@ fn said<'a>(words: &str, left: impl Into<Formula>, right: impl Into<Formula>) ->
 /// The motion as a function of time.
 fn motion_in_time<'a>(solution: &'a Solution, response: &Response) -> Vec<Block<'a>> {
     let heading = match solution.equilibrium.is_zero() {
-        true => format!(
-            "Released at rest from {} = {AMPLITUDE}",
-            solution.coordinate()
-        ),
+        true => format!("Released at rest from {} = {AMPLITUDE}", solution.coordinate()),
         false => format!("Released at rest at the distance {AMPLITUDE} from the equilibrium"),
     };
-    let mut blocks = vec![
-        Block::Heading(heading),
-        equation(solution.coordinate(), response.motion.clone()),
-    ];
+    let mut blocks =
+        vec![Block::Heading(heading), equation(solution.coordinate(), response.motion.clone())];
     blocks.extend(solution.definitions.iter().map(Block::Definition));
     blocks
 }
@@ -94,11 +86,7 @@ fn steady_motions<'a>(solution: &'a Solution, response: &Response) -> Vec<Block<
     let detuning = detuning(solution);
     let polynomial = |polynomial: &Polynomial| Expr::from(polynomial);
     if let Some(relation) = &response.relation {
-        blocks.push(said(
-            "frequency response",
-            Expr::zero(),
-            polynomial(relation),
-        ));
+        blocks.push(said("frequency response", Expr::zero(), polynomial(relation)));
     }
     if let (Some(branches), Some(detuning)) = (&response.branches, detuning) {
         let centre = polynomial(&branches.centre);
@@ -111,26 +99,14 @@ fn steady_motions<'a>(solution: &'a Solution, response: &Response) -> Vec<Block<
         }
     }
     if let Some(closed) = &response.closed {
-        blocks.push(said(
-            "frequency response",
-            Expr::zero(),
-            closed.relation.clone(),
-        ));
+        blocks.push(said("frequency response", Expr::zero(), closed.relation.clone()));
         if let (Some(detuning), Ok(width)) = (detuning, closed.width_squared.sqrt()) {
-            blocks.push(said(
-                "solved for the detuning",
-                detuning,
-                &closed.centre - &width,
-            ));
+            blocks.push(said("solved for the detuning", detuning, &closed.centre - &width));
             blocks.push(said("and", detuning, &closed.centre + &width));
         }
     }
     if let Some(frequency) = solution.law.frequency() {
-        blocks.push(said(
-            "backbone",
-            Symbol::new("omega"),
-            polynomial(frequency),
-        ));
+        blocks.push(said("backbone", Symbol::new("omega"), polynomial(frequency)));
     }
     if let Some(form) = solution.law.closed_form() {
         blocks.push(said("backbone", Symbol::new("omega"), form.value.clone()));
@@ -161,27 +137,14 @@ fn detuning(solution: &Solution) -> Option<Symbol> {
 /// The values at which a formula was judged, in running text.
 fn values_in_words(verification: &Verification) -> String {
     let at = verification.at.iter();
-    let at: Vec<String> = at
-        .map(|(name, value)| format!("{name} = {value}"))
-        .collect();
-    if at.is_empty() {
-        String::new()
-    } else {
-        format!(" at {}", at.join(", "))
-    }
+    let at: Vec<String> = at.map(|(name, value)| format!("{name} = {value}")).collect();
+    if at.is_empty() { String::new() } else { format!(" at {}", at.join(", ")) }
 }
 
 fn judged_in_time<'a>(verification: &Verification, tolerance: f64) -> Vec<Block<'a>> {
     let at = values_in_words(verification);
-    let mut blocks = vec![Block::Heading(format!(
-        "Judged against the true motion{at}"
-    ))];
-    blocks.extend(
-        verification
-            .ranges
-            .iter()
-            .map(|range| Block::Note(range.text.clone())),
-    );
+    let mut blocks = vec![Block::Heading(format!("Judged against the true motion{at}"))];
+    blocks.extend(verification.ranges.iter().map(|range| Block::Note(range.text.clone())));
     /// Below it is rounding, and called that.
     const ROUNDING: f64 = 1e-9;
     let percent = |part: Option<f64>| match part {
@@ -204,9 +167,7 @@ fn judged_in_time<'a>(verification: &Verification, tolerance: f64) -> Vec<Block<
 
 fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) -> Vec<Block<'a>> {
     let at = values_in_words(verification);
-    let mut blocks = vec![Block::Heading(format!(
-        "Steady motions{at}, beside the true ones"
-    ))];
+    let mut blocks = vec![Block::Heading(format!("Steady motions{at}, beside the true ones"))];
     if verification.steady_states.is_empty() {
         blocks.push(Block::Note(
             "none: to this order the slow equations have no steady motion at these values"
@@ -230,10 +191,7 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
             rows: verification.steady_states.iter().map(row).collect(),
         });
     }
-    let stable = verification
-        .steady_states
-        .iter()
-        .filter(|judged| judged.state.is_stable());
+    let stable = verification.steady_states.iter().filter(|judged| judged.state.is_stable());
     let count = stable.count();
     let verdict = verification.verdict.name();
     let within = significant(100.0 * tolerance, 3);
@@ -250,14 +208,11 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
         )));
         return blocks;
     }
-    let far_off = verification
-        .max_deviation
-        .filter(|deviation| *deviation > tolerance);
+    let far_off = verification.max_deviation.filter(|deviation| *deviation > tolerance);
     let motion = match (verification.verdict, far_off) {
-        (Verdict::Pass, Some(deviation)) => format!(
-            "; its motion is off by {} %",
-            significant(100.0 * deviation, 3)
-        ),
+        (Verdict::Pass, Some(deviation)) => {
+            format!("; its motion is off by {} %", significant(100.0 * deviation, 3))
+        }
         _ => String::new(),
     };
     blocks.push(Block::Note(format!(
@@ -296,17 +251,13 @@ fn quality(verification: &Verification) -> Option<String> {
 fn row(judged: &JudgedState) -> Vec<String> {
     let yes = |stable: bool| if stable { "yes" } else { "no" }.to_owned();
     let part = |part: Option<f64>| {
-        part.map_or_else(String::new, |part| {
-            format!("{} %", significant(100.0 * part, 3))
-        })
+        part.map_or_else(String::new, |part| format!("{} %", significant(100.0 * part, 3)))
     };
     vec![
         decimal(judged.state.amplitude),
         decimal(judged.state.phase),
         yes(judged.state.is_stable()),
-        judged
-            .true_amplitude
-            .map_or_else(|| "none found".to_owned(), decimal),
+        judged.true_amplitude.map_or_else(|| "none found".to_owned(), decimal),
         part(judged.relative_error),
         part(judged.max_deviation),
         judged.true_stable.map_or_else(String::new, yes),

@@ -131,11 +131,8 @@ fn readings(table: &Table) -> Vec<Block<'static>> {
         )));
     }
     let worst = |row: &&TableRow| row.printed.is_some() && row.laws.speed != 0.0;
-    if let Some(row) = table
-        .rows
-        .iter()
-        .filter(worst)
-        .max_by(|a, b| a.laws.speed.total_cmp(&b.laws.speed))
+    if let Some(row) =
+        table.rows.iter().filter(worst).max_by(|a, b| a.laws.speed.total_cmp(&b.laws.speed))
         && let Some([_, error]) = row.printed
     {
         blocks.push(Block::Note(format!(
@@ -151,18 +148,9 @@ fn readings(table: &Table) -> Vec<Block<'static>> {
 fn first_cycle(alpha: f64, amplitude: f64, near_rest: &NearRest) -> Vec<Block<'static>> {
     let cycle = near_rest.first_cycle;
     let entries = [
-        (
-            "largest error of the force",
-            "100 % of alpha, wherever the motion turns back".to_owned(),
-        ),
-        (
-            "error above 1 %",
-            format!("{} of the time", percent(cycle.over_one_percent)),
-        ),
-        (
-            "error above 10 %",
-            format!("{} of the time", percent(cycle.over_ten_percent)),
-        ),
+        ("largest error of the force", "100 % of alpha, wherever the motion turns back".to_owned()),
+        ("error above 1 %", format!("{} of the time", percent(cycle.over_one_percent))),
+        ("error above 10 %", format!("{} of the time", percent(cycle.over_ten_percent))),
         ("work over that of sgn", decimal(cycle.work_share)),
         (
             "the same by formula",
@@ -188,31 +176,14 @@ fn stop(alpha: f64, near_rest: &NearRest) -> Vec<Block<'static>> {
     let [x, velocity] = near_rest.meanwhile;
     let entries = [
         ("time", decimal(stop.t)),
-        (
-            "place",
-            format!(
-                "{}   after {} half swings",
-                decimal(stop.x),
-                near_rest.half_swings
-            ),
-        ),
+        ("place", format!("{}   after {} half swings", decimal(stop.x), near_rest.half_swings)),
         (
             "sin of it",
-            format!(
-                "{}, no more than alpha = {}",
-                decimal(stop.x.sin().abs()),
-                decimal(alpha)
-            ),
+            format!("{}, no more than alpha = {}", decimal(stop.x.sin().abs()), decimal(alpha)),
         ),
-        (
-            "the arctangent then",
-            format!("x = {}, x' = {}", decimal(x), significant(velocity, 4)),
-        ),
+        ("the arctangent then", format!("x = {}, x' = {}", decimal(x), significant(velocity, 4))),
     ];
-    vec![
-        Block::Heading("Coulomb's law stops it for good".to_owned()),
-        Block::Facts(entries.into()),
-    ]
+    vec![Block::Heading("Coulomb's law stops it for good".to_owned()), Block::Facts(entries.into())]
 }
 
 fn creep(alpha: f64, creep: &Creep) -> Vec<Block<'static>> {
@@ -225,29 +196,15 @@ fn creep(alpha: f64, creep: &Creep) -> Vec<Block<'static>> {
         false => "c/2",
     };
     let mut entries = vec![
-        (
-            "damping near rest",
-            format!("c = 200*alpha/pi = {}", decimal(creep.damping)),
-        ),
-        (
-            "rate of the linear equation",
-            format!("{}   {linear}", decimal(creep.rate_linear)),
-        ),
+        ("damping near rest", format!("c = 200*alpha/pi = {}", decimal(creep.damping))),
+        ("rate of the linear equation", format!("{}   {linear}", decimal(creep.rate_linear))),
         (
             "rate of the simulation",
-            creep
-                .rate
-                .map_or("none: it is at rest there".to_owned(), decimal),
+            creep.rate.map_or("none: it is at rest there".to_owned(), decimal),
         ),
     ];
     if let Some(rate) = creep.rate_overdamped {
-        entries.insert(
-            1,
-            (
-                "rate without inertia",
-                format!("{}   pi/(200*alpha)", decimal(rate)),
-            ),
-        );
+        entries.insert(1, ("rate without inertia", format!("{}   pi/(200*alpha)", decimal(rate))));
     }
     let mut head = vec![
         heading("t", "$t$"),
@@ -265,10 +222,7 @@ fn creep(alpha: f64, creep: &Creep) -> Vec<Block<'static>> {
     let mut blocks = vec![
         Block::Heading(format!("Near rest, alpha = {}: {words}", decimal(alpha))),
         Block::Facts(entries),
-        Block::Table {
-            head,
-            rows: rows.collect(),
-        },
+        Block::Table { head, rows: rows.collect() },
     ];
     if creep.creeps {
         blocks.push(Block::Note(
@@ -284,10 +238,8 @@ fn rest_times(near_rest: &NearRest) -> Vec<Block<'static>> {
         Ok(time) => decimal(time),
         Err(reason) => format!("none: {reason}"),
     };
-    let mut entries = vec![
-        ("Coulomb's law", written(times.coulomb)),
-        ("arctangent", written(times.arctangent)),
-    ];
+    let mut entries =
+        vec![("Coulomb's law", written(times.coulomb)), ("arctangent", written(times.arctangent))];
     if let (Some(difference), Ok(time)) = (times.difference(), times.coulomb) {
         entries.push((
             "difference",

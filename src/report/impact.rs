@@ -27,10 +27,7 @@ use crate::symbol::Symbol;
 /// ```
 pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
     let mut sections = vec![
-        vec![
-            Block::QuestionAsTyped(&impact.equation),
-            Block::Heading(start(impact)),
-        ],
+        vec![Block::QuestionAsTyped(&impact.equation), Block::Heading(start(impact))],
         asked(
             &impact.setup,
             impact.letters,
@@ -38,12 +35,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
             impact.damping,
         ),
     ];
-    sections.extend(
-        impact
-            .free_swing
-            .as_ref()
-            .map(|law| free_swing(impact, law)),
-    );
+    sections.extend(impact.free_swing.as_ref().map(|law| free_swing(impact, law)));
     for column in &impact.columns {
         sections.push(match (column.reading, &impact.flight) {
             (Reading::Derived, Some(flight)) => derived(impact, column, flight),
@@ -51,15 +43,10 @@ pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
         });
     }
     sections.extend(impact.no_paper.as_ref().map(|reason| {
-        vec![Block::Heading(format!(
-            "The paper's reading does not apply: {reason}"
-        ))]
+        vec![Block::Heading(format!("The paper's reading does not apply: {reason}"))]
     }));
     if impact.flight.is_none() {
-        let tried = impact
-            .tried
-            .iter()
-            .map(|attempt| Block::Detail(attempted(attempt)));
+        let tried = impact.tried.iter().map(|attempt| Block::Detail(attempted(attempt)));
         let heading = Block::Heading("No derived motion".to_owned());
         sections.push(std::iter::once(heading).chain(tried).collect());
     }
@@ -114,31 +101,15 @@ pub(super) fn asked(
     [equilibrium, turning_point]: [f64; 2],
     damping: f64,
 ) -> Vec<Block<'_>> {
-    let value = |name: Symbol, value, source| Block::Value {
-        name,
-        value,
-        source,
-    };
+    let value = |name: Symbol, value, source| Block::Value { name, value, source };
     let mut blocks = Vec::new();
     if is_minus_amplitude(setup, equilibrium) {
-        blocks.push(value(
-            AmplitudeConvention::Initial.symbol(),
-            -turning_point,
-            None,
-        ));
+        blocks.push(value(AmplitudeConvention::Initial.symbol(), -turning_point, None));
     }
     blocks.push(value(letters.barrier, setup.barrier, None));
     let gamma = letters.stiffness;
-    if setup
-        .force
-        .as_ref()
-        .is_none_or(|force| force.contains(gamma))
-    {
-        blocks.push(value(
-            gamma,
-            setup.stiffness,
-            Some(setup.stiffness_source.as_str()),
-        ));
+    if setup.force.as_ref().is_none_or(|force| force.contains(gamma)) {
+        blocks.push(value(gamma, setup.stiffness, Some(setup.stiffness_source.as_str())));
     }
     blocks.extend(setup.loss.map(|loss| {
         let source = match loss {
@@ -149,13 +120,8 @@ pub(super) fn asked(
         };
         value(letters.damping, damping, Some(source))
     }));
-    blocks.extend(
-        setup
-            .values
-            .numbers()
-            .into_iter()
-            .map(|(name, number)| value(name, number, None)),
-    );
+    blocks
+        .extend(setup.values.numbers().into_iter().map(|(name, number)| value(name, number, None)));
     blocks
 }
 
@@ -166,16 +132,9 @@ fn free_swing<'a>(impact: &Impact, law: &'a Solution) -> Vec<Block<'a>> {
         law.order,
         law.small_parameter
     );
-    let mut blocks = vec![
-        Block::Heading(heading),
-        Block::Detail(law.equation.to_string()),
-    ];
+    let mut blocks = vec![Block::Heading(heading), Block::Detail(law.equation.to_string())];
     blocks.extend(first_law(law));
-    blocks.extend(
-        impact
-            .frequency()
-            .map(|frequency| omega(frequency, "A", impact.amplitude())),
-    );
+    blocks.extend(impact.frequency().map(|frequency| omega(frequency, "A", impact.amplitude())));
     blocks
 }
 
@@ -189,11 +148,7 @@ fn first_law(solution: &Solution) -> Vec<Block<'_>> {
 }
 
 fn omega<'a>(frequency: f64, symbol: &str, amplitude: f64) -> Block<'a> {
-    Block::Detail(format!(
-        "omega   = {}   ({symbol} = {})",
-        decimal(frequency),
-        decimal(amplitude)
-    ))
+    Block::Detail(format!("omega   = {}   ({symbol} = {})", decimal(frequency), decimal(amplitude)))
 }
 
 /// A reading by the paper's way.
@@ -204,15 +159,9 @@ fn papers<'a>(impact: &Impact, column: &'a Column) -> Vec<Block<'a>> {
             "The paper's way: every join continuous, contact speed from the one-term motion"
                 .to_owned()
         }
-        _ => format!(
-            "With the contact speed from the energy, v = {}",
-            energy_speed(impact)
-        ),
+        _ => format!("With the contact speed from the energy, v = {}", energy_speed(impact)),
     };
-    let mut blocks = vec![Block::Reading {
-        reading: column.reading,
-        words,
-    }];
+    let mut blocks = vec![Block::Reading { reading: column.reading, words }];
     blocks.extend(column.phases.fitted.map(|fitted| Block::Fitted {
         fitted,
         barrier: setup.barrier,
@@ -223,9 +172,7 @@ fn papers<'a>(impact: &Impact, column: &'a Column) -> Vec<Block<'a>> {
     blocks.extend(phases(impact, column));
     if column.phases.velocity_jump != 0.0 {
         let jump = decimal(column.phases.velocity_jump);
-        blocks.push(Block::Detail(format!(
-            "the velocity jumps by {jump} at either join"
-        )));
+        blocks.push(Block::Detail(format!("the velocity jumps by {jump} at either join")));
     }
     blocks
 }
@@ -260,37 +207,26 @@ fn derived<'a>(impact: &Impact, column: &'a Column, flight: &'a Flight) -> Vec<B
         words: format!("Derived, with all harmonics: {}", solution.title()),
     }];
     let setup = &impact.setup;
-    let passes = |attempt: &Attempt| {
-        attempt
-            .error
-            .as_ref()
-            .is_ok_and(|error| *error <= setup.tolerance)
-    };
+    let passes =
+        |attempt: &Attempt| attempt.error.as_ref().is_ok_and(|error| *error <= setup.tolerance);
     let [it, that, none] = match impact.contact_is_exact() {
         true => ["it", "that", "none"],
         false => ["its approach", "whose approach", "no approach"],
     };
-    let chosen = match (
-        setup.order.is_some() || setup.degrees.is_some(),
-        impact.tried.last(),
-    ) {
+    let chosen = match (setup.order.is_some() || setup.degrees.is_some(), impact.tried.last()) {
         (true, _) | (_, None) => None,
         (false, Some(last)) if passes(last) => Some(match impact.tried.len() {
             1 => format!("the first that was tried, and {it} passes"),
             count => format!("the first of {count} tried {that} passes"),
         }),
-        (false, Some(_)) => Some(format!(
-            "the closest of {} tried; {none} passes",
-            impact.tried.len()
-        )),
+        (false, Some(_)) => {
+            Some(format!("the closest of {} tried; {none} passes", impact.tried.len()))
+        }
     };
     blocks.extend(chosen.map(Block::Detail));
     let x = solution.coordinate();
     if flight.is_turned {
-        blocks.push(Block::Detail(format!(
-            "{}   (the equation of -{x})",
-            solution.equation
-        )));
+        blocks.push(Block::Detail(format!("{}   (the equation of -{x})", solution.equation)));
     }
     blocks.extend(first_law(solution));
     blocks.push(omega(
@@ -312,12 +248,7 @@ fn derived<'a>(impact: &Impact, column: &'a Column, flight: &'a Flight) -> Vec<B
             depth.deviation
         )));
     }
-    blocks.extend(
-        impact
-            .contact
-            .iter()
-            .flat_map(|contact| law_of_contact(impact, contact)),
-    );
+    blocks.extend(impact.contact.iter().flat_map(|contact| law_of_contact(impact, contact)));
     blocks
 }
 
@@ -355,11 +286,7 @@ fn law_of_contact<'a>(impact: &Impact, contact: &DerivedContact) -> Vec<Block<'a
             let product = contact.damping * contact.speed;
             let small = 1.0 - 2.0 / 3.0 * product;
             let off = 100.0 * (small / contact.restitution - 1.0).abs();
-            let off = if off < 10.0 {
-                significant(off, 2)
-            } else {
-                format!("{off:.0}")
-            };
+            let off = if off < 10.0 { significant(off, 2) } else { format!("{off:.0}") };
             let (stiffness, exponent) = (decimal(contact.stiffness), decimal(contact.exponent));
             let damping = impact.letters.damping;
             vec![
@@ -405,25 +332,16 @@ fn contact_laws(impact: &Impact) -> Vec<Vec<Block<'_>>> {
         Some((row.law.to_string(), reason.to_string()))
     });
     let refused: Vec<_> = refused.collect();
-    let mut sections = vec![vec![
-        Block::Heading(heading),
-        Block::ContactLaws {
-            rows: &impact.contact_laws,
-        },
-    ]];
+    let mut sections =
+        vec![vec![Block::Heading(heading), Block::ContactLaws { rows: &impact.contact_laws }]];
     if !refused.is_empty() {
-        sections.push(vec![Block::Entries {
-            heading: "Laws that do not apply",
-            entries: refused,
-        }]);
+        sections.push(vec![Block::Entries { heading: "Laws that do not apply", entries: refused }]);
     }
     sections
 }
 
 fn attempted(attempt: &Attempt) -> String {
-    let order = attempt
-        .order
-        .map_or(String::new(), |order| format!(" to order {order}"));
+    let order = attempt.order.map_or(String::new(), |order| format!(" to order {order}"));
     let outcome = match &attempt.error {
         Ok(error) => format!("largest error {} %", decimal(100.0 * error)),
         Err(reason) => reason.clone(),
@@ -450,26 +368,14 @@ fn judged(impact: &Impact, tolerance: f64) -> Vec<Block<'_>> {
                 .iter()
                 .map(|column| column.deviation.total / amplitude)
                 .collect(),
-            shapes: impact
-                .columns
-                .iter()
-                .map(|column| impact.deviations(column))
-                .collect(),
+            shapes: impact.columns.iter().map(|column| impact.deviations(column)).collect(),
         },
         Block::Detail(format!(
             "Runge-Kutta keeps the energy{} to {drift:e} of the kinetic energy at touch",
-            if impact.setup.loss.is_some() {
-                " of the flights"
-            } else {
-                ""
-            }
+            if impact.setup.loss.is_some() { " of the flights" } else { "" }
         )),
         Block::Verdicts {
-            verdicts: columns
-                .iter()
-                .copied()
-                .zip(impact.verdicts(tolerance))
-                .collect(),
+            verdicts: columns.iter().copied().zip(impact.verdicts(tolerance)).collect(),
             tolerance,
         },
     ];
@@ -507,11 +413,8 @@ fn in_si_units<'a>(impact: &Impact, si: &SiImpact, tolerance: f64) -> Vec<Block<
         "In SI units: m L^2 x'' + m g L sin(x) {sign} k L (L ({inside}))^(3/2){damped} H({inside}) = 0"
     ))];
     blocks.extend(formulas(impact, si));
-    let mut rows: Vec<(Quantity, &str)> = si
-        .rows()
-        .into_iter()
-        .map(|(row, unit)| (row.clone(), unit))
-        .collect();
+    let mut rows: Vec<(Quantity, &str)> =
+        si.rows().into_iter().map(|(row, unit)| (row.clone(), unit)).collect();
     let over_the_printed = paper::over_contact_time(si);
     rows.push((over_the_printed.clone(), ""));
     blocks.push(Block::SiQuantities {
@@ -538,47 +441,28 @@ fn in_si_units<'a>(impact: &Impact, si: &SiImpact, tolerance: f64) -> Vec<Block<
     };
     blocks.push(Block::Detail(peak.to_owned()));
     blocks.push(Block::Note(printed(impact, &over_the_printed, tolerance)));
-    blocks.extend(
-        si.yield_checks()
-            .iter()
-            .map(|check| Block::Note(yielding(check))),
-    );
+    blocks.extend(si.yield_checks().iter().map(|check| Block::Note(yielding(check))));
     blocks
 }
 
 /// Mass to gamma, each with its formula.
 fn formulas<'a>(impact: &Impact, si: &SiImpact) -> Vec<Block<'a>> {
     let units = &si.units;
-    let value = |name, formula, value, unit, words| Block::SiValue {
-        name,
-        formula,
-        value,
-        unit,
-        words,
-    };
+    let value =
+        |name, formula, value, unit, words| Block::SiValue { name, formula, value, unit, words };
     let mut blocks = vec![
         value("m", None, units.mass, "kg", "the mass"),
-        value(
-            "L",
-            None,
-            units.length,
-            "m",
-            "the length, and the lever arm l of the contact",
-        ),
+        value("L", None, units.length, "m", "the length, and the lever arm l of the contact"),
         value("g", None, units.gravity, "m/s^2", "gravity"),
     ];
     blocks.extend(
-        units
-            .radius
-            .map(|radius| value("R", None, radius, "m", "the radius of the sphere")),
+        units.radius.map(|radius| value("R", None, radius, "m", "the radius of the sphere")),
     );
     if let Some(modulus) = units.modulus {
         let (bodies, formula, words) = match modulus {
-            Modulus::BarrierAlone(_) => (
-                vec![],
-                None,
-                "the modulus of the barrier alone, equation (3)",
-            ),
+            Modulus::BarrierAlone(_) => {
+                (vec![], None, "the modulus of the barrier alone, equation (3)")
+            }
             Modulus::RigidSphere(barrier) => (
                 vec![
                     ("E1", barrier.modulus, "Pa", "the barrier"),
@@ -617,28 +501,10 @@ fn formulas<'a>(impact: &Impact, si: &SiImpact) -> Vec<Block<'a>> {
             "N/m^(3/2)",
             "the stiffness of the contact",
         ),
-        value(
-            "T",
-            Some("sqrt(L/g)"),
-            units.time(),
-            "s",
-            "the unit of time",
-        ),
-        value(
-            "V",
-            Some("sqrt(g*L)"),
-            units.speed(),
-            "m/s",
-            "the unit of speed",
-        ),
+        value("T", Some("sqrt(L/g)"), units.time(), "s", "the unit of time"),
+        value("V", Some("sqrt(g*L)"), units.speed(), "m/s", "the unit of speed"),
         value("gamma", of_gamma, impact.setup.stiffness, "", source),
-        value(
-            "beta",
-            Some("(Ae/L)*(Omega/omega)^2"),
-            0.0,
-            "",
-            "the pivot is at rest",
-        ),
+        value("beta", Some("(Ae/L)*(Omega/omega)^2"), 0.0, "", "the pivot is at rest"),
     ]);
     blocks
 }
@@ -649,10 +515,8 @@ fn printed(impact: &Impact, over_the_printed: &Quantity, tolerance: f64) -> Stri
     let each: Vec<(&str, f64)> = std::iter::once(("Runge-Kutta", over_the_printed.runge_kutta))
         .chain(readings.zip(over_the_printed.closed_forms.iter().copied()))
         .collect();
-    let ratios: Vec<String> = each
-        .iter()
-        .map(|(name, ratio)| format!("{name} {}", significant(*ratio, 4)))
-        .collect();
+    let ratios: Vec<String> =
+        each.iter().map(|(name, ratio)| format!("{name} {}", significant(*ratio, 4))).collect();
     let reproduced: Vec<&str> = each
         .iter()
         .filter(|(_, ratio)| paper::is_reproduced(*ratio, tolerance))

@@ -29,10 +29,7 @@ impl ImpactCertificateReport<'_> {
         let quantities = self.impact.quantities().into_iter().zip(proved);
         let errors = quantities.map(|(quantity, (name, truth))| {
             let values = std::iter::once(&quantity.runge_kutta).chain(&quantity.closed_forms);
-            (
-                name,
-                values.map(|value| truth.relative_error(*value)).collect(),
-            )
+            (name, values.map(|value| truth.relative_error(*value)).collect())
         });
         errors.collect()
     }
@@ -41,15 +38,11 @@ impl ImpactCertificateReport<'_> {
     pub fn verdicts(&self) -> Vec<(Reading, Verdict)> {
         let errors = self.errors();
         let within = |column: usize| {
-            let mut ranges = errors
-                .iter()
-                .filter_map(|(_, ranges)| ranges.get(column + 1));
+            let mut ranges = errors.iter().filter_map(|(_, ranges)| ranges.get(column + 1));
             ranges.all(|range| range.upper <= not_above_typed(self.tolerance))
         };
         let columns = self.impact.columns.iter().enumerate();
-        columns
-            .map(|(index, column)| (column.reading, Verdict::of(within(index))))
-            .collect()
+        columns.map(|(index, column)| (column.reading, Verdict::of(within(index)))).collect()
     }
 }
 
@@ -75,28 +68,20 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
             column.filter(|(_, range)| range.upper > not_above_typed(report.tolerance))
         };
         let names: Vec<&str> = column().map(|(name, _)| name).collect();
-        let words = match (
-            verdict,
-            column().all(|(_, range)| range.lower > report.tolerance),
-        ) {
+        let words = match (verdict, column().all(|(_, range)| range.lower > report.tolerance)) {
             (Verdict::Pass, _) => format!("pass (every number within {within} %, proved)"),
             (Verdict::Fail, true) => {
                 format!("fail (beyond {within} %, proved: {})", names.join(", "))
             }
-            (Verdict::Fail, false) => format!(
-                "fail (not proved to be within {within} %: {})",
-                names.join(", ")
-            ),
+            (Verdict::Fail, false) => {
+                format!("fail (not proved to be within {within} %: {})", names.join(", "))
+            }
         };
         (reading.name(), words)
     };
-    let head = ["", "Runge-Kutta"].into_iter().chain(
-        report
-            .impact
-            .columns
-            .iter()
-            .map(|column| column.reading.name()),
-    );
+    let head = ["", "Runge-Kutta"]
+        .into_iter()
+        .chain(report.impact.columns.iter().map(|column| column.reading.name()));
     let row = |(name, ranges): &(&'static str, Vec<Range>)| {
         let cells = ranges.iter().copied().map(rounded_percent);
         std::iter::once((*name).to_owned()).chain(cells).collect()

@@ -17,12 +17,7 @@ use crate::impact::ImpactComparison;
 pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> Document<'_> {
     let mut sections = vec![
         vec![Block::QuestionAsTyped(&table.equation)],
-        asked(
-            &table.setup,
-            table.letters,
-            [table.equilibrium, table.turning_point],
-            table.damping,
-        ),
+        asked(&table.setup, table.letters, [table.equilibrium, table.turning_point], table.damping),
         vec![Block::ImpactMethods {
             rows: &table.rows,
             truth: table.truth.quantities(),

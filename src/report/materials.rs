@@ -38,44 +38,22 @@ pub fn materials(study: &MaterialStudy) -> Document<'_> {
     if !study.held_fixed.is_empty() {
         sections.push(held_fixed(study));
     }
-    sections.push(
-        material_sentences(study)
-            .into_iter()
-            .map(Block::Sentence)
-            .collect(),
-    );
+    sections.push(material_sentences(study).into_iter().map(Block::Sentence).collect());
     Document { sections }
 }
 
 fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
-    let Model {
-        zeta,
-        alpha,
-        ref left,
-        ref right,
-        ..
-    } = study.model;
+    let Model { zeta, alpha, ref left, ref right, .. } = study.model;
     let is_default = |parameter| study.question.defaults.contains(&parameter);
     let count = study.rows.len();
     let plural = if count == 1 { "" } else { "s" };
     let viscous = if zeta == 0.0 { "" } else { " + 2*zeta*x'" };
     let dry = if alpha == 0.0 { "" } else { " + alpha*sgn(x')" };
-    let value = |name: &str, value, source| Block::Value {
-        name: name.into(),
-        value,
-        source,
-    };
-    let si = |name, formula, value, unit, words| Block::SiValue {
-        name,
-        formula,
-        value,
-        unit,
-        words,
-    };
+    let value = |name: &str, value, source| Block::Value { name: name.into(), value, source };
+    let si =
+        |name, formula, value, unit, words| Block::SiValue { name, formula, value, unit, words };
     let mut blocks = vec![
-        Block::Heading(format!(
-            "{count} barrier{plural} for one pendulum, equation (7):"
-        )),
+        Block::Heading(format!("{count} barrier{plural} for one pendulum, equation (7):")),
         Block::Note(format!(
             "x''{viscous}{dry} + sin(x) + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc) = 0, x(0) = {}, x'(0) = {}",
             decimal(study.start.x),
@@ -90,13 +68,7 @@ fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
         si("R", None, design.radius, "m", "the radius of the sphere"),
         si("L", None, design.length, "m", "the length"),
         si("g", None, design.gravity, "m/s^2", "gravity"),
-        si(
-            "T",
-            Some("sqrt(L/g)"),
-            study.units.time(),
-            "s",
-            "the unit of time",
-        ),
+        si("T", Some("sqrt(L/g)"), study.units.time(), "s", "the unit of time"),
     ]);
     let default = ", by default: the paper prints none";
     let said = |parameter| if is_default(parameter) { default } else { "" };
@@ -173,20 +145,12 @@ fn at_speed(dissipation: &Dissipation) -> String {
 /// `lambda = 0.122347 s/m`
 pub(super) fn in_words(damping: ContactDamping) -> String {
     let form = damping.form();
-    let text = format!(
-        "{} = {} {}",
-        form.name(),
-        decimal(damping.value()),
-        form.unit()
-    );
+    let text = format!("{} = {} {}", form.name(), decimal(damping.value()), form.unit());
     text.trim_end().to_owned()
 }
 
 pub(super) fn head(columns: &[(&'static str, &'static str)]) -> Vec<Heading> {
-    columns
-        .iter()
-        .map(|&(text, latex)| Heading { text, latex })
-        .collect()
+    columns.iter().map(|&(text, latex)| Heading { text, latex }).collect()
 }
 
 /// A number, or a stroke where there is none.
@@ -231,10 +195,8 @@ fn first_contacts(study: &MaterialStudy) -> Vec<Block<'_>> {
                 .to_owned(),
         ),
     ];
-    let checks = study
-        .rows
-        .iter()
-        .flat_map(|row| row.yield_checks.iter().map(move |check| (row, check)));
+    let checks =
+        study.rows.iter().flat_map(|row| row.yield_checks.iter().map(move |check| (row, check)));
     blocks.extend(checks.map(|(row, check)| Block::Sentence(yielding(&row.material.name, check))));
     blocks
 }
@@ -254,11 +216,8 @@ fn yielding(name: &str, check: &YieldCheck) -> String {
 
 fn energies(row: &MaterialRow) -> (String, String) {
     let energies = &row.course.energies;
-    let shown: Vec<String> = energies
-        .iter()
-        .take(LISTED)
-        .map(|energy| significant(*energy, 4))
-        .collect();
+    let shown: Vec<String> =
+        energies.iter().take(LISTED).map(|energy| significant(*energy, 4)).collect();
     let more = match energies.len().saturating_sub(LISTED) {
         0 => String::new(),
         more => format!(" and {more} more"),
@@ -306,19 +265,12 @@ fn until_rest(study: &MaterialStudy) -> Vec<Block<'_>> {
     let own = study.rows.iter().filter_map(|row| {
         let damping = row.material.damping?;
         let at = at_speed(&row.dissipation);
-        Some(format!(
-            "{} has its own damping: {}{at}",
-            row.material.name,
-            in_words(damping)
-        ))
+        Some(format!("{} has its own damping: {}{at}", row.material.name, in_words(damping)))
     });
     blocks.extend(own.map(Block::Note));
     blocks.extend(study.rows.iter().filter_map(|row| {
         let reason = row.course.rest_time.err()?;
-        Some(Block::Sentence(format!(
-            "{} has no rest time: {reason}",
-            row.material.name
-        )))
+        Some(Block::Sentence(format!("{} has no rest time: {reason}", row.material.name)))
     }));
     blocks.push(Block::Note(match study.no_barrier {
         Ok(rest) => format!(
@@ -333,9 +285,8 @@ fn until_rest(study: &MaterialStudy) -> Vec<Block<'_>> {
 
 fn held_fixed(study: &MaterialStudy) -> Vec<Block<'_>> {
     let row = |held: &HeldFixed| {
-        let times = held
-            .extremes()
-            .map(|extremes| extremes.map(|number| held.rest_times[number].ok()));
+        let times =
+            held.extremes().map(|extremes| extremes.map(|number| held.rest_times[number].ok()));
         let [first, last] = times.unwrap_or([None, None]);
         let [softest, hardest] = study.softest_and_hardest();
         vec![
@@ -390,21 +341,11 @@ pub fn material_sentences(study: &MaterialStudy) -> Vec<String> {
     let mut sentences = Vec::new();
     let groups: [(&[Parameter], bool); 2] = [
         (&[Parameter::Mu, Parameter::ContactDamping], true),
-        (
-            &[
-                Parameter::MuOverGamma,
-                Parameter::Lambda,
-                Parameter::Restitution,
-            ],
-            false,
-        ),
+        (&[Parameter::MuOverGamma, Parameter::Lambda, Parameter::Restitution], false),
     ];
     for (forms, ratio_changes) in groups {
-        let held: Vec<&HeldFixed> = study
-            .held_fixed
-            .iter()
-            .filter(|held| forms.contains(&held.damping.form()))
-            .collect();
+        let held: Vec<&HeldFixed> =
+            study.held_fixed.iter().filter(|held| forms.contains(&held.damping.form())).collect();
         sentences.extend(what_it_does(study, &held, ratio_changes));
     }
     sentences.extend(what_the_modulus_changes(study));
@@ -420,14 +361,8 @@ fn what_it_does(study: &MaterialStudy, held: &[&HeldFixed], ratio_changes: bool)
         (last, names) => format!("{} or {last}", names.join(", ")),
     };
     let first = held.first()?;
-    let Some(spread) = held
-        .iter()
-        .map(|held| held.spread())
-        .collect::<Option<Vec<f64>>>()
-    else {
-        return Some(format!(
-            "With {names} held fixed not every material rests within the run."
-        ));
+    let Some(spread) = held.iter().map(|held| held.spread()).collect::<Option<Vec<f64>>>() else {
+        return Some(format!("With {names} held fixed not every material rests within the run."));
     };
     let spread = spread.into_iter().fold(0.0, f64::max);
     let [softest, hardest] = study.softest_and_hardest();
@@ -440,11 +375,9 @@ fn what_it_does(study: &MaterialStudy, held: &[&HeldFixed], ratio_changes: bool)
         significant(first.ratios[hardest], 3)
     );
     let restitutions = match (first.restitutions[softest], first.restitutions[hardest]) {
-        (Some(soft), Some(hard)) => format!(
-            ", the restitution from {} to {}",
-            significant(soft, 4),
-            significant(hard, 4)
-        ),
+        (Some(soft), Some(hard)) => {
+            format!(", the restitution from {} to {}", significant(soft, 4), significant(hard, 4))
+        }
         _ => String::new(),
     };
     let why = match ratio_changes {
@@ -510,23 +443,13 @@ fn baseline(study: &MaterialStudy) -> Option<String> {
         let most = times.iter().copied().fold(0.0, f64::max);
         match (most - least) / least < 5e-4 {
             true => format!("at {}", significant(least, 4)),
-            false => format!(
-                "between {} and {}",
-                significant(least, 4),
-                significant(most, 4)
-            ),
+            false => format!("between {} and {}", significant(least, 4), significant(most, 4)),
         }
     };
     let rows = study.rows.iter();
-    let with: Vec<f64> = rows
-        .clone()
-        .map(|row| row.course.rest_time)
-        .collect::<Result<_, _>>()
-        .ok()?;
-    let lossless: Vec<f64> = rows
-        .map(|row| row.lossless)
-        .collect::<Result<_, _>>()
-        .ok()?;
+    let with: Vec<f64> =
+        rows.clone().map(|row| row.course.rest_time).collect::<Result<_, _>>().ok()?;
+    let lossless: Vec<f64> = rows.map(|row| row.lossless).collect::<Result<_, _>>().ok()?;
     Some(format!(
         "Without a barrier the swing rests at {}, with these barriers without loss {}, with their loss {}.",
         significant(none, 4),

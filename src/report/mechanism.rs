@@ -40,14 +40,10 @@ fn equation<'a>(left: Expr, right: Expr) -> Block<'a> {
 fn energies(study: &MechanismStudy) -> Vec<Block<'_>> {
     let mechanism = &study.question.mechanism;
     let mut blocks = vec![Block::Heading("Energies and forces".to_owned())];
-    let named = [
-        ("T", &mechanism.kinetic),
-        ("V", &mechanism.potential),
-        ("D", &mechanism.dissipation),
-    ];
-    for (name, energy) in named
-        .into_iter()
-        .filter(|(name, energy)| *name != "D" || !energy.is_zero())
+    let named =
+        [("T", &mechanism.kinetic), ("V", &mechanism.potential), ("D", &mechanism.dissipation)];
+    for (name, energy) in
+        named.into_iter().filter(|(name, energy)| *name != "D" || !energy.is_zero())
     {
         blocks.push(equation(Expr::symbol(name), energy.clone()));
     }
@@ -60,9 +56,7 @@ fn energies(study: &MechanismStudy) -> Vec<Block<'_>> {
 fn equations(study: &MechanismStudy) -> Vec<Block<'_>> {
     let equations = &study.equations;
     let several = if equations.left.len() > 1 { "s" } else { "" };
-    let mut blocks = vec![Block::Heading(format!(
-        "Equation{several} of motion, by Lagrange"
-    ))];
+    let mut blocks = vec![Block::Heading(format!("Equation{several} of motion, by Lagrange"))];
     for left in &equations.left {
         blocks.push(equation(left.clone(), Expr::zero()));
     }
@@ -85,24 +79,14 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
         false => "Places of rest, and small swings about them; others are not ruled out".to_owned(),
     })];
     let has = |function: Function| {
-        study
-            .equations
-            .rest
-            .iter()
-            .any(|rest| rest.contains_function(function))
+        study.equations.rest.iter().any(|rest| rest.contains_function(function))
     };
-    let driven = study
-        .equations
-        .rest
-        .iter()
-        .any(|rest| rest.contains(Symbol::new("t")));
+    let driven = study.equations.rest.iter().any(|rest| rest.contains(Symbol::new("t")));
     let vanishes =
         !study.rests.is_empty() && study.rests.iter().all(|rest| rest.drive == Drive::Vanishes);
     let changes = study.rests.iter().any(|rest| rest.modes.changing.is_some());
     if vanishes && changes && !has(Function::Step) {
-        blocks.push(Block::Note(
-            "at rest there with the terms in t, too".to_owned(),
-        ));
+        blocks.push(Block::Note("at rest there with the terms in t, too".to_owned()));
     } else if vanishes && !has(Function::Step) {
         blocks.push(Block::Note(
             "at rest there with the terms in t, too; the swings are those without them, which may hold what falls and shake loose what rests"
@@ -149,9 +133,8 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
     let missing: Vec<&str> = missing.iter().map(|name| name.name()).collect();
     if !study.question.values.is_empty() {
         let values = study.question.values.iter();
-        let values: Vec<String> = values
-            .map(|(name, value)| format!("{name} = {}", decimal(*value)))
-            .collect();
+        let values: Vec<String> =
+            values.map(|(name, value)| format!("{name} = {}", decimal(*value))).collect();
         let wanting = match missing.is_empty() {
             true => String::new(),
             false => format!("; numbers need a value for {} too", missing.join(", ")),
@@ -177,19 +160,11 @@ fn place(rest: &RestStudy, coordinates: &[Symbol]) -> String {
         Place::At(value) => format!("{name} = {value}"),
         Place::Anywhere => format!("any {name}"),
     };
-    let places: Vec<String> = coordinates
-        .iter()
-        .zip(&rest.rest.places)
-        .map(place)
-        .collect();
+    let places: Vec<String> = coordinates.iter().zip(&rest.rest.places).map(place).collect();
     let condition = rest.rest.condition.as_ref();
     let condition = condition.map_or(String::new(), |cosine| format!(", where |{cosine}| < 1"));
-    let zero: Vec<String> = rest
-        .modes
-        .taken_at_zero
-        .iter()
-        .map(|name| format!("{name} = 0"))
-        .collect();
+    let zero: Vec<String> =
+        rest.modes.taken_at_zero.iter().map(|name| format!("{name} = 0")).collect();
     let zero = match zero.is_empty() {
         true => String::new(),
         false => format!("; the modes, which depend on it, at {}", zero.join(", ")),
@@ -199,18 +174,11 @@ fn place(rest: &RestStudy, coordinates: &[Symbol]) -> String {
 
 /// A mode; `unpulled` is what to say of one that neither swings nor grows.
 fn mode_in_words(mode: &Mode, coordinates: &[Symbol], unpulled: &str) -> String {
-    let shape = mode
-        .shape
-        .as_ref()
-        .filter(|shape| shape.len() > 1)
-        .map(|shape| {
-            let parts: Vec<String> = coordinates
-                .iter()
-                .map(|name| name.name().to_owned())
-                .collect();
-            let numbers: Vec<String> = shape.iter().map(|part| decimal(*part)).collect();
-            format!(", {} = {}", parts.join(" : "), numbers.join(" : "))
-        });
+    let shape = mode.shape.as_ref().filter(|shape| shape.len() > 1).map(|shape| {
+        let parts: Vec<String> = coordinates.iter().map(|name| name.name().to_owned()).collect();
+        let numbers: Vec<String> = shape.iter().map(|part| decimal(*part)).collect();
+        format!(", {} = {}", parts.join(" : "), numbers.join(" : "))
+    });
     let shape = shape.unwrap_or_default();
     match (mode.frequency > 0.0, mode.growth) {
         (true, 0.0) => format!("swings with omega = {}{shape}", decimal(mode.frequency)),
@@ -267,31 +235,19 @@ fn dimensionless<'a>(groups: &'a Groups, study: &'a MechanismStudy) -> Vec<Block
     ];
     for combination in &groups.combinations {
         let line = Line::equation(combination.name, combination.meaning.clone());
-        blocks.push(Block::Line(Cow::Owned(
-            line.because("counts as one parameter"),
-        )));
+        blocks.push(Block::Line(Cow::Owned(line.because("counts as one parameter"))));
     }
     if let Ok(square) =
         Expr::divide(&Expr::one(), &groups.time).and_then(|rate| rate.integer_power(2))
     {
-        let name = match study
-            .question
-            .mechanism
-            .parameters()
-            .contains(&Symbol::new("omega"))
-        {
+        let name = match study.question.mechanism.parameters().contains(&Symbol::new("omega")) {
             true => String::new(),
             false => format!(", 1/omega with omega^2 = {square}"),
         };
-        blocks.push(Block::Note(format!(
-            "time in units of {}{name}",
-            groups.time
-        )));
+        blocks.push(Block::Note(format!("time in units of {}{name}", groups.time)));
     }
-    for (coordinate, length) in coordinates
-        .iter()
-        .zip(&groups.lengths)
-        .filter(|(_, length)| !length.is_one())
+    for (coordinate, length) in
+        coordinates.iter().zip(&groups.lengths).filter(|(_, length)| !length.is_one())
     {
         blocks.push(Block::Note(format!("{coordinate} in units of {length}")));
     }
@@ -338,17 +294,12 @@ pub fn paper_equations(findings: &[Finding]) -> Vec<Block<'_>> {
             Some(false) => "does not follow as printed",
             None => "is put in",
         };
-        (
-            finding.equation.to_owned(),
-            format!("{verdict}: {}", finding.words),
-        )
+        (finding.equation.to_owned(), format!("{verdict}: {}", finding.words))
     };
     let printed = findings
         .iter()
         .map(|finding| Block::Detail(format!("{} {}", finding.equation, finding.printed)));
-    let mut blocks = vec![Block::Heading(
-        "The paper's equations, in these letters".to_owned(),
-    )];
+    let mut blocks = vec![Block::Heading("The paper's equations, in these letters".to_owned())];
     blocks.extend(printed);
     blocks.push(Block::Entries {
         heading: "What becomes of them",

@@ -39,12 +39,7 @@ pub fn optimization(study: &Study) -> Document<'_> {
         }
         _ => sections.push(front(study)),
     }
-    sections.push(
-        optimization_sentences(study)
-            .into_iter()
-            .map(Block::Sentence)
-            .collect(),
-    );
+    sections.push(optimization_sentences(study).into_iter().map(Block::Sentence).collect());
     Document { sections }
 }
 
@@ -64,9 +59,7 @@ fn column(objective: Objective) -> Heading {
 
 /// A value with its unit.
 fn with_unit(objective: Objective, value: f64) -> String {
-    format!("{} {}", decimal(value), objective.unit())
-        .trim_end()
-        .to_owned()
+    format!("{} {}", decimal(value), objective.unit()).trim_end().to_owned()
 }
 
 /// `length`, or `material` beyond the numbers.
@@ -84,19 +77,14 @@ fn value_of(study: &Study, design: &Design, index: usize) -> String {
 }
 
 fn material_of(study: &Study, design: &Design) -> String {
-    let material = design
-        .material
-        .and_then(|number| study.question.materials.get(number));
+    let material = design.material.and_then(|number| study.question.materials.get(number));
     material.map_or("-".to_owned(), |material| material.name.clone())
 }
 
 fn asked(study: &Study) -> Vec<Block<'_>> {
     let question = &study.question;
-    let wishes: Vec<&str> = question
-        .objectives
-        .iter()
-        .map(|objective| objective.meaning())
-        .collect();
+    let wishes: Vec<&str> =
+        question.objectives.iter().map(|objective| objective.meaning()).collect();
     let runs = match question.runs {
         1 => "one run".to_owned(),
         runs => format!("{runs} runs"),
@@ -106,9 +94,7 @@ fn asked(study: &Study) -> Vec<Block<'_>> {
         _ => "NSGA-II",
     };
     let mut blocks = vec![
-        Block::Heading(format!(
-            "The best damper by {runs} of {search}: the least of"
-        )),
+        Block::Heading(format!("The best damper by {runs} of {search}: the least of")),
         Block::Note(wishes.join("; ")),
     ];
     let Some(best) = study.best() else {
@@ -121,11 +107,7 @@ fn asked(study: &Study) -> Vec<Block<'_>> {
         route(study),
         decimal(question.settings.duration),
         decimal(100.0 * REST_FRACTION),
-        if question.main_mass.is_some() {
-            "largest"
-        } else {
-            "first"
-        }
+        if question.main_mass.is_some() { "largest" } else { "first" }
     )));
     if let Some(of) = question.main_mass {
         let hangs = question.case.start == Some(0.0) && question.case.speed == 0.0;
@@ -136,11 +118,7 @@ fn asked(study: &Study) -> Vec<Block<'_>> {
             decimal(of.damping),
             decimal(of.displacement),
             decimal(of.speed),
-            if hangs {
-                " with the pendulum hanging at rest"
-            } else {
-                ""
-            }
+            if hangs { " with the pendulum hanging at rest" } else { "" }
         )));
     }
     for constraint in question.constraints() {
@@ -162,10 +140,7 @@ fn route(study: &Study) -> &'static str {
 
 /// The largest part by which closed forms are off for the best designs, judged again.
 fn closed_forms_off(study: &Study) -> f64 {
-    let finite = study
-        .finalists
-        .iter()
-        .filter(|finalist| finalist.values[0].is_finite());
+    let finite = study.finalists.iter().filter(|finalist| finalist.values[0].is_finite());
     let off = finite
         .filter(|finalist| finalist.by_chain[0] != finalist.values[0])
         .map(|finalist| (finalist.by_chain[0] / finalist.values[0] - 1.0).abs());
@@ -174,13 +149,7 @@ fn closed_forms_off(study: &Study) -> f64 {
 
 /// The equation of the best design, and its numbers.
 fn equation<'a>(question: &Question, best: &Finalist) -> Vec<Block<'a>> {
-    let Model {
-        zeta,
-        alpha,
-        ref left,
-        ref right,
-        ..
-    } = best.design.model;
+    let Model { zeta, alpha, ref left, ref right, .. } = best.design.model;
     let viscous = if zeta == 0.0 { "" } else { " + 2*zeta*x'" };
     let dry = if alpha == 0.0 { "" } else { " + alpha*sgn(x')" };
     let (x, velocity) = match question.motion_of(&best.design.point) {
@@ -199,11 +168,7 @@ fn equation<'a>(question: &Question, best: &Finalist) -> Vec<Block<'a>> {
         decimal(x),
         decimal(velocity)
     )));
-    let value = |name: &str, value, source| Block::Value {
-        name: name.into(),
-        value,
-        source,
-    };
+    let value = |name: &str, value, source| Block::Value { name: name.into(), value, source };
     blocks.extend(left.map(|left| value("xl", left, Some("the left barrier"))));
     blocks.extend(right.map(|right| value("xc", right, None)));
     blocks.push(Block::SiValue {
@@ -221,11 +186,7 @@ fn held_fixed<'a>(question: &Question) -> Vec<Block<'a>> {
     let mut blocks = vec![];
     let default = ", by default: the paper prints none";
     let said = |parameter| {
-        if question.defaults.contains(&parameter) {
-            default
-        } else {
-            ""
-        }
+        if question.defaults.contains(&parameter) { default } else { "" }
     };
     let damping = question.case.contact_damping;
     if question.holds_contact_damping() {
@@ -267,17 +228,11 @@ fn held_fixed<'a>(question: &Question) -> Vec<Block<'a>> {
         (Parameter::Length, "m"),
         (Parameter::Modulus, "Pa"),
     ] {
-        let varies = question
-            .variables
-            .iter()
-            .any(|variable| variable.parameter == parameter);
+        let varies = question.variables.iter().any(|variable| variable.parameter == parameter);
         let of_material = parameter == Parameter::Modulus && !question.materials.is_empty();
         if !varies && !of_material {
             let value = cell(question.case.get(parameter));
-            blocks.push(Block::Note(format!(
-                "held fixed: {} = {value} {unit}",
-                parameter.name()
-            )));
+            blocks.push(Block::Note(format!("held fixed: {} = {value} {unit}", parameter.name())));
         }
     }
     blocks
@@ -309,10 +264,9 @@ fn options(study: &Study) -> Vec<String> {
             Coding::Bits(bits) => format!("{bits} bits a number"),
         };
         let crossover = match crossover {
-            Crossover::Heuristic(ratio) => format!(
-                "heuristic crossover of ratio {} kept feasible",
-                decimal(ratio)
-            ),
+            Crossover::Heuristic(ratio) => {
+                format!("heuristic crossover of ratio {} kept feasible", decimal(ratio))
+            }
             Crossover::Scattered => "scattered crossover".to_owned(),
             Crossover::OnePoint => "one-point crossover".to_owned(),
         };
@@ -394,10 +348,7 @@ fn quantities(study: &Study, design: &Design) -> Vec<(Heading, String)> {
     }
     let plain = |text: &'static str, latex: &'static str| Heading { text, latex };
     rows.push((plain("gamma", "$\\gamma$"), decimal(design.model.gamma)));
-    rows.push((
-        plain("mu/gamma", "$\\mu/\\gamma$"),
-        decimal(design.model.mu / design.model.gamma),
-    ));
+    rows.push((plain("mu/gamma", "$\\mu/\\gamma$"), decimal(design.model.mu / design.model.gamma)));
     let restitution = design.hardest.and_then(|contact| contact.restitution);
     rows.push((plain("restitution", "restitution"), cell(restitution)));
     if let Some(limit) = study.question.yield_limit(design) {
@@ -435,10 +386,7 @@ fn best_design(study: &Study) -> Vec<Block<'_>> {
             ]
         })
         .collect();
-    let papers = study
-        .default_design
-        .as_ref()
-        .map(|papers| quantities(study, papers));
+    let papers = study.default_design.as_ref().map(|papers| quantities(study, papers));
     for (index, (name, value)) in quantities(study, &best.design).into_iter().enumerate() {
         let other = papers.as_ref().and_then(|papers| papers.get(index));
         rows.push(vec![
@@ -472,10 +420,7 @@ fn best_design(study: &Study) -> Vec<Block<'_>> {
                 "the best {count} different designs of the runs were judged again by integration; closed forms are at most"
             ),
         };
-        blocks.push(Block::Note(format!(
-            "{judged} {} off",
-            percent(closed_forms_off(study))
-        )));
+        blocks.push(Block::Note(format!("{judged} {} off", percent(closed_forms_off(study)))));
     }
     blocks
 }
@@ -497,10 +442,7 @@ fn agreement(study: &Study) -> Vec<Block<'_>> {
     let each = (evaluations as f64 / study.runs.len().max(1) as f64).round() as usize;
     let mut rows = vec![row("genetic algorithm", each, study.spread())];
     rows.extend(
-        study
-            .rivals
-            .iter()
-            .map(|rival| row(rival.name, rival.evaluations, rival.spread())),
+        study.rivals.iter().map(|rival| row(rival.name, rival.evaluations, rival.spread())),
     );
     let found = study.values().len();
     let count = study.runs.len();
@@ -517,11 +459,7 @@ fn agreement(study: &Study) -> Vec<Block<'_>> {
         .chain(curve.len().checked_sub(1))
         .collect();
     let number = |value: f64| {
-        if value.is_finite() {
-            significant(value, 7)
-        } else {
-            "-".to_owned()
-        }
+        if value.is_finite() { significant(value, 7) } else { "-".to_owned() }
     };
     vec![
         Block::Heading(format!(
@@ -564,9 +502,7 @@ fn decision(study: &Study) -> Option<Vec<Block<'_>>> {
         vec![
             sensitivity.parameter.name().to_owned(),
             decimal(sensitivity.value),
-            sensitivity
-                .elasticity
-                .map_or("-".to_owned(), |slope| significant(slope, 3)),
+            sensitivity.elasticity.map_or("-".to_owned(), |slope| significant(slope, 3)),
             significant(from, 4),
             significant(to, 4),
             cell(range.map(|range| range[0])),
@@ -608,9 +544,7 @@ fn decision(study: &Study) -> Option<Vec<Block<'_>>> {
                 },
                 column(study.objective()),
             ],
-            rows: rows
-                .map(|(material, value)| vec![material.name.clone(), cell(*value)])
-                .collect(),
+            rows: rows.map(|(material, value)| vec![material.name.clone(), cell(*value)]).collect(),
         });
     }
     Some(blocks)
@@ -630,38 +564,23 @@ fn front(study: &Study) -> Vec<Block<'_>> {
     });
     names.extend(variables);
     let materials = !question.materials.is_empty();
-    names.extend(materials.then_some(Heading {
-        text: "material",
-        latex: "material",
-    }));
+    names.extend(materials.then_some(Heading { text: "material", latex: "material" }));
     let row = |values: Vec<String>, design: &Design| {
-        let numbers = question
-            .variables
-            .iter()
-            .map(|variable| cell(design.case.get(variable.parameter)));
+        let numbers =
+            question.variables.iter().map(|variable| cell(design.case.get(variable.parameter)));
         let material = materials.then(|| material_of(study, design));
-        values
-            .into_iter()
-            .chain(numbers)
-            .chain(material)
-            .collect::<Vec<String>>()
+        values.into_iter().chain(numbers).chain(material).collect::<Vec<String>>()
     };
     let count = study.finalists.len();
     let shown: Vec<usize> = match count > LISTED {
-        true => (0..LISTED)
-            .map(|place| place * (count - 1) / (LISTED - 1))
-            .collect(),
+        true => (0..LISTED).map(|place| place * (count - 1) / (LISTED - 1)).collect(),
         false => (0..count).collect(),
     };
     let number = |value: &f64| cell(Some(*value).filter(|value| value.is_finite()));
     let mut blocks = vec![
         Block::Heading(format!(
             "The front: {count} designs none of which is better than another in everything, integrated{}",
-            if shown.len() < count {
-                format!(", {} of them", shown.len())
-            } else {
-                String::new()
-            }
+            if shown.len() < count { format!(", {} of them", shown.len()) } else { String::new() }
         )),
         Block::Table {
             head: names,
@@ -669,10 +588,7 @@ fn front(study: &Study) -> Vec<Block<'_>> {
                 .into_iter()
                 .map(|index| {
                     let finalist = &study.finalists[index];
-                    row(
-                        finalist.values.iter().map(number).collect(),
-                        &finalist.design,
-                    )
+                    row(finalist.values.iter().map(number).collect(), &finalist.design)
                 })
                 .collect(),
         },

@@ -100,9 +100,7 @@ fn values<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
         source: Some(source),
     };
     let always = ["R", "kappa", "gamma"];
-    let given = named
-        .into_iter()
-        .filter(|(name, value, _)| *value != 0.0 || always.contains(name));
+    let given = named.into_iter().filter(|(name, value, _)| *value != 0.0 || always.contains(name));
     let mut blocks: Vec<Block> = given.map(value).collect();
     let places = [model.left, model.right].into_iter().flatten().map(decimal);
     let places: Vec<String> = places.collect();
@@ -172,10 +170,8 @@ fn impacts<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
 
 fn energy<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     let energy = &report.motion.energy;
-    let mut facts = vec![
-        ("at the start", decimal(energy.start)),
-        ("at the end", decimal(energy.end)),
-    ];
+    let mut facts =
+        vec![("at the start", decimal(energy.start)), ("at the end", decimal(energy.end))];
     for (name, value) in [
         ("damping of the pendulum", energy.viscous),
         ("dry friction", energy.friction),
@@ -187,14 +183,8 @@ fn energy<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
             facts.push((name, decimal(value)));
         }
     }
-    facts.push((
-        "unaccounted for",
-        format!("{} of the largest", significant(energy.residual, 2)),
-    ));
-    vec![
-        Block::Heading("Energy, in units of m g L".to_owned()),
-        Block::Facts(facts),
-    ]
+    facts.push(("unaccounted for", format!("{} of the largest", significant(energy.residual, 2))));
+    vec![Block::Heading("Energy, in units of m g L".to_owned()), Block::Facts(facts)]
 }
 
 fn rest_times<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
@@ -224,11 +214,7 @@ fn rest_times<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
             ]
         }
         (false, Ok(time)) => ["with its damper".to_owned(), decimal(time), seconds(time)],
-        (false, Err(_)) => [
-            "with its damper".to_owned(),
-            "none".to_owned(),
-            String::new(),
-        ],
+        (false, Err(_)) => ["with its damper".to_owned(), "none".to_owned(), String::new()],
     };
     let (heading, head) = match driven {
         true => (
@@ -265,11 +251,7 @@ fn rest_times<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
 fn samples<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     let row = |time: &f64| {
         let state = report.motion.at(*time)?;
-        Some(
-            [*time, state.x, state.velocity, state.y, state.speed]
-                .map(decimal)
-                .into(),
-        )
+        Some([*time, state.x, state.velocity, state.y, state.speed].map(decimal).into())
     };
     vec![Block::Table {
         head: headings(["t", "x", "x'", "y", "y'"]),
@@ -328,12 +310,8 @@ pub fn primary_sweep<'a>(report: &PrimarySweepReport) -> Document<'a> {
         let (length, time, begun) = (units.length, units.time(), row.is_begun());
         let others = [row.others.locked, row.others.without];
         let results = match driven {
-            true => [
-                begun.then_some(row.amplitude),
-                others[0].amplitude,
-                others[1].amplitude,
-            ]
-            .map(|value| value.map(|value| value * length)),
+            true => [begun.then_some(row.amplitude), others[0].amplitude, others[1].amplitude]
+                .map(|value| value.map(|value| value * length)),
             false => [row.rest_time.ok(), others[0].rest_time, others[1].rest_time]
                 .map(|value| value.map(|value| value * time)),
         };
@@ -348,17 +326,11 @@ pub fn primary_sweep<'a>(report: &PrimarySweepReport) -> Document<'a> {
     };
     let names = report.parameters.iter().map(|parameter| parameter.name());
     let results = ["with its damper", "damper locked", "without", "impacts"];
-    let head = names
-        .chain(results)
-        .map(|text| Heading { text, latex: text });
+    let head = names.chain(results).map(|text| Heading { text, latex: text });
     let meanings = report.parameters.iter().map(|parameter| {
         let unit = parameter.unit();
         let comma = if unit.is_empty() { "" } else { ", " };
-        Block::Note(format!(
-            "{}: {}{comma}{unit}",
-            parameter.name(),
-            parameter.meaning()
-        ))
+        Block::Note(format!("{}: {}{comma}{unit}", parameter.name(), parameter.meaning()))
     });
     let heading = match driven {
         true => {
@@ -372,15 +344,7 @@ pub fn primary_sweep<'a>(report: &PrimarySweepReport) -> Document<'a> {
     blocks.extend(meanings);
     blocks.push(Block::Table {
         head: head.collect(),
-        rows: report
-            .rows
-            .iter()
-            .zip(report.units)
-            .enumerate()
-            .map(row)
-            .collect(),
+        rows: report.rows.iter().zip(report.units).enumerate().map(row).collect(),
     });
-    Document {
-        sections: vec![blocks],
-    }
+    Document { sections: vec![blocks] }
 }

@@ -39,22 +39,14 @@ pub fn response(response: &Response) -> Document<'static> {
     sections.extend(changes(response));
     sections.extend(backbone(response));
     sections.push(judgement(response));
-    sections.extend(
-        response
-            .slow
-            .as_ref()
-            .map(|slow| by_slow_equations(response, slow)),
-    );
+    sections.extend(response.slow.as_ref().map(|slow| by_slow_equations(response, slow)));
     Document { sections }
 }
 
 fn question(response: &Response) -> Vec<Block<'static>> {
     let asked = &response.question;
     let equation = asked.oscillator.equation();
-    let mut blocks = vec![Block::Line(Cow::Owned(Line::equation(
-        equation.left,
-        equation.right,
-    )))];
+    let mut blocks = vec![Block::Line(Cow::Owned(Line::equation(equation.left, equation.right)))];
     blocks.extend(numbers(&asked.values).map(|(name, value)| Block::Value {
         name,
         value,
@@ -145,13 +137,7 @@ fn numbers(values: &Values) -> impl Iterator<Item = (Symbol, f64)> {
 }
 
 fn heads(names: &[&'static str]) -> Vec<Heading> {
-    names
-        .iter()
-        .map(|name| Heading {
-            text: name,
-            latex: name,
-        })
-        .collect()
+    names.iter().map(|name| Heading { text: name, latex: name }).collect()
 }
 
 /// The indices of the rows: the ends, equal steps between, and the points beside every change of
@@ -159,9 +145,7 @@ fn heads(names: &[&'static str]) -> Vec<Heading> {
 fn rows(points: &[Point]) -> Vec<usize> {
     let count = points.len();
     let steps = ROWS.min(count).max(2) - 1;
-    let mut rows: Vec<usize> = (0..=steps)
-        .map(|step| step * (count.max(1) - 1) / steps)
-        .collect();
+    let mut rows: Vec<usize> = (0..=steps).map(|step| step * (count.max(1) - 1) / steps).collect();
     rows.dedup();
     rows
 }
@@ -188,39 +172,18 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
         let last = [
             stable(point.stable).to_owned(),
             largest.map_or("-".to_owned(), |largest| significant(largest, 4)),
-            point
-                .error
-                .map_or("-".to_owned(), |error| significant(error, 2)),
+            point.error.map_or("-".to_owned(), |error| significant(error, 2)),
         ];
         first.chain(place).chain(last).collect()
     };
     let columns: &[&'static str] = match response.self_excited {
-        true => &[
-            name,
-            "amplitude",
-            "frequency",
-            "period",
-            "peak",
-            "stable",
-            "multiplier",
-            "error",
-        ],
-        false => &[
-            name,
-            "amplitude",
-            "phase",
-            "peak",
-            "stable",
-            "multiplier",
-            "error",
-        ],
+        true => {
+            &[name, "amplitude", "frequency", "period", "peak", "stable", "multiplier", "error"]
+        }
+        false => &[name, "amplitude", "phase", "peak", "stable", "multiplier", "error"],
     };
     let mut blocks = vec![
-        Block::Heading(format!(
-            "branch {}: {}",
-            index + 1,
-            extent_in_words(response, branch)
-        )),
+        Block::Heading(format!("branch {}: {}", index + 1, extent_in_words(response, branch))),
         Block::Table {
             head: heads(columns),
             rows: rows(&branch.points).into_iter().map(row).collect(),
@@ -236,10 +199,7 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
         )));
     }
     blocks.extend(sticking(response, branch));
-    let ends = branch
-        .ends
-        .iter()
-        .zip([branch.points.first(), branch.points.last()]);
+    let ends = branch.ends.iter().zip([branch.points.first(), branch.points.last()]);
     let ends = ends.filter_map(|(end, point)| end_in_words(response, *end, point?));
     blocks.extend(ends.map(Block::Sentence));
     blocks
@@ -247,11 +207,7 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
 
 /// Why a branch ends at a point, where that is worth saying.
 fn end_in_words(response: &Response, end: BranchEnd, point: &Point) -> Option<String> {
-    let place = format!(
-        "{} = {}",
-        response.question.parameter,
-        significant(point.parameter, 4)
-    );
+    let place = format!("{} = {}", response.question.parameter, significant(point.parameter, 4));
     Some(match end {
         BranchEnd::Unbounded => format!("The amplitude grows without bound at {place}."),
         BranchEnd::Slow => format!(
@@ -288,30 +244,20 @@ fn sticking(response: &Response, branch: &Branch) -> Option<Block<'static>> {
     const MOST: usize = 4;
     let name = response.question.parameter;
     let sticks = |point: &Point| point.stuck > 0.0;
-    let stretches = branch
-        .points
-        .chunk_by(|one, other| sticks(one) == sticks(other));
+    let stretches = branch.points.chunk_by(|one, other| sticks(one) == sticks(other));
     let stretches: Vec<String> = stretches
         .filter(|stretch| stretch.first().is_some_and(sticks))
         .map(|stretch| {
             let parameters = stretch.iter().map(|point| point.parameter);
             let low = parameters.clone().fold(f64::INFINITY, f64::min);
             let high = parameters.fold(f64::NEG_INFINITY, f64::max);
-            format!(
-                "from {name} = {} to {}",
-                significant(low, 4),
-                significant(high, 4)
-            )
+            format!("from {name} = {} to {}", significant(low, 4), significant(high, 4))
         })
         .collect();
     if stretches.is_empty() {
         return None;
     }
-    let longest = branch
-        .points
-        .iter()
-        .map(|point| point.stuck)
-        .fold(0.0, f64::max);
+    let longest = branch.points.iter().map(|point| point.stuck).fold(0.0, f64::max);
     let more = match stretches.len() > MOST {
         true => ", and elsewhere",
         false => "",
@@ -328,23 +274,10 @@ fn sticking(response: &Response, branch: &Branch) -> Option<Block<'static>> {
 fn extent_in_words(response: &Response, branch: &Branch) -> String {
     let points = &branch.points;
     let name = response.question.parameter;
-    let stable = points
-        .iter()
-        .filter(|point| point.stable == Some(true))
-        .count();
-    let low = points
-        .iter()
-        .map(|point| point.parameter)
-        .fold(f64::INFINITY, f64::min);
-    let high = points
-        .iter()
-        .map(|point| point.parameter)
-        .fold(f64::NEG_INFINITY, f64::max);
-    let closed = if branch.ends[0] == BranchEnd::Closed {
-        "closed, "
-    } else {
-        ""
-    };
+    let stable = points.iter().filter(|point| point.stable == Some(true)).count();
+    let low = points.iter().map(|point| point.parameter).fold(f64::INFINITY, f64::min);
+    let high = points.iter().map(|point| point.parameter).fold(f64::NEG_INFINITY, f64::max);
+    let closed = if branch.ends[0] == BranchEnd::Closed { "closed, " } else { "" };
     format!(
         "{closed}{} points, {stable} of them stable, {name} from {} to {}",
         points.len(),
@@ -398,10 +331,7 @@ fn changes(response: &Response) -> Option<Vec<Block<'static>>> {
         rows: all.iter().take(MOST_BIFURCATIONS).map(row).collect(),
     });
     if all.len() > MOST_BIFURCATIONS {
-        blocks.push(Block::Note(format!(
-            "and {} more",
-            all.len() - MOST_BIFURCATIONS
-        )));
+        blocks.push(Block::Note(format!("and {} more", all.len() - MOST_BIFURCATIONS)));
     }
     let meaning = |kind: BifurcationKind| match kind {
         BifurcationKind::Fold if response.self_excited => "At a fold two cycles meet and vanish.",
@@ -446,9 +376,7 @@ fn backbone(response: &Response) -> Option<Vec<Block<'static>>> {
         return None;
     }
     let name = response.question.parameter.name();
-    let mut blocks = vec![Block::Heading(
-        "backbone: the free motion without damping".to_owned(),
-    )];
+    let mut blocks = vec![Block::Heading("backbone: the free motion without damping".to_owned())];
     for curve in &response.backbone {
         let count = curve.len();
         let chosen = (0..FEW).map(|index| &curve[index * (count - 1) / (FEW - 1)]);
@@ -466,17 +394,11 @@ fn backbone(response: &Response) -> Option<Vec<Block<'static>>> {
 fn by_slow_equations(response: &Response, slow: &SlowResponse) -> Vec<Block<'static>> {
     let name = response.question.parameter.name();
     let solution = &slow.solution;
-    let mut blocks = vec![Block::Heading(format!(
-        "by slow equations: {}",
-        solution.title()
-    ))];
+    let mut blocks = vec![Block::Heading(format!("by slow equations: {}", solution.title()))];
     let line = |left: Expr, right: Expr| Block::Line(Cow::Owned(Line::equation(left, right)));
     if let Some(modulation) = &solution.modulation {
         let rate = |name: Symbol| Expr::from(name.derivative());
-        blocks.push(line(
-            rate(modulation.amplitude),
-            modulation.amplitude_rate.clone(),
-        ));
+        blocks.push(line(rate(modulation.amplitude), modulation.amplitude_rate.clone()));
         blocks.push(line(rate(modulation.phase), modulation.phase_rate.clone()));
     }
     let definitions = solution.definitions.iter();
@@ -484,10 +406,8 @@ fn by_slow_equations(response: &Response, slow: &SlowResponse) -> Vec<Block<'sta
         definitions
             .map(|definition| line(Expr::from(definition.symbol), definition.meaning.clone())),
     );
-    if let Some(relation) = solution
-        .response
-        .as_ref()
-        .and_then(|response| response.relation.as_ref())
+    if let Some(relation) =
+        solution.response.as_ref().and_then(|response| response.relation.as_ref())
     {
         blocks.push(line(Expr::zero(), Expr::from(relation)));
     }
@@ -551,22 +471,14 @@ fn by_slow_equations(response: &Response, slow: &SlowResponse) -> Vec<Block<'sta
 
 fn judgement(response: &Response) -> Vec<Block<'static>> {
     let name = response.question.parameter.name();
-    let points: usize = response
-        .branches
-        .iter()
-        .map(|branch| branch.points.len())
-        .sum();
+    let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
     let mut facts = vec![(
         "largest error",
         match response.error {
             Some(error) => format!(
                 "{} of the true {}, of {} points against shooting and {} against simulation",
                 significant(error, 2),
-                if response.self_excited {
-                    "peak or frequency"
-                } else {
-                    "peak"
-                },
+                if response.self_excited { "peak or frequency" } else { "peak" },
                 points - response.unjudged,
                 response.simulated.len()
             ),
@@ -576,10 +488,7 @@ fn judgement(response: &Response) -> Vec<Block<'static>> {
     if response.unjudged > 0 {
         facts.push((
             "not judged",
-            format!(
-                "{} points: shooting found no true motion near",
-                response.unjudged
-            ),
+            format!("{} points: shooting found no true motion near", response.unjudged),
         ));
     }
     facts.push((
@@ -590,25 +499,16 @@ fn judgement(response: &Response) -> Vec<Block<'static>> {
             significant(response.question.tolerance, 3)
         ),
     ));
-    let mut blocks = vec![
-        Block::Heading("judged against the true motion".to_owned()),
-        Block::Facts(facts),
-    ];
-    let mut periods: Vec<Option<usize>> = response
-        .elsewhere
-        .iter()
-        .map(|elsewhere| elsewhere.periods)
-        .collect();
+    let mut blocks =
+        vec![Block::Heading("judged against the true motion".to_owned()), Block::Facts(facts)];
+    let mut periods: Vec<Option<usize>> =
+        response.elsewhere.iter().map(|elsewhere| elsewhere.periods).collect();
     periods.sort();
     periods.dedup();
     for count in periods {
-        let places = response
-            .elsewhere
-            .iter()
-            .filter(|elsewhere| elsewhere.periods == count);
-        let mut places: Vec<String> = places
-            .map(|elsewhere| significant(elsewhere.parameter, 4))
-            .collect();
+        let places = response.elsewhere.iter().filter(|elsewhere| elsewhere.periods == count);
+        let mut places: Vec<String> =
+            places.map(|elsewhere| significant(elsewhere.parameter, 4)).collect();
         places.dedup();
         let places = places.join(", ");
         blocks.push(Block::Sentence(match count {

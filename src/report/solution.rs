@@ -42,10 +42,7 @@ pub fn solution<'a>(
     let shown = solution.law.shown();
     let laws = match solution.slow() {
         Some(slow) => slow_equations(solution, slow),
-        None => shown
-            .into_iter()
-            .flat_map(|law| law_blocks(solution, law))
-            .collect(),
+        None => shown.into_iter().flat_map(|law| law_blocks(solution, law)).collect(),
     };
     let mut sections = vec![vec![Block::Question(&solution.equation)], vec![title], laws];
     // Where the motion is left out, so is its amplitude.
@@ -58,18 +55,11 @@ pub fn solution<'a>(
         let others = other_cycles(cycle, solution).into_iter().map(Block::Remark);
         sections.push(std::iter::once(amplitude).chain(others).collect());
     }
-    sections.push(
-        std::iter::once(Block::Motion(solution))
-            .chain(definitions(solution))
-            .collect(),
-    );
+    sections.push(std::iter::once(Block::Motion(solution)).chain(definitions(solution)).collect());
     if let Some(slow) = solution.slow() {
         sections.extend(slow_motion(slow));
     } else if solution.limit_cycle.is_some() {
-        let slow = solution
-            .modulation
-            .as_ref()
-            .filter(|slow| slow.release.is_some());
+        let slow = solution.modulation.as_ref().filter(|slow| slow.release.is_some());
         sections.extend(slow.into_iter().flat_map(|slow| approach(solution, slow)));
     }
     let notes = solution.validity.iter().map(ToString::to_string);
@@ -85,36 +75,23 @@ pub fn solution<'a>(
 /// A law as blocks.
 pub(super) fn law_blocks<'a>(solution: &'a Solution, law: Shown<'a>) -> Vec<Block<'a>> {
     let omega = Expr::symbol("omega");
-    let explicit = |left: Expr, right| Block::Law {
-        left,
-        right: solution.ordered(right),
-    };
+    let explicit = |left: Expr, right| Block::Law { left, right: solution.ordered(right) };
     match law {
         Shown::Squared(squared) => vec![explicit(&omega * &omega, squared)],
         Shown::Frequency(frequency) => vec![explicit(omega, frequency)],
         Shown::Relation(relation) => vec![Block::Relation(solution.by_falling_frequency(relation))],
         Shown::Closed(form) => {
             let left = if form.squared { &omega * &omega } else { omega };
-            in_decimals(solution, &form.value, &left).unwrap_or_else(|| {
-                vec![Block::Equality {
-                    left,
-                    right: &form.value,
-                }]
-            })
+            in_decimals(solution, &form.value, &left)
+                .unwrap_or_else(|| vec![Block::Equality { left, right: &form.value }])
         }
-        Shown::Quadrature(lines) => lines
-            .iter()
-            .map(|line| Block::Line(Cow::Borrowed(line)))
-            .collect(),
+        Shown::Quadrature(lines) => {
+            lines.iter().map(|line| Block::Line(Cow::Borrowed(line))).collect()
+        }
         Shown::System(system) => {
             let equations = system.equations.iter();
-            let equations = equations.map(|right| Block::Equality {
-                left: Expr::zero(),
-                right,
-            });
-            std::iter::once(Block::Unknowns(&system.unknowns))
-                .chain(equations)
-                .collect()
+            let equations = equations.map(|right| Block::Equality { left: Expr::zero(), right });
+            std::iter::once(Block::Unknowns(&system.unknowns)).chain(equations).collect()
         }
     }
 }
@@ -130,31 +107,19 @@ const ROUNDED_DIGITS: usize = 15;
 fn in_decimals<'a>(solution: &Solution, value: &Expr, left: &Expr) -> Option<Vec<Block<'a>>> {
     solution.degrees?;
     let fraction = value.fraction();
-    let polynomial = |factors: Vec<Expr>| {
-        Expr::product(factors)
-            .to_polynomial(&mut |_| None)
-            .ok()
-            .flatten()
-    };
+    let polynomial =
+        |factors: Vec<Expr>| Expr::product(factors).to_polynomial(&mut |_| None).ok().flatten();
     let above = polynomial(fraction.numerator)?;
     let below = polynomial(fraction.denominator)?;
     let longest = longest([&above, &below])?;
     if longest < LONGEST && !solution.numerical {
         return None;
     }
-    let digits = if solution.numerical {
-        ROUNDED_DIGITS
-    } else {
-        6
-    };
+    let digits = if solution.numerical { ROUNDED_DIGITS } else { 6 };
     let rounded = |name, polynomial: &Polynomial| rounded(solution, name, polynomial, digits);
     let remark = (!solution.numerical).then(|| rounded_to(longest));
     let first = below.coefficient(&Monomial::one());
-    let sign = if fraction.negative {
-        -Rational::one()
-    } else {
-        Rational::one()
-    };
+    let sign = if fraction.negative { -Rational::one() } else { Rational::one() };
     let over = |polynomial: &Polynomial, factor: &Rational| {
         polynomial.map(|number| number * factor / &first)
     };
@@ -188,10 +153,7 @@ fn rounded<'a>(
     digits: usize,
 ) -> Block<'a> {
     let sum = Sum::new(polynomial, true, |monomial| solution.order_of(monomial));
-    Block::Law {
-        left: Expr::from(name),
-        right: sum.with_digits(digits),
-    }
+    Block::Law { left: Expr::from(name), right: sum.with_digits(digits) }
 }
 
 fn rounded_to<'a>(longest: u64) -> Block<'a> {
@@ -207,9 +169,7 @@ fn definitions(solution: &Solution) -> Vec<Block<'_>> {
     let mut blocks = vec![];
     let mut digits = None;
     for definition in &solution.definitions {
-        let polynomial = solution
-            .degrees
-            .and_then(|_| polynomial(&definition.meaning));
+        let polynomial = solution.degrees.and_then(|_| polynomial(&definition.meaning));
         let long = polynomial.and_then(|own| Some((longest([&own])?, own)));
         blocks.push(match long.filter(|(bits, _)| *bits >= LONGEST) {
             Some((bits, polynomial)) => {
@@ -225,20 +185,14 @@ fn definitions(solution: &Solution) -> Vec<Block<'_>> {
 
 /// The slow equations: `a' = ...`, `psi' = ...`.
 fn slow_equations<'a>(solution: &'a Solution, slow: &'a Modulation) -> Vec<Block<'a>> {
-    let rates = [
-        (slow.amplitude, &slow.amplitude_rate),
-        (slow.phase, &slow.phase_rate),
-    ];
+    let rates = [(slow.amplitude, &slow.amplitude_rate), (slow.phase, &slow.phase_rate)];
     let polynomials = rates.map(|(_, right)| right.to_polynomial(&mut |_| None).ok().flatten());
     // One form for both.
     let both = polynomials.iter().all(Option::is_some);
     let equation = |((name, right), polynomial): ((Symbol, &'a Expr), Option<Polynomial>)| {
         let left = Expr::from(name.derivative());
         match polynomial.filter(|_| both) {
-            Some(polynomial) => Block::Law {
-                left,
-                right: solution.ordered(&polynomial),
-            },
+            Some(polynomial) => Block::Law { left, right: solution.ordered(&polynomial) },
             None => Block::Equality { left, right },
         }
     };
@@ -251,11 +205,7 @@ fn slow_motion(slow: &Modulation) -> Vec<Vec<Block<'_>>> {
     if !slow.steady.is_empty() {
         let line = |cycle: &LeadingCycle| {
             let amplitude = constant_in_words(&cycle.amplitude);
-            Block::Remark(format!(
-                "{} = {amplitude} stays: {}",
-                slow.amplitude,
-                cycle.stability()
-            ))
+            Block::Remark(format!("{} = {amplitude} stays: {}", slow.amplitude, cycle.stability()))
         };
         sections.push(slow.steady.iter().map(line).collect());
     }
@@ -275,10 +225,10 @@ fn approach<'a>(solution: &'a Solution, slow: &'a Modulation) -> Vec<Vec<Block<'
 fn from_start(slow: &Modulation) -> Option<Vec<Block<'_>>> {
     let transient = slow.transient.as_ref()?;
     let start = transient.start;
-    let phase = transient.phase.as_ref().map(|phase| Block::Equality {
-        left: Expr::from(slow.phase),
-        right: phase,
-    });
+    let phase = transient
+        .phase
+        .as_ref()
+        .map(|phase| Block::Equality { left: Expr::from(slow.phase), right: phase });
     let ends = transient.ends.as_ref().map(|ends| {
         let what = match slow.amplitude_rate.has_leading_minus() {
             true => "the amplitude is zero",
@@ -290,14 +240,9 @@ fn from_start(slow: &Modulation) -> Option<Vec<Block<'_>>> {
         true => format!("Released at rest from {start} > 0"),
         false => format!("From {}(0) = {start}", slow.amplitude),
     };
-    let amplitude = Block::Equality {
-        left: Expr::from(slow.amplitude),
-        right: &transient.amplitude,
-    };
-    let blocks = [Block::Heading(heading), amplitude]
-        .into_iter()
-        .chain(phase)
-        .chain(ends);
+    let amplitude =
+        Block::Equality { left: Expr::from(slow.amplitude), right: &transient.amplitude };
+    let blocks = [Block::Heading(heading), amplitude].into_iter().chain(phase).chain(ends);
     Some(blocks.collect())
 }
 
@@ -324,12 +269,8 @@ fn other_cycles(cycle: &LimitCycle, solution: &Solution) -> Vec<String> {
     }
     let symbol = solution.amplitude.symbol();
     let small: Vec<&str> = solution.small_parameters().map(Symbol::written).collect();
-    let head = format!(
-        "cycle {} of {}; for {} -> 0:",
-        cycle.number,
-        cycle.cycles.len(),
-        small.join(", ")
-    );
+    let head =
+        format!("cycle {} of {}; for {} -> 0:", cycle.number, cycle.cycles.len(), small.join(", "));
     let line = |(k, each): (usize, &LeadingCycle)| {
         let own = if k + 1 == cycle.number { "*" } else { " " };
         let amplitude = &each.amplitude;
@@ -341,13 +282,7 @@ fn other_cycles(cycle: &LimitCycle, solution: &Solution) -> Vec<String> {
             }
         };
         let exact = constant_in_words(amplitude);
-        format!(
-            "{own} {}  {symbol} = {exact}{value}, {}",
-            k + 1,
-            each.stability()
-        )
+        format!("{own} {}  {symbol} = {exact}{value}, {}", k + 1, each.stability())
     };
-    std::iter::once(head)
-        .chain(cycle.cycles.iter().enumerate().map(line))
-        .collect()
+    std::iter::once(head).chain(cycle.cycles.iter().enumerate().map(line)).collect()
 }

@@ -86,10 +86,7 @@ fn equation<'a>(curves: &TransitionCurves, curve: &TransitionCurve) -> Block<'a>
     let left = Expr::from(&curves.unknown.given());
     match (&curve.under_root, curve.expression()) {
         (Some(_), Ok(right)) => Block::Line(Cow::Owned(Line::equation(left, right))),
-        _ => Block::Law {
-            left,
-            right: curves.ordered(&curve.middle),
-        },
+        _ => Block::Law { left, right: curves.ordered(&curve.middle) },
     }
 }
 
@@ -104,9 +101,7 @@ fn validity<'a>(curves: &TransitionCurves) -> Vec<Block<'a>> {
         )),
     ];
     if let Some(name) = curves.time_scale {
-        blocks.push(Block::Note(format!(
-            "derived in the dimensionless time tau = {name}*t"
-        )));
+        blocks.push(Block::Note(format!("derived in the dimensionless time tau = {name}*t")));
     }
     for pair in curves.curves.windows(2) {
         let same = pair[0].tongue == pair[1].tongue && pair[0].middle == pair[1].middle;
@@ -142,10 +137,7 @@ fn verdicts<'a>(
     at: &'a Values,
     judged: &[JudgedCurve],
 ) -> Vec<Block<'a>> {
-    let values: Vec<String> = at
-        .iter()
-        .map(|(name, value)| format!("{name} = {value}"))
-        .collect();
+    let values: Vec<String> = at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let head = [
         ("curve", "curve"),
         ("formula", "formula"),
@@ -177,10 +169,8 @@ fn verdicts<'a>(
         Block::Note(format!(
             "true: by Hill's determinant, confirmed by Floquet's multipliers of the integrated motion; none: {}",
             match report.curves.unknown.power() {
-                power if power % 2 == 0 && report.curves.time_scale.is_some() => format!(
-                    "no real {} lies on the curve there",
-                    report.curves.unknown.symbol()
-                ),
+                power if power % 2 == 0 && report.curves.time_scale.is_some() =>
+                    format!("no real {} lies on the curve there", report.curves.unknown.symbol()),
                 _ => "the tongue does not reach so far".to_owned(),
             }
         )),

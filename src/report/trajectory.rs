@@ -86,9 +86,7 @@ impl TrajectoryReport<'_> {
     pub fn times(&self) -> Vec<f64> {
         let end = self.motion.end();
         match self.samples.is_empty() {
-            true => (0..=ROWS)
-                .map(|row| end * f64::from(row) / f64::from(ROWS))
-                .collect(),
+            true => (0..=ROWS).map(|row| end * f64::from(row) / f64::from(ROWS)).collect(),
             false => self.samples.to_vec(),
         }
     }
@@ -134,14 +132,13 @@ pub fn trajectory<'a>(report: &TrajectoryReport<'a>) -> Document<'a> {
 
 fn states<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
     let motion = report.motion;
-    let times = std::iter::once(Heading {
-        text: "t",
-        latex: "$t$",
-    });
-    let names = motion.course.rates.states.iter().map(|name| Heading {
-        text: name.name(),
-        latex: name.name(),
-    });
+    let times = std::iter::once(Heading { text: "t", latex: "$t$" });
+    let names = motion
+        .course
+        .rates
+        .states
+        .iter()
+        .map(|name| Heading { text: name.name(), latex: name.name() });
     let row = |time: f64| {
         let state = motion.at(time)?;
         Some(std::iter::once(time).chain(state).map(decimal).collect())
@@ -167,25 +164,15 @@ fn on_section<'a>(motion: &Trajectory, section: &Section) -> Vec<Block<'a>> {
     match motion.touches().len() {
         0 => {}
         1 => words.push_str("; touched once, not crossed, which is no state"),
-        touches => words.push_str(&format!(
-            "; touched {touches} times, not crossed, which are no states"
-        )),
+        touches => {
+            words.push_str(&format!("; touched {touches} times, not crossed, which are no states"))
+        }
     }
     if count > MOST_ON_SECTION {
-        words.push_str(&format!(
-            "; the first {MOST_ON_SECTION}, all of them as CSV or JSON"
-        ));
+        words.push_str(&format!("; the first {MOST_ON_SECTION}, all of them as CSV or JSON"));
     }
-    let heading = |name: &'static str| Heading {
-        text: name,
-        latex: name,
-    };
-    let names = motion
-        .course
-        .rates
-        .states
-        .iter()
-        .map(|name| heading(name.name()));
+    let heading = |name: &'static str| Heading { text: name, latex: name };
+    let names = motion.course.rates.states.iter().map(|name| heading(name.name()));
     let row = |crossing: &Crossing| -> Vec<String> {
         let numbers = std::iter::once(&crossing.time).chain(&crossing.state);
         numbers.map(|number| decimal(*number)).collect()
@@ -214,10 +201,7 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
     let course = sweep.course;
     let equation =
         |left: &Expr| Block::Line(Cow::Owned(Line::equation(left.clone(), Expr::zero())));
-    let heading = |name: &'static str| Heading {
-        text: name,
-        latex: name,
-    };
+    let heading = |name: &'static str| Heading { text: name, latex: name };
     let varied = sweep.names.iter().map(|name| heading(name.name()));
     let mut head: Vec<Heading> = varied.collect();
     let extremes = course
@@ -236,39 +220,20 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
         let counted = on_section.then(|| motion.crossings.len().to_string());
         numbers.chain(counted).collect()
     });
-    let mut words = format!(
-        "{} motions to t = {}",
-        sweep.motions.len(),
-        decimal(course.duration)
-    );
+    let mut words = format!("{} motions to t = {}", sweep.motions.len(), decimal(course.duration));
     if course.after > 0.0 {
-        words.push_str(&format!(
-            "; least and greatest from t = {} on",
-            decimal(course.after)
-        ));
+        words.push_str(&format!("; least and greatest from t = {} on", decimal(course.after)));
     }
     let mut last = vec![Block::Note(words)];
-    last.extend(
-        course
-            .section
-            .as_ref()
-            .map(|section| Block::Note(section_in_words(section))),
-    );
-    let ended = sweep
-        .motions
-        .iter()
-        .filter(|motion| motion.reason != End::Reached)
-        .count();
+    last.extend(course.section.as_ref().map(|section| Block::Note(section_in_words(section))));
+    let ended = sweep.motions.iter().filter(|motion| motion.reason != End::Reached).count();
     if ended > 0 {
         last.push(Block::Note(format!("{ended} of them end early")));
     }
     Document {
         sections: vec![
             course.equations.iter().map(equation).collect(),
-            vec![Block::Table {
-                head,
-                rows: rows.collect(),
-            }],
+            vec![Block::Table { head, rows: rows.collect() }],
             last,
         ],
     }
@@ -294,14 +259,7 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
             Integrator::RungeKutta => "Runge-Kutta".to_owned(),
         },
     )];
-    facts.push((
-        "until",
-        format!(
-            "t = {}, {}",
-            decimal(motion.end()),
-            in_words(motion.reason())
-        ),
-    ));
+    facts.push(("until", format!("t = {}, {}", decimal(motion.end()), in_words(motion.reason()))));
     let held: Vec<String> = motion
         .held()
         .take(MOST_HELD)
@@ -309,11 +267,7 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
         .collect();
     let more = motion.held().count().saturating_sub(MOST_HELD);
     if !held.is_empty() {
-        let more = if more == 0 {
-            String::new()
-        } else {
-            format!(", and {more} times more")
-        };
+        let more = if more == 0 { String::new() } else { format!(", and {more} times more") };
         facts.push(("held by friction", format!("t = {}{more}", held.join(", "))));
     }
     if let Some(balance) = &motion.balance {
@@ -339,12 +293,8 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
             format!("{} of the largest", significant(balance.residual, 2)),
         ));
     }
-    let unknown: Vec<String> = motion
-        .course
-        .missing_for_energy()
-        .iter()
-        .map(|name| format!("`{name}`"))
-        .collect();
+    let unknown: Vec<String> =
+        motion.course.missing_for_energy().iter().map(|name| format!("`{name}`")).collect();
     if !unknown.is_empty() {
         facts.push((
             "energy",
@@ -360,17 +310,11 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
             None => "",
         };
         let why = format!("then a start displaced by {DISPLACEMENT:e} of it is elsewhere{beyond}");
-        facts.push((
-            "six digits hold",
-            format!("until t = {}, {why}", decimal(known)),
-        ));
+        facts.push(("six digits hold", format!("until t = {}, {why}", decimal(known))));
     }
     if let Some(judge) = report.judge {
         let apart = significant(motion.difference(judge), 2);
-        facts.push((
-            "other integrator",
-            format!("differs by {apart} of the largest displacement"),
-        ));
+        facts.push(("other integrator", format!("differs by {apart} of the largest displacement")));
     }
     vec![Block::Facts(facts)]
 }

@@ -53,10 +53,7 @@ fn duffing(eps: &Rational, start: &Rational) -> Rational {
     let stiffening = eps * start * start;
     let one = ratio(1, 1);
     let half = &stiffening / Integer::from(2);
-    rational(mean(
-        root(&fixed(&(&one + &stiffening))),
-        root(&fixed(&(one + half))),
-    ))
+    rational(mean(root(&fixed(&(&one + &stiffening))), root(&fixed(&(one + half)))))
 }
 
 /// omega of `x'' + sin(x) = 0`.
@@ -84,10 +81,7 @@ fn contains(certificate: &Certificate, truth: &Rational) -> Result<bool, CheckEr
 
 fn certified(equation: &str, order: u32, at: &str) -> (Oscillator, Solution, Values, Certificate) {
     let oscillator = Oscillator::parse(equation).expect("an equation");
-    let options = Options {
-        order: Some(order),
-        ..Options::default()
-    };
+    let options = Options { order: Some(order), ..Options::default() };
     let solution = solve(&oscillator, &options).expect("a solution");
     let at: Values = at.parse().expect("values");
     let (certificate, proved) = certify(&oscillator, &solution, &at)
@@ -101,16 +95,8 @@ fn thirty_digits_of_the_pendulum() {
     for (start, digits) in [("1/10", 32), ("3/2", 32), ("5/2", 32), ("31/10", 31)] {
         let (_, _, _, certificate) = certified("x'' + sin(x) = 0", 4, &format!("A = {start}"));
         let start: Rational = start.parse().expect("a fraction");
-        assert_eq!(
-            contains(&certificate, &pendulum(&start)),
-            Ok(true),
-            "A = {start}"
-        );
-        let known = check(&certificate)
-            .expect("a proof")
-            .frequency
-            .radius
-            .value();
+        assert_eq!(contains(&certificate, &pendulum(&start)), Ok(true), "A = {start}");
+        let known = check(&certificate).expect("a proof").frequency.radius.value();
         assert!(known < 10.0_f64.powi(-digits), "A = {start}: {known}");
     }
 }
@@ -132,10 +118,7 @@ fn the_error_of_a_formula_is_enclosed() {
     ] {
         let (oscillator, solution, values, certificate) =
             certified("x'' + x + eps*x^3 = 0", order, at);
-        let errors = check(&certificate)
-            .expect("a proof")
-            .formula
-            .expect("a formula");
+        let errors = check(&certificate).expect("a proof").formula.expect("a formula");
         let formula = solution.motion_at(&values).expect("a motion");
         let truth = to_f64(&duffing(&eps, &start));
         let error = (formula.frequency() - truth).abs();
@@ -145,9 +128,8 @@ fn the_error_of_a_formula_is_enclosed() {
         );
         assert!((errors.relative.upper - error / truth).abs() < 1e-15);
         // Both motions at the same phase, the true one by Runge-Kutta.
-        let samples = motions(&oscillator, &solution, &values)
-            .expect("a motion")
-            .expect("a real frequency");
+        let samples =
+            motions(&oscillator, &solution, &values).expect("a motion").expect("a real frequency");
         let apart = samples
             .truth
             .iter()
@@ -161,13 +143,9 @@ fn the_error_of_a_formula_is_enclosed() {
         assert!(errors.deviation.upper < 1.001 * errors.deviation.lower);
         // No moment of fifty periods is outside.
         let period = std::f64::consts::TAU / truth;
-        for (turn, (instant, x, _)) in (0..50).flat_map(|turn| {
-            samples
-                .truth
-                .iter()
-                .step_by(8)
-                .map(move |sample| (turn, sample))
-        }) {
+        for (turn, (instant, x, _)) in (0..50)
+            .flat_map(|turn| samples.truth.iter().step_by(8).map(move |sample| (turn, sample)))
+        {
             let t = f64::from(turn) * period + instant;
             let bound = errors.deviation.upper + errors.drift.upper * t;
             assert!((x - formula.at(t)).abs() <= bound + 1e-8, "t = {t}");
@@ -178,24 +156,13 @@ fn the_error_of_a_formula_is_enclosed() {
 #[test]
 fn proved_errors_shrink_with_the_power_that_is_left_out() {
     let relative = |order: u32, eps: &str| {
-        let (_, _, _, certificate) = certified(
-            "x'' + x + eps*x^3 = 0",
-            order,
-            &format!("eps = {eps}, A = 1"),
-        );
-        check(&certificate)
-            .expect("a proof")
-            .formula
-            .expect("a formula")
-            .frequency
-            .upper
+        let (_, _, _, certificate) =
+            certified("x'' + x + eps*x^3 = 0", order, &format!("eps = {eps}, A = 1"));
+        check(&certificate).expect("a proof").formula.expect("a formula").frequency.upper
     };
     for order in 1..=5 {
         let exponent = (relative(order, "1/50") / relative(order, "1/100")).log2();
-        assert!(
-            (exponent - f64::from(order + 1)).abs() < 0.1,
-            "order {order}: {exponent}"
-        );
+        assert!((exponent - f64::from(order + 1)).abs() < 0.1, "order {order}: {exponent}");
     }
 }
 
@@ -206,10 +173,7 @@ fn every_method_is_held_against_the_same_proof() {
     let truth = to_f64(&pendulum(&ratio(1, 1)));
     let mut count = 0;
     for method in Method::ALL {
-        let options = Options {
-            method: Some(method),
-            ..Options::default()
-        };
+        let options = Options { method: Some(method), ..Options::default() };
         let Ok(solution) = solve(&oscillator, &options) else {
             continue;
         };
@@ -222,10 +186,7 @@ fn every_method_is_held_against_the_same_proof() {
         };
         let error = (solution.motion_at(&at).expect("a motion").frequency() - truth).abs();
         let enclosed = proved.formula.expect("a formula").frequency;
-        assert!(
-            enclosed.lower <= error + 1e-15 && error <= enclosed.upper + 1e-15,
-            "{method:?}"
-        );
+        assert!(enclosed.lower <= error + 1e-15 && error <= enclosed.upper + 1e-15, "{method:?}");
         count += 1;
     }
     assert!(count >= 8, "{count} methods");
@@ -255,17 +216,10 @@ fn forces_of_every_function_of_the_evaluator() {
         let (certificate, proved) =
             certify(&oscillator, &solution, &at).unwrap_or_else(|error| panic!("{force}: {error}"));
         // The judge's own frequency comes of another way, by quadrature.
-        let truth = lindstedt::judge(&oscillator, &solution, &at, 0.01)
-            .expect("a verdict")
-            .true_frequency;
-        assert!(
-            (to_f64(&proved.frequency.middle) / truth - 1.0).abs() < 1e-12,
-            "{force}"
-        );
-        assert!(
-            proved.frequency.radius.value() < 1e-28,
-            "{force}: {proved:?}"
-        );
+        let truth =
+            lindstedt::judge(&oscillator, &solution, &at, 0.01).expect("a verdict").true_frequency;
+        assert!((to_f64(&proved.frequency.middle) / truth - 1.0).abs() < 1e-12, "{force}");
+        assert!(proved.frequency.radius.value() < 1e-28, "{force}: {proved:?}");
         assert!(check(&certificate).is_ok(), "{force}");
     }
 }
@@ -274,10 +228,7 @@ fn forces_of_every_function_of_the_evaluator() {
 fn what_cannot_be_certified_is_refused_with_the_reason() {
     let refused = |equation: &str, method: Option<Method>, at: &str| {
         let oscillator = Oscillator::parse(equation).expect("an equation");
-        let options = Options {
-            method,
-            ..Options::default()
-        };
+        let options = Options { method, ..Options::default() };
         let solution = solve(&oscillator, &options).expect("a solution");
         certify(&oscillator, &solution, &at.parse().expect("values")).expect_err("no certificate")
     };
@@ -293,10 +244,7 @@ fn what_cannot_be_certified_is_refused_with_the_reason() {
         refused("x'' + x + x^3 = 0", Some(Method::Averaging), "a = 1"),
         NotCertified::Convention
     ));
-    assert!(matches!(
-        refused("x'' + sin(x) = 0", None, "A = 7/2"),
-        NotCertified::Truth(_)
-    ));
+    assert!(matches!(refused("x'' + sin(x) = 0", None, "A = 7/2"), NotCertified::Truth(_)));
     // So near the separatrix that the block would have to be larger than any.
     assert!(matches!(
         refused("x'' + sin(x) = 0", None, "A = 31415/10000"),
@@ -320,9 +268,7 @@ fn change(certificate: &mut Certificate, which: u8, place: usize, bit: usize, si
         5 => certificate.highest = 1 + bit,
         6 => certificate.odd = false,
         7 => certificate.bits += 1,
-        8 => certificate
-            .coefficients
-            .truncate(1 + place % certificate.coefficients.len()),
+        8 => certificate.coefficients.truncate(1 + place % certificate.coefficients.len()),
         9 => {
             for row in &mut certificate.inverse {
                 for entry in row {
@@ -373,20 +319,14 @@ fn motions_in_one_well_and_over_both() {
     // In the well about x = 1 of the odd force -x + x^3, and over both wells.
     for (about, start) in [("1", "A = 1/4"), ("0", "A = 2")] {
         let about = parse_expression(about).expect("a number");
-        let oscillator = Oscillator::parse("x'' - x + x^3 = 0")
-            .expect("an equation")
-            .about(about);
+        let oscillator = Oscillator::parse("x'' - x + x^3 = 0").expect("an equation").about(about);
         let solution = solve(&oscillator, &Options::default()).expect("a solution");
         let at: Values = start.parse().expect("values");
         let (certificate, proved) =
             certify(&oscillator, &solution, &at).unwrap_or_else(|error| panic!("{start}: {error}"));
-        let truth = lindstedt::judge(&oscillator, &solution, &at, 0.01)
-            .expect("a verdict")
-            .true_frequency;
-        assert!(
-            (to_f64(&proved.frequency.middle) / truth - 1.0).abs() < 1e-12,
-            "{start}"
-        );
+        let truth =
+            lindstedt::judge(&oscillator, &solution, &at, 0.01).expect("a verdict").true_frequency;
+        assert!((to_f64(&proved.frequency.middle) / truth - 1.0).abs() < 1e-12, "{start}");
         assert!(check(&certificate).is_ok());
     }
 }
@@ -404,18 +344,12 @@ fn each_inequality_is_checked() {
     // Z1: an inverse that is none, in one column or in all.
     let without = |column: usize| {
         move |certificate: &mut Certificate| {
-            certificate
-                .inverse
-                .iter_mut()
-                .for_each(|row| row[column] = Integer::zero())
+            certificate.inverse.iter_mut().for_each(|row| row[column] = Integer::zero())
         }
     };
     for column in 0..sound.inverse.len() {
         assert!(
-            matches!(
-                reason(&without(column)),
-                CheckError::NotProved(NotProved::NoContraction(_))
-            ),
+            matches!(reason(&without(column)), CheckError::NotProved(NotProved::NoContraction(_))),
             "column {column}"
         );
     }
@@ -423,14 +357,8 @@ fn each_inequality_is_checked() {
     let (_, _, _, steep) = certified("x'' + sin(x) = 0", 4, "A = 3");
     let mut one = steep.clone();
     one.highest = 1;
-    one.inverse = steep.inverse[..2]
-        .iter()
-        .map(|row| row[..2].to_vec())
-        .collect();
-    assert!(matches!(
-        check(&one),
-        Err(CheckError::NotProved(NotProved::NoContraction(_)))
-    ));
+    one.inverse = steep.inverse[..2].iter().map(|row| row[..2].to_vec()).collect();
+    assert!(matches!(check(&one), Err(CheckError::NotProved(NotProved::NoContraction(_)))));
     // Y0 and Z2: too far for the curvature of the problem.
     let far = |certificate: &mut Certificate| {
         certificate.coefficients[1] += Integer::from(1) << (certificate.bits - 2)
@@ -442,34 +370,19 @@ fn each_inequality_is_checked() {
     // What is claimed.
     let claimed =
         |certificate: &mut Certificate| certificate.claim = ratio(1, i64::MAX) * ratio(1, i64::MAX);
-    assert!(matches!(
-        reason(&claimed),
-        CheckError::ClaimedLess {
-            what: "the radius",
-            ..
-        }
-    ));
+    assert!(matches!(reason(&claimed), CheckError::ClaimedLess { what: "the radius", .. }));
     let mut boastful = sound.clone();
     if let Some(formula) = &mut boastful.formula {
         formula.deviation[1] = &formula.deviation[1] / Integer::from(2);
     }
-    assert!(matches!(
-        check(&boastful),
-        Err(CheckError::ClaimedLess {
-            what: "the deviation",
-            ..
-        })
-    ));
+    assert!(matches!(check(&boastful), Err(CheckError::ClaimedLess { what: "the deviation", .. })));
     let mut modest = sound.clone();
     if let Some(formula) = &mut modest.formula {
         formula.frequency_error[0] = &formula.frequency_error[0] * Integer::from(2);
     }
     assert!(matches!(
         check(&modest),
-        Err(CheckError::ClaimedMore {
-            what: "the error of the frequency",
-            ..
-        })
+        Err(CheckError::ClaimedMore { what: "the error of the frequency", .. })
     ));
     // The symmetry.
     let even = |certificate: &mut Certificate| {
@@ -511,21 +424,11 @@ fn proved_range(
     tolerance: f64,
 ) -> (Rational, Beyond, Solution) {
     let oscillator = Oscillator::parse(equation).expect("an equation");
-    let options = Options {
-        method: Some(method),
-        order: Some(order),
-        ..Options::default()
-    };
+    let options = Options { method: Some(method), order: Some(order), ..Options::default() };
     let solution = solve(&oscillator, &options).expect("a solution");
     let at: Values = at.parse().expect("values");
-    let proved = validity(
-        &oscillator,
-        &solution,
-        &at,
-        [&from, &to],
-        tolerance,
-        Supervision::default(),
-    );
+    let proved =
+        validity(&oscillator, &solution, &at, [&from, &to], tolerance, Supervision::default());
     let proved = proved.unwrap_or_else(|error| panic!("{equation}: {error}"));
     assert!(
         proved.from == from && proved.within <= tolerance && proved.intervals > 0,
@@ -546,14 +449,8 @@ fn a_proved_range_ends_where_the_error_passes_the_tolerance() {
         (&sine, 2, 1e-2),
     ] {
         let ends = [from.clone(), end.clone()];
-        let (to, beyond, solution) = proved_range(
-            equation,
-            Method::LindstedtPoincare,
-            order,
-            "",
-            ends.clone(),
-            tolerance,
-        );
+        let (to, beyond, solution) =
+            proved_range(equation, Method::LindstedtPoincare, order, "", ends.clone(), tolerance);
         let error = |amplitude: &Rational| {
             let at: Values = format!("A = {amplitude}").parse().expect("values");
             let formula = solution.motion_at(&at).expect("a motion").frequency();
@@ -567,11 +464,7 @@ fn a_proved_range_ends_where_the_error_passes_the_tolerance() {
         // Every amplitude of the range is within, and hardly one beyond it.
         for k in 0..=50 {
             let amplitude = &ends[0] + (&to - &ends[0]) * ratio(k, 50);
-            assert!(
-                error(&amplitude) <= tolerance,
-                "order {order}, A = {}",
-                to_f64(&amplitude)
-            );
+            assert!(error(&amplitude) <= tolerance, "order {order}, A = {}", to_f64(&amplitude));
         }
         let Beyond::Further(outside) = beyond else {
             panic!("order {order}: {beyond:?}");
@@ -601,21 +494,14 @@ fn a_proved_range_reaches_its_end_where_the_error_is_flat() {
         let (mut low, mut high) = (1.0, 8.0);
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
-            if error(middle) <= tolerance {
-                low = middle
-            } else {
-                high = middle
-            }
+            if error(middle) <= tolerance { low = middle } else { high = middle }
         }
         let to = to_f64(&to);
         assert!(to <= high && to > 0.99 * low, "{tolerance}: {to}, {low}");
         let Beyond::Further(outside) = beyond else {
             panic!("{tolerance}: {beyond:?}");
         };
-        assert!(
-            error(to_f64(&outside)) > tolerance && to_f64(&outside) < 1.02 * low,
-            "{outside}"
-        );
+        assert!(error(to_f64(&outside)) > tolerance && to_f64(&outside) < 1.02 * low, "{outside}");
     }
 }
 
@@ -643,19 +529,13 @@ fn a_range_may_be_proved_to_its_end_or_end_with_the_well() {
     );
     assert!(
         to < ratio(1, 1)
-            && matches!(
-                beyond,
-                Beyond::Open(_) | Beyond::Unproved(..) | Beyond::Further(_)
-            ),
+            && matches!(beyond, Beyond::Open(_) | Beyond::Unproved(..) | Beyond::Further(_)),
         "{to}, {beyond:?}"
     );
     // A law without an expression.
     let oscillator = Oscillator::parse("x'' + sin(x) = 0").expect("an equation");
-    let balance = Options {
-        method: Some(Method::HarmonicBalance),
-        order: Some(3),
-        ..Options::default()
-    };
+    let balance =
+        Options { method: Some(Method::HarmonicBalance), order: Some(3), ..Options::default() };
     let solution = solve(&oscillator, &balance).expect("a solution");
     let ends = [ratio(1, 10), ratio(1, 1)];
     let refused = validity(
@@ -674,19 +554,11 @@ fn a_range_may_be_proved_to_its_end_or_end_with_the_well() {
 #[test]
 fn a_motion_is_proved_where_its_formula_has_no_value() {
     let oscillator = Oscillator::parse("x'' + sin(x) = 0").expect("an equation");
-    let options = Options {
-        order: Some(2),
-        ..Options::default()
-    };
+    let options = Options { order: Some(2), ..Options::default() };
     let solution = solve(&oscillator, &options).expect("a solution");
     let at: Values = "A = 3".parse().expect("values");
     let refused = certify(&oscillator, &solution, &at).expect_err("no formula");
-    assert!(
-        refused
-            .help()
-            .is_some_and(|help| help.contains("--no-formula")),
-        "{refused}"
-    );
+    assert!(refused.help().is_some_and(|help| help.contains("--no-formula")), "{refused}");
     let (certificate, proved) = certify_motion(&oscillator, &solution, &at).expect("a proof");
     assert!(proved.formula.is_none() && check(&certificate).as_ref() == Ok(&proved));
     assert_eq!(contains(&certificate, &pendulum(&ratio(3, 1))), Ok(true));
@@ -705,23 +577,14 @@ fn a_formula_begins_where_the_motion_does() {
     };
     let turn = |certificate: &mut Certificate| {
         certificate.start = -certificate.start.clone();
-        certificate
-            .coefficients
-            .iter_mut()
-            .for_each(|units| *units = -&*units);
-        certificate.inverse[0]
-            .iter_mut()
-            .for_each(|entry| *entry = -&*entry);
+        certificate.coefficients.iter_mut().for_each(|units| *units = -&*units);
+        certificate.inverse[0].iter_mut().for_each(|entry| *entry = -&*entry);
     };
     let mut alone = sound.clone();
     turn(&mut alone);
     alone.formula = None;
     assert!(check(&alone).is_ok(), "it is a motion");
-    assert!(
-        reason(&turn).contains("begins elsewhere"),
-        "{}",
-        reason(&turn)
-    );
+    assert!(reason(&turn).contains("begins elsewhere"), "{}", reason(&turn));
     let formula = |change: fn(&mut JudgedFormula)| {
         reason(&|other: &mut Certificate| change(other.formula.as_mut().expect("a formula")))
     };
@@ -738,10 +601,7 @@ fn a_formula_begins_where_the_motion_does() {
         formula.law = "omega^2 = 1 - 9*A^2/32 + 7*81*A^4/(16*1536)".to_owned();
         formula.values = "A = 1".parse().expect("values");
     });
-    assert!(
-        elsewhere.contains("amplitude is not that of the motion"),
-        "{elsewhere}"
-    );
+    assert!(elsewhere.contains("amplitude is not that of the motion"), "{elsewhere}");
 }
 
 /// Whatever is proved, what is printed is no stronger.
@@ -781,9 +641,7 @@ fn every_printed_bound_is_rounded_outwards() {
         let text =
             lindstedt::export::text::document(&lindstedt::report::certificate(&report), usize::MAX);
         let fact = |name: &str| {
-            let line = text
-                .lines()
-                .find(|line| line.trim_start().starts_with(name));
+            let line = text.lines().find(|line| line.trim_start().starts_with(name));
             let line = line.unwrap_or_else(|| panic!("{name}: {text}"));
             line.trim_start()[name.len()..].trim().to_owned()
         };
@@ -795,9 +653,8 @@ fn every_printed_bound_is_rounded_outwards() {
             ("largest deviation at one phase", errors.deviation, 1),
         ] {
             let words = fact(name);
-            let between = words
-                .strip_prefix("between ")
-                .and_then(|words| words.split_once(" and "));
+            let between =
+                words.strip_prefix("between ").and_then(|words| words.split_once(" and "));
             let [lower, upper] = match (words.strip_prefix("at most "), between) {
                 (Some(upper), _) => [Rational::zero(), number(upper)],
                 (None, Some((lower, upper))) => [number(lower), number(upper)],
@@ -805,10 +662,7 @@ fn every_printed_bound_is_rounded_outwards() {
             };
             let [least, most] =
                 [range.lower, range.upper].map(|end| finite(end) * Integer::from(factor));
-            prop_assert!(
-                lower <= least && most <= upper,
-                "{name}: {range:?}: {words}"
-            );
+            prop_assert!(lower <= least && most <= upper, "{name}: {range:?}: {words}");
         }
         let words = fact("omega ");
         let (middle, radius) = words.split_once(" +- ").expect("an enclosure");
@@ -819,19 +673,12 @@ fn every_printed_bound_is_rounded_outwards() {
         let (_, bound) = words.split_once("<= ").expect("a bound");
         let (deviation, drift) = bound.split_once(" + ").expect("two terms");
         let (drift, _) = drift.split_once("*|t|").expect("a factor");
-        prop_assert!(
-            number(deviation) >= finite(errors.deviation.upper),
-            "{words}"
-        );
+        prop_assert!(number(deviation) >= finite(errors.deviation.upper), "{words}");
         prop_assert!(number(drift) >= finite(errors.drift.upper), "{words}");
         // The tolerance is that which was meant, in full.
         let words = fact("verdict");
-        let tail = words
-            .split_once(" within ")
-            .or_else(|| words.split_once(" beyond "));
-        let (shown, _) = tail
-            .and_then(|(_, tail)| tail.split_once(" %"))
-            .expect("a tolerance");
+        let tail = words.split_once(" within ").or_else(|| words.split_once(" beyond "));
+        let (shown, _) = tail.and_then(|(_, tail)| tail.split_once(" %")).expect("a tolerance");
         prop_assert_eq!(number(shown), ratio(i64::from(percent), 100_000));
         Ok(())
     });
@@ -841,9 +688,7 @@ fn every_printed_bound_is_rounded_outwards() {
 /// The fraction of a decimal, `2.5e-33`.
 fn exactly(text: &str) -> Rational {
     let (digits, exponent) = text.split_once('e').unwrap_or((text, "0"));
-    let decimals = digits
-        .split_once('.')
-        .map_or(0, |(_, decimals)| decimals.len());
+    let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len());
     let count: Rational = digits.replace('.', "").parse().expect("digits");
     count * ratio(10, 1).pow(exponent.parse::<i32>().expect("an exponent") - decimals as i32)
 }

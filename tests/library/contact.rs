@@ -36,11 +36,7 @@ fn paper(stiffness: f64, column: ContactSpeed) -> ThreePhases {
 }
 
 fn truth(stiffness: f64) -> TrueImpact {
-    true_impact(
-        &swing(1.5, 0.323, stiffness).collision(),
-        &Options::with_tolerance(1e-12),
-    )
-    .unwrap()
+    true_impact(&swing(1.5, 0.323, stiffness).collision(), &Options::with_tolerance(1e-12)).unwrap()
 }
 
 #[test]
@@ -99,11 +95,7 @@ fn the_printed_contact_duration_needs_an_absurd_stiffness() {
     // 9.258e-8 as dimensionless time belongs to gamma = 6.2e18 in a Hertz contact of the true
     // speed.
     let truth = truth(6.2e18);
-    assert!(
-        (truth.duration / 9.258e-8 - 1.0).abs() < 0.002,
-        "duration {}",
-        truth.duration
-    );
+    assert!((truth.duration / 9.258e-8 - 1.0).abs() < 0.002, "duration {}", truth.duration);
     assert!((hertz::duration(6.2e18, truth.touch.v).unwrap() / truth.duration - 1.0).abs() < 1e-6);
     // And the slope 0.034 of equation (15) to the depth 1.093e-3, gamma = 4.88e7.
     let speed = paper(1e6, ContactSpeed::Paper).speed;
@@ -127,17 +119,12 @@ fn the_errors_of_the_paper_have_the_sizes_known() {
 fn an_exact_frequency_does_not_make_the_cosine_exact() {
     // The true omega at 1.5 rad instead of the law: the wave form alone remains, and the verdict
     // sees it.
-    let exact = Swing {
-        frequency_squared: 0.860_608_346_679_613_f64.powi(2),
-        ..swing(1.5, 0.323, 1e6)
-    };
+    let exact =
+        Swing { frequency_squared: 0.860_608_346_679_613_f64.powi(2), ..swing(1.5, 0.323, 1e6) };
     let truth = truth(1e6);
     let found = deviation(&three_phases(&exact, ContactSpeed::Energy).unwrap(), &truth);
     let of_law = deviation(&paper(1e6, ContactSpeed::Energy), &truth);
-    assert!(
-        found.total < 0.6 * of_law.total && found.total > 0.03,
-        "{found:?} against {of_law:?}"
-    );
+    assert!(found.total < 0.6 * of_law.total && found.total > 0.03, "{found:?} against {of_law:?}");
 }
 
 #[test]
@@ -146,10 +133,8 @@ fn small_swings_are_described_well() {
     // A^2, until only the straight line in the contact is left.
     let relative = |amplitude: f64| {
         let barrier = 0.2 * amplitude;
-        let options = Options {
-            absolute_tolerance: 1e-13 * amplitude,
-            ..Options::with_tolerance(1e-12)
-        };
+        let options =
+            Options { absolute_tolerance: 1e-13 * amplitude, ..Options::with_tolerance(1e-12) };
         let truth = true_impact(&swing(amplitude, barrier, 1e10).collision(), &options).unwrap();
         deviation(
             &three_phases(&swing(amplitude, barrier, 1e10), ContactSpeed::Energy).unwrap(),
@@ -208,22 +193,10 @@ fn tiny_and_nearly_upright_swings_are_judged_as_closely_as_any_other() {
         near(truth.touch.t, touch, "time to contact");
         near(truth.touch.v, speed, "speed");
         near(truth.period, 2.0 * touch + truth.duration, "period");
-        assert!(
-            truth.energy_drift < 1e-8,
-            "A = {amplitude}: {}",
-            truth.energy_drift
-        );
+        assert!(truth.energy_drift < 1e-8, "A = {amplitude}: {}", truth.energy_drift);
         if stiffness > 1e20 {
-            near(
-                truth.duration,
-                hertz::duration(stiffness, speed).unwrap(),
-                "duration",
-            );
-            near(
-                truth.penetration,
-                hertz::penetration(stiffness, speed).unwrap(),
-                "depth",
-            );
+            near(truth.duration, hertz::duration(stiffness, speed).unwrap(), "duration");
+            near(truth.penetration, hertz::penetration(stiffness, speed).unwrap(), "depth");
         }
     }
 }
@@ -250,15 +223,8 @@ fn a_barrier_just_before_the_turning_point_is_met_as_the_energy_says() {
     }
     let refused = impact::solve(setup(1e-200, 0.0)).unwrap_err();
     assert!(refused.to_string().contains("scale it up"), "{refused}");
-    let refused = impact::solve(Setup {
-        step_limit: 3,
-        ..setup(1.5, 0.323)
-    })
-    .unwrap_err();
-    assert!(
-        refused.to_string().contains("raise step_limit in [run]"),
-        "{refused}"
-    );
+    let refused = impact::solve(Setup { step_limit: 3, ..setup(1.5, 0.323) }).unwrap_err();
+    assert!(refused.to_string().contains("raise step_limit in [run]"), "{refused}");
 }
 
 proptest! {
@@ -327,17 +293,10 @@ fn the_derived_phases_pass_their_judge_everywhere() {
                 })
                 .unwrap();
                 let at = format!("A = {amplitude}, xc = {barrier}, gamma = {stiffness}");
-                let index = found
-                    .columns
-                    .iter()
-                    .position(|column| column.reading == Reading::Derived);
+                let index =
+                    found.columns.iter().position(|column| column.reading == Reading::Derived);
                 let index = index.unwrap_or_else(|| panic!("{at}: {:?}", found.tried));
-                assert_eq!(
-                    found.shortcomings(index, 1e-3),
-                    vec![],
-                    "{at}: {:?}",
-                    found.tried
-                );
+                assert_eq!(found.shortcomings(index, 1e-3), vec![], "{at}: {:?}", found.tried);
                 // The energy knows the speed, elliptic functions the time: neither is asked by the
                 // judge.
                 let derived = &found.columns[index].phases;
@@ -366,18 +325,10 @@ fn the_derived_phases_pass_their_judge_everywhere() {
 /// series of the contact.
 #[test]
 fn the_derived_phases_join() {
-    for (release, barrier, side) in [
-        (-1.5, 0.323, Side::Right),
-        (1.5, -0.323, Side::Left),
-        (-0.8, -0.5, Side::Right),
-    ] {
-        let found = impact::solve(Setup {
-            release,
-            barrier,
-            side,
-            ..Setup::default()
-        })
-        .unwrap();
+    for (release, barrier, side) in
+        [(-1.5, 0.323, Side::Right), (1.5, -0.323, Side::Left), (-0.8, -0.5, Side::Right)]
+    {
+        let found = impact::solve(Setup { release, barrier, side, ..Setup::default() }).unwrap();
         let derived = &found.column(Reading::Derived).unwrap().phases;
         let [approach, contact, back] = &derived.phases;
         assert!((approach.at(0.0).0 - release).abs() < 1e-12 && approach.at(0.0).1.abs() < 1e-12);
@@ -385,10 +336,7 @@ fn the_derived_phases_join() {
         for (before, after) in [(approach, contact), (contact, back)] {
             let (left, right) = (before.at(before.end), after.at(after.start));
             assert!((left.0 - right.0).abs() < 1e-12, "{left:?} {right:?}");
-            assert!(
-                (left.1 - right.1).abs() < 2e-4 * derived.speed,
-                "{left:?} {right:?}"
-            );
+            assert!((left.1 - right.1).abs() < 2e-4 * derived.speed, "{left:?} {right:?}");
         }
     }
 }
@@ -410,11 +358,7 @@ fn a_left_barrier_mirrors_a_right_one() {
     let right = solve("x'' + x + x^2 = 0", -0.3, 0.1, Side::Right);
     let left = solve("x'' + x - x^2 = 0", 0.3, -0.1, Side::Left);
     for (one, other) in right.quantities().iter().zip(left.quantities()) {
-        assert!(
-            (one.runge_kutta / other.runge_kutta - 1.0).abs() < 1e-12,
-            "{}",
-            one.name
-        );
+        assert!((one.runge_kutta / other.runge_kutta - 1.0).abs() < 1e-12, "{}", one.name);
         let closed = one.closed_forms[0] / other.closed_forms[0] - 1.0;
         assert!(closed.abs() < 1e-12, "{}", one.name);
     }
@@ -479,59 +423,26 @@ fn a_force_that_is_a_difference_near_the_touch_keeps_its_digits() {
         if n.is_multiple_of(2) { 1.0 } else { -1.0 }
     }
     fn binomial(n: u32) -> f64 {
-        (0..n)
-            .map(|j| (0.5 - f64::from(j)) / f64::from(j + 1))
-            .product()
+        (0..n).map(|j| (0.5 - f64::from(j)) / f64::from(j + 1)).product()
     }
     let forces: [(&str, Term); 11] = [
         ("k*(exp(20*d) - 1)", |n| {
-            (
-                20.0_f64.powi(n as i32 + 1) * over_factorial(n + 1),
-                f64::from(n + 1),
-            )
+            (20.0_f64.powi(n as i32 + 1) * over_factorial(n + 1), f64::from(n + 1))
         }),
-        ("k*(1 - cos(d))", |n| {
-            (
-                alternating(n) * over_factorial(2 * n + 2),
-                f64::from(2 * n + 2),
-            )
-        }),
-        ("k*(cosh(d) - 1)", |n| {
-            (over_factorial(2 * n + 2), f64::from(2 * n + 2))
-        }),
+        ("k*(1 - cos(d))", |n| (alternating(n) * over_factorial(2 * n + 2), f64::from(2 * n + 2))),
+        ("k*(cosh(d) - 1)", |n| (over_factorial(2 * n + 2), f64::from(2 * n + 2))),
         ("k*((1 + d)^3 - 1)", |n| {
-            (
-                [3.0, 3.0, 1.0].get(n as usize).copied().unwrap_or(0.0),
-                f64::from(n + 1),
-            )
+            ([3.0, 3.0, 1.0].get(n as usize).copied().unwrap_or(0.0), f64::from(n + 1))
         }),
-        ("k*(exp(d) - 1 - d)", |n| {
-            (over_factorial(n + 2), f64::from(n + 2))
-        }),
-        ("k*(d - sin(d))", |n| {
-            (
-                alternating(n) * over_factorial(2 * n + 3),
-                f64::from(2 * n + 3),
-            )
-        }),
-        ("k*(exp(d^(3/2)) - 1)", |n| {
-            (over_factorial(n + 1), 1.5 * f64::from(n + 1))
-        }),
-        ("k*(cosh(sqrt(d)) - 1)", |n| {
-            (over_factorial(2 * n + 2), f64::from(n + 1))
-        }),
-        ("k*(sqrt(d + d^2) - sqrt(d))", |n| {
-            (binomial(n + 1), f64::from(n) + 1.5)
-        }),
+        ("k*(exp(d) - 1 - d)", |n| (over_factorial(n + 2), f64::from(n + 2))),
+        ("k*(d - sin(d))", |n| (alternating(n) * over_factorial(2 * n + 3), f64::from(2 * n + 3))),
+        ("k*(exp(d^(3/2)) - 1)", |n| (over_factorial(n + 1), 1.5 * f64::from(n + 1))),
+        ("k*(cosh(sqrt(d)) - 1)", |n| (over_factorial(2 * n + 2), f64::from(n + 1))),
+        ("k*(sqrt(d + d^2) - sqrt(d))", |n| (binomial(n + 1), f64::from(n) + 1.5)),
         ("k*(1 - cos(d))/d", |n| {
-            (
-                alternating(n) * over_factorial(2 * n + 2),
-                f64::from(2 * n + 1),
-            )
+            (alternating(n) * over_factorial(2 * n + 2), f64::from(2 * n + 1))
         }),
-        ("k*(exp(d) - 1 - d - d^2/2 - d^3/6)", |n| {
-            (over_factorial(n + 4), f64::from(n + 4))
-        }),
+        ("k*(exp(d) - 1 - d - d^2/2 - d^3/6)", |n| (over_factorial(n + 4), f64::from(n + 4))),
     ];
     let energy = 0.323_f64.cos() - 1.5_f64.cos();
     for (text, term) in forces {
@@ -545,9 +456,8 @@ fn a_force_that_is_a_difference_near_the_touch_keeps_its_digits() {
             let depth = found.truth.penetration;
             let taken_up = |depth: f64| {
                 let terms = (0..60).map(term);
-                let sum: f64 = terms
-                    .map(|(c, power)| c * depth.powf(power + 1.0) / (power + 1.0))
-                    .sum();
+                let sum: f64 =
+                    terms.map(|(c, power)| c * depth.powf(power + 1.0) / (power + 1.0)).sum();
                 stiffness.parse::<f64>().unwrap() * sum
                     + 2.0 * (0.5 * depth).sin() * (0.323 + 0.5 * depth).sin()
             };
@@ -571,16 +481,9 @@ fn a_force_that_is_a_difference_near_the_touch_keeps_its_digits() {
 #[test]
 fn the_page_says_what_is_computed() {
     let page = include_str!("../../docs/impact.md");
-    let table = impact::compare(Setup {
-        tolerance: 1e-3,
-        ..Setup::default()
-    })
-    .unwrap();
+    let table = impact::compare(Setup { tolerance: 1e-3, ..Setup::default() }).unwrap();
     let mut found = 0;
-    for line in page
-        .lines()
-        .filter(|line| line.starts_with("| ") && line.ends_with(" |"))
-    {
+    for line in page.lines().filter(|line| line.starts_with("| ") && line.ends_with(" |")) {
         let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
         let Some(row) = table.rows.iter().find(|row| row.title() == cells[0]) else {
             continue;
@@ -601,92 +504,52 @@ fn the_page_says_what_is_computed() {
 #[test]
 fn a_release_inside_the_barrier_is_the_deepest_point_of_its_cycle() {
     let (release, barrier, stiffness) = (0.4, 0.323, 1e3_f64);
-    let found = impact::solve(Setup {
-        release,
-        barrier,
-        stiffness,
-        ..Setup::default()
-    })
-    .unwrap();
+    let found = impact::solve(Setup { release, barrier, stiffness, ..Setup::default() }).unwrap();
     // cos(tp) = cos(0.4) - (2/5) gamma d^(5/2), the energy of the pendulum.
     let turning_point = -(release.cos() - 0.4 * stiffness * (release - barrier).powf(2.5)).acos();
-    assert!(
-        (found.turning_point - turning_point).abs() < 1e-10,
-        "{}",
-        found.turning_point
-    );
+    assert!((found.turning_point - turning_point).abs() < 1e-10, "{}", found.turning_point);
     assert!((found.truth.deepest.x - release).abs() < 1e-8);
     let derived = found.column(Reading::Derived).unwrap();
     let deepest = derived.phases.position_at(0.5 * derived.phases.period);
-    assert!(
-        (deepest - release).abs() < 1e-3 * (release - barrier) + 1e-6,
-        "{deepest}"
-    );
+    assert!((deepest - release).abs() < 1e-3 * (release - barrier) + 1e-6, "{deepest}");
     // Too much of a push throws it over the top, and a tiny one against gravity does not free it.
     for (release, barrier, stiffness, words) in [
         (1.5, 0.323, 1e7, "does not come to rest on the other side"),
         (-1.0, -1.2, 1e-6, "is not pushed out of it"),
     ] {
-        let refused = impact::solve(Setup {
-            release,
-            barrier,
-            stiffness,
-            ..Setup::default()
-        })
-        .unwrap_err();
+        let refused =
+            impact::solve(Setup { release, barrier, stiffness, ..Setup::default() }).unwrap_err();
         assert!(refused.to_string().contains(words), "{refused}");
     }
 }
 
 /// The paper's pendulum at a barrier of this stiffness.
 fn pendulum(stiffness: f64) -> Setup {
-    Setup {
-        stiffness,
-        ..Setup::default()
-    }
+    Setup { stiffness, ..Setup::default() }
 }
 
 #[test]
 fn the_derived_phases_join_by_every_law_of_the_contact() {
     for law in ContactLaw::ALL {
         for stiffness in [1e3, 1e6] {
-            let setup = Setup {
-                contact_law: law,
-                ..pendulum(stiffness)
-            };
+            let setup = Setup { contact_law: law, ..pendulum(stiffness) };
             let impact = impact::solve(setup).unwrap_or_else(|error| panic!("{law}: {error}"));
-            let phases = &impact
-                .column(Reading::Derived)
-                .expect("derived phases")
-                .phases;
+            let phases = &impact.column(Reading::Derived).expect("derived phases").phases;
             let [approach, contact, back] = &phases.phases;
             // Of the corrected law the depth is exact at touch, the speed nearly.
-            let speed_kept = if law == ContactLaw::CorrectedPowerLaw {
-                1e-2
-            } else {
-                1e-4
-            };
+            let speed_kept = if law == ContactLaw::CorrectedPowerLaw { 1e-2 } else { 1e-4 };
             for (left, right) in [(approach, contact), (contact, back)] {
                 let (before, after) = (left.at(left.end), right.at(right.start));
-                assert!(
-                    (before.0 - after.0).abs() < 1e-12,
-                    "{law}: {before:?} and {after:?}"
-                );
+                assert!((before.0 - after.0).abs() < 1e-12, "{law}: {before:?} and {after:?}");
                 let jump = (before.1 - after.1).abs() / phases.speed;
-                assert!(
-                    jump < speed_kept,
-                    "{law}: the speed jumps by {jump} of itself"
-                );
+                assert!(jump < speed_kept, "{law}: the speed jumps by {jump} of itself");
             }
             let Form::Contact { depth, .. } = &contact.form else {
                 panic!("{law}: {:?}", contact.form)
             };
             assert!(depth.deviation <= 1e-6, "{law}: {}", depth.deviation);
             let deepest = depth.at(0.5 * phases.duration).0;
-            assert!(
-                (deepest / phases.penetration - 1.0).abs() < 3e-6,
-                "{law}: {deepest}"
-            );
+            assert!((deepest / phases.penetration - 1.0).abs() < 3e-6, "{law}: {deepest}");
             // The swing is the same by every law: none makes up for the error of another.
             assert!(
                 (phases.speed / impact.truth.touch.v - 1.0).abs() < 1e-3,
@@ -708,38 +571,24 @@ fn table_of_the_page(words: &str) -> Vec<(String, [f64; 4])> {
         .map(|line| {
             let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
             let number = |index: usize| cells[index].parse().expect("a number");
-            (
-                cells[0].trim_matches('`').to_owned(),
-                [1, 2, 3, 4].map(number),
-            )
+            (cells[0].trim_matches('`').to_owned(), [1, 2, 3, 4].map(number))
         })
         .collect()
 }
 
 #[test]
 fn the_table_of_an_impact_is_that_of_the_page() {
-    let impact = impact::solve(Setup {
-        every_contact_law: true,
-        ..pendulum(1e3)
-    })
-    .expect("an impact");
+    let impact =
+        impact::solve(Setup { every_contact_law: true, ..pendulum(1e3) }).expect("an impact");
     let page = table_of_the_page("pendulum at a soft barrier, gamma = 1000");
     assert_eq!(page.len(), ContactLaw::ALL.len());
     assert_eq!(impact.contact_laws.len(), ContactLaw::ALL.len());
     for (row, (law, printed)) in impact.contact_laws.iter().zip(page) {
         assert_eq!(row.law.name(), law);
         let (motion, errors) = row.outcome.as_ref().expect("every law applies");
-        let found = [
-            errors.duration,
-            errors.depth,
-            errors.peak_force,
-            errors.motion,
-        ];
+        let found = [errors.duration, errors.depth, errors.peak_force, errors.motion];
         for (found, printed) in found.into_iter().zip(printed) {
-            assert!(
-                (100.0 * found - printed).abs() < 2e-4,
-                "{law}: {found} and {printed}"
-            );
+            assert!((100.0 * found - printed).abs() < 2e-4, "{law}: {found} and {printed}");
         }
         if row.law == ContactLaw::Exact {
             let truth = &impact.truth;
@@ -747,12 +596,7 @@ fn the_table_of_an_impact_is_that_of_the_page() {
             assert!((motion.depth / truth.penetration - 1.0).abs() < 1e-7);
         }
     }
-    assert!(
-        impact::solve(pendulum(1e3))
-            .expect("an impact")
-            .contact_laws
-            .is_empty()
-    );
+    assert!(impact::solve(pendulum(1e3)).expect("an impact").contact_laws.is_empty());
 }
 
 #[test]
@@ -765,28 +609,17 @@ fn laws_of_a_power_are_refused_where_there_is_none() {
     };
     let refused =
         impact::solve(setup("1e6*d + 1e9*d^3", ContactLaw::PowerLaw)).expect("the paper's reading");
-    assert!(
-        refused.flight.is_none() && refused.tried.len() == 3,
-        "{:?}",
-        refused.tried
-    );
+    assert!(refused.flight.is_none() && refused.tried.len() == 3, "{:?}", refused.tried);
     let reason = refused.tried[0].error.as_ref().expect_err("a reason");
     assert!(reason.contains("not given as a power"), "{reason}");
     let applies = |impact: &impact::Impact, law| {
-        let row = impact
-            .contact_laws
-            .iter()
-            .find(|row| row.law == law)
-            .expect("a row");
+        let row = impact.contact_laws.iter().find(|row| row.law == law).expect("a row");
         row.outcome.is_ok()
     };
     assert!(!applies(&refused, ContactLaw::PowerLaw) && applies(&refused, ContactLaw::Homotopy));
     // The exponent is found, whatever stands before the power.
-    for (force, exponent) in [
-        ("3*gamma*d^2/7", 2.0),
-        ("1e8*d^(7/3)", 7.0 / 3.0),
-        ("gamma*d", 1.0),
-    ] {
+    for (force, exponent) in [("3*gamma*d^2/7", 2.0), ("1e8*d^(7/3)", 7.0 / 3.0), ("gamma*d", 1.0)]
+    {
         let found = impact::solve(setup(force, ContactLaw::PowerLaw)).expect("an impact");
         let Some(DerivedContact::Elastic(contact)) = &found.contact else {
             panic!("{force}: no contact")
@@ -794,10 +627,7 @@ fn laws_of_a_power_are_refused_where_there_is_none() {
         let n = contact.exponent().expect("a power");
         assert!((n - exponent).abs() < 1e-12, "{force}: {n}");
         // Hard barriers: gravity is small beside them.
-        assert!(
-            (contact.duration / found.truth.duration - 1.0).abs() < 2e-3,
-            "{force}"
-        );
+        assert!((contact.duration / found.truth.duration - 1.0).abs() < 2e-3, "{force}");
     }
 }
 
@@ -812,10 +642,7 @@ fn the_restitution_asked_for_is_the_one_that_is_simulated() {
         };
         let found = impact::solve(setup).unwrap_or_else(|error| panic!("{wanted}: {error}"));
         assert!(found.no_paper.is_some());
-        let phases = &found
-            .column(Reading::Derived)
-            .expect("derived phases")
-            .phases;
+        let phases = &found.column(Reading::Derived).expect("derived phases").phases;
         // By the closed form, by Runge-Kutta on the equation, and by the simulation of equation (7)
         // with its mu.
         let allowed = 3e-3 * wanted;
@@ -829,49 +656,28 @@ fn the_restitution_asked_for_is_the_one_that_is_simulated() {
             "{wanted}: {}",
             found.truth.restitution()
         );
-        let model = Model {
-            gamma: 1e10,
-            mu: 1e10 * found.damping,
-            ..Model::default()
-        };
-        let settings = Settings {
-            duration: 5.0,
-            ..Settings::default()
-        };
+        let model = Model { gamma: 1e10, mu: 1e10 * found.damping, ..Model::default() };
+        let settings = Settings { duration: 5.0, ..Settings::default() };
         let motion = impact::simulate(&model, Start::default(), Integrator::Taylor, &settings)
             .expect("a motion");
         let simulated = motion.impacts[0].restitution.expect("it bounces");
-        assert!(
-            (simulated - found.truth.restitution()).abs() < 1e-6,
-            "{wanted}: {simulated}"
-        );
+        assert!((simulated - found.truth.restitution()).abs() < 1e-6, "{wanted}: {simulated}");
         // The joins, and where it turns.
         let [approach, contact, back] = &phases.phases;
         assert!((contact.at(contact.end).1 - back.at(back.start).1).abs() < 1e-3);
         assert!((approach.at(approach.end).0 - contact.at(contact.start).0).abs() < 1e-12);
         assert!(back.at(back.end).1.abs() < 1e-12);
         let turn = back.at(back.end).0;
-        assert!(
-            (turn - found.place_of_turn()).abs() < 2e-3,
-            "{wanted}: turns at {turn}"
-        );
+        assert!((turn - found.place_of_turn()).abs() < 2e-3, "{wanted}: turns at {turn}");
         let verdict = found.verdicts(0.01);
-        assert_eq!(
-            verdict,
-            [Verdict::Pass],
-            "{wanted}: {:?}",
-            found.shortcomings(0, 0.01)
-        );
+        assert_eq!(verdict, [Verdict::Pass], "{wanted}: {:?}", found.shortcomings(0, 0.01));
     }
 }
 
 #[test]
 fn hardly_damped_is_undamped() {
-    let damped = impact::solve(Setup {
-        loss: Some(ContactLoss::Damping(1e-12)),
-        ..pendulum(1e6)
-    })
-    .expect("an impact");
+    let damped = impact::solve(Setup { loss: Some(ContactLoss::Damping(1e-12)), ..pendulum(1e6) })
+        .expect("an impact");
     let undamped = impact::solve(pendulum(1e6)).expect("an impact");
     let numbers =
         |impact: &impact::Impact| impact.quantities().map(|quantity| quantity.runge_kutta);

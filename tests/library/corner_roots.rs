@@ -17,18 +17,9 @@ fn follow(equation: &str, start: f64, until: f64) -> Course {
 }
 
 fn by_both_routes(course: &Course) -> [Trajectory; 2] {
-    [
-        course.clone().follow(),
-        course.clone().follow_by(Integrator::RungeKutta),
-    ]
-    .map(|motion| {
+    [course.clone().follow(), course.clone().follow_by(Integrator::RungeKutta)].map(|motion| {
         let motion = motion.expect("a motion");
-        assert!(
-            motion.is_complete(),
-            "{}: {:?}",
-            motion.end(),
-            motion.reason()
-        );
+        assert!(motion.is_complete(), "{}: {:?}", motion.end(), motion.reason());
         motion
     })
 }
@@ -52,16 +43,11 @@ fn a_contact_without_a_step_keeps_its_energy() {
         let values =
             [("k", 1e4), ("d", 0.5), ("n", 1.5)].map(|(name, value)| (Symbol::new(name), value));
         let needed = course.parameters();
-        course.values = values
-            .into_iter()
-            .filter(|(name, _)| needed.contains(name))
-            .collect();
+        course.values = values.into_iter().filter(|(name, _)| needed.contains(name)).collect();
         for motion in by_both_routes(&course) {
             let mut deepest = 0.0_f64;
             for index in 0..=4000 {
-                let state = motion
-                    .at(20.0 * f64::from(index) / 4000.0)
-                    .expect("a state");
+                let state = motion.at(20.0 * f64::from(index) / 4000.0).expect("a state");
                 let depth = (state[0] - 0.5).max(0.0);
                 deepest = deepest.max(depth);
                 let energy =
@@ -81,10 +67,7 @@ fn a_power_of_the_absolute_value_has_its_period() {
         ("sgn(x)*abs(x)^(3/2)", 6.581_363_388_638_262_5),
         ("x*sqrt(abs(x))", 6.581_363_388_638_262_5),
         ("sgn(x)*sqrt(abs(x))", 5.974_673_601_777_492),
-        (
-            "max(x, 0)^(3/2) - max(-x, 0)^(3/2)",
-            6.581_363_388_638_262_5,
-        ),
+        ("max(x, 0)^(3/2) - max(-x, 0)^(3/2)", 6.581_363_388_638_262_5),
     ];
     for (force, period) in periods {
         for motion in by_both_routes(&follow(&format!("x'' + {force} = 0"), 1.0, 3.0 * period)) {
@@ -110,17 +93,10 @@ fn a_potential_without_a_step_is_followed() {
         course.values = BTreeMap::from([(Symbol::new("k"), 1e4), (Symbol::new("d"), 0.5)]);
         let motion = course.follow().expect("a motion");
         assert!(motion.is_complete(), "{contact}: {:?}", motion.reason());
-        assert!(
-            motion.balance.as_ref().expect("an energy").residual < 1e-11,
-            "{contact}"
-        );
+        assert!(motion.balance.as_ref().expect("an energy").residual < 1e-11, "{contact}");
         motion
     });
-    assert!(
-        largest.difference(&gated) < 1e-9,
-        "{}",
-        largest.difference(&gated)
-    );
+    assert!(largest.difference(&gated) < 1e-9, "{}", largest.difference(&gated));
 }
 
 /// What has no value below zero has none: no root is taken of a size.
@@ -132,9 +108,7 @@ fn a_root_that_leaves_its_range_still_ends_the_motion() {
         ("x/5 + sqrt(abs(x) - 1/4)", 0.25),
     ];
     for (force, edge) in edges {
-        let motion = follow(&format!("x'' + {force} = 0"), 1.0, 20.0)
-            .follow()
-            .expect("a motion");
+        let motion = follow(&format!("x'' + {force} = 0"), 1.0, 20.0).follow().expect("a motion");
         assert!(!motion.is_complete(), "{force}");
         let end = motion.at(motion.end()).expect("a state")[0];
         assert!((end - edge).abs() < 1e-3, "{force}: {end}");
@@ -195,12 +169,7 @@ fn in_fixed_steps<const N: usize>(
 
 fn end_of(course: Course) -> Vec<f64> {
     let motion = course.follow().expect("a motion");
-    assert!(
-        motion.is_complete(),
-        "{}: {:?}",
-        motion.end(),
-        motion.reason()
-    );
+    assert!(motion.is_complete(), "{}: {:?}", motion.end(), motion.reason());
     let balance = motion.balance.as_ref().expect("an energy");
     assert!(balance.residual < 1e-10, "{}", balance.residual);
     motion.at(motion.end()).expect("a state")
@@ -215,10 +184,8 @@ fn balls_exchange_their_velocities() {
     let integral =
         0.4 * 2.218_159_543_757_688 * std::f64::consts::PI.sqrt() / 1.068_628_702_119_319;
     let duration = 2.0 * integral * (5.0 / 8e4_f64).powf(0.4);
-    let forces = [
-        ("p", "-K*(p - q + 1)^(3/2)*H(p - q + 1)"),
-        ("q", "K*(p - q + 1)^(3/2)*H(2*p - 2*q + 2)"),
-    ];
+    let forces =
+        [("p", "-K*(p - q + 1)^(3/2)*H(p - q + 1)"), ("q", "K*(p - q + 1)^(3/2)*H(2*p - 2*q + 2)")];
     let contacts: [(&str, &[(&str, &str)]); 4] = [
         ("2/5*K*max(p - q + 1, 0)^(5/2)", &[]),
         ("2/5*K*(-min(0, q - p - 1))^(5/2)", &[]),
@@ -235,20 +202,9 @@ fn balls_exchange_their_velocities() {
                 10.0,
             );
             let end = end_of(course);
-            let expected = [
-                0.5 * duration - 1.0,
-                start + 10.0 + 1.0 - 0.5 * duration,
-                0.0,
-                1.0,
-            ];
-            let astray = end
-                .iter()
-                .zip(expected)
-                .map(|(end, expected)| (end - expected).abs());
-            assert!(
-                astray.fold(0.0, f64::max) < 1e-9,
-                "{potential} from {start}: {end:?}"
-            );
+            let expected = [0.5 * duration - 1.0, start + 10.0 + 1.0 - 0.5 * duration, 0.0, 1.0];
+            let astray = end.iter().zip(expected).map(|(end, expected)| (end - expected).abs());
+            assert!(astray.fold(0.0, f64::max) < 1e-9, "{potential} from {start}: {end:?}");
         }
     }
 }
@@ -271,19 +227,13 @@ fn three_balls_hand_their_velocity_on() {
         let end = follow(&[("p", start), ("p'", 1.0), ("r", 2.0)]);
         let astray = end[3..].iter().zip([0.0, 0.0, 1.0]);
         assert!(
-            astray
-                .map(|(end, one)| (end - one).abs())
-                .fold(0.0, f64::max)
-                < 1e-9,
+            astray.map(|(end, one)| (end - one).abs()).fold(0.0, f64::max) < 1e-9,
             "{start}: {end:?}"
         );
         let end = follow(&[("p", start), ("p'", 1.0), ("r", -start), ("r'", -1.0)]);
         let astray = end[3..].iter().zip([-1.0, 0.0, 1.0]);
         assert!(
-            astray
-                .map(|(end, one)| (end - one).abs())
-                .fold(0.0, f64::max)
-                < 1e-9,
+            astray.map(|(end, one)| (end - one).abs()).fold(0.0, f64::max) < 1e-9,
             "{start}: {end:?}"
         );
         assert!(end[1].abs() < 1e-9, "{start}: {end:?}");
@@ -301,14 +251,8 @@ fn a_mass_with_two_stops_takes_the_other_along() {
     let contact = |depth: f64| 1e4 * depth.max(0.0).powf(1.5);
     let potential = "X^2/2 + 2/5*K*max(u - X - d, 0)^(5/2) + 2/5*K*max(X - u - d, 0)^(5/2)";
     let forces = [
-        (
-            "X",
-            "K*(u - X - d)^(3/2)*H(u - X - d) - K*(X - u - d)^(3/2)*H(X - u - d)",
-        ),
-        (
-            "u",
-            "K*(X - u - d)^(3/2)*H(X - u - d) - K*(u - X - d)^(3/2)*H(u - X - d)",
-        ),
+        ("X", "K*(u - X - d)^(3/2)*H(u - X - d) - K*(X - u - d)^(3/2)*H(X - u - d)"),
+        ("u", "K*(X - u - d)^(3/2)*H(X - u - d) - K*(u - X - d)^(3/2)*H(u - X - d)"),
     ];
     for begin in [1.1, 1.3] {
         let rates = |_: f64, [x, u, v, w]: [f64; 4]| {
@@ -325,10 +269,7 @@ fn a_mass_with_two_stops_takes_the_other_along() {
                 &start,
                 8.0,
             ));
-            let astray = end
-                .iter()
-                .zip(expected)
-                .map(|(end, expected)| (end - expected).abs());
+            let astray = end.iter().zip(expected).map(|(end, expected)| (end - expected).abs());
             assert!(
                 astray.fold(0.0, f64::max) < 1e-6,
                 "{potential} from {begin}: {end:?} {expected:?}"
@@ -359,10 +300,7 @@ fn a_driven_damper_strikes_its_stops() {
     );
     for motion in by_both_routes(&course) {
         let end = motion.at(12.0).expect("a state");
-        let astray = end
-            .iter()
-            .zip(expected)
-            .map(|(end, expected)| (end - expected).abs());
+        let astray = end.iter().zip(expected).map(|(end, expected)| (end - expected).abs());
         assert!(astray.fold(0.0, f64::max) < 1e-6, "{end:?} {expected:?}");
     }
 }
@@ -375,31 +313,17 @@ fn several_corners_of_one_coordinate_are_followed() {
     let sides =
         |x: f64| 1e4 * (x.abs() - 0.4).max(0.0).powf(1.5).copysign(x) + 0.1 * (x - 0.3).max(0.0);
     let forces: [(&str, &dyn Fn(f64) -> f64); 4] = [
-        (
-            "1e4*max(max(x, 0.1) - 0.3, 0)^1.5 - 1e4*max(-x - 0.4, 0)^1.5",
-            &powers,
-        ),
-        (
-            "1e4*(x - 0.3)^1.5*H(2*x - 0.6) - 1e4*(-0.4 - x)^1.5*H(-0.4 - x)",
-            &powers,
-        ),
-        (
-            "1e4*max(abs(x) - 0.4, 0)^1.5*sgn(x) + 0.1*max(x - 0.3, 0)",
-            &sides,
-        ),
-        (
-            "1e4*(abs(x) - 0.4)^1.5*H(abs(x) - 0.4)*sgn(x) - 0.1*min(0.3 - x, 0)",
-            &sides,
-        ),
+        ("1e4*max(max(x, 0.1) - 0.3, 0)^1.5 - 1e4*max(-x - 0.4, 0)^1.5", &powers),
+        ("1e4*(x - 0.3)^1.5*H(2*x - 0.6) - 1e4*(-0.4 - x)^1.5*H(-0.4 - x)", &powers),
+        ("1e4*max(abs(x) - 0.4, 0)^1.5*sgn(x) + 0.1*max(x - 0.3, 0)", &sides),
+        ("1e4*(abs(x) - 0.4)^1.5*H(abs(x) - 0.4)*sgn(x) - 0.1*min(0.3 - x, 0)", &sides),
     ];
     for (force, value) in forces {
         let expected = in_fixed_steps(|_, [x, v]| [v, -x - value(x)], [0.2, 1.0], 4.0, 200_000);
         let mut course = follow(&format!("x'' + x + {force} = 0"), 0.2, 4.0);
         course.begin("x'".into(), 1.0).expect("a state");
         let end = end_of(course);
-        let astray = (end[0] - expected[0])
-            .abs()
-            .max((end[1] - expected[1]).abs());
+        let astray = (end[0] - expected[0]).abs().max((end[1] - expected[1]).abs());
         assert!(astray < 1e-6, "{force}: {end:?} {expected:?}");
     }
 }
@@ -414,39 +338,22 @@ fn a_damping_that_begins_with_the_depth_is_followed() {
     ];
     let rates = |_: f64, [x, v]: [f64; 2]| {
         let depth = (-x).max(0.0);
-        [
-            v,
-            1e5 * depth.powf(1.5) - 9.81 - 10.0 * (depth / 1e-3).min(1.0).powi(2) * v,
-        ]
+        [v, 1e5 * depth.powf(1.5) - 9.81 - 10.0 * (depth / 1e-3).min(1.0).powi(2) * v]
     };
     for (height, speed) in [(1.0, 1e-5), (0.9, 0.1)] {
         let expected = in_fixed_steps(rates, [height, speed], 1.05, 200_000);
         for damping in damped {
-            let mut course = follow(
-                &format!("x'' + 9.81 - K*max(-x, 0)^1.5 + {damping} = 0"),
-                height,
-                1.05,
-            );
+            let mut course =
+                follow(&format!("x'' + 9.81 - K*max(-x, 0)^1.5 + {damping} = 0"), height, 1.05);
             course.begin("x'".into(), speed).expect("a state");
             let values = [("K", 1e5), ("C", 10.0), ("D", 1e-3)];
-            course.values = values
-                .map(|(name, value)| (Symbol::new(name), value))
-                .into();
+            course.values = values.map(|(name, value)| (Symbol::new(name), value)).into();
             let motion = course.follow().expect("a motion");
             assert!(motion.is_complete(), "{damping}: {:?}", motion.reason());
             let end = motion.at(1.05).expect("a state");
-            let astray = (end[0] - expected[0])
-                .abs()
-                .max((end[1] - expected[1]).abs());
-            assert!(
-                astray < 1e-6,
-                "{damping} from {height}, {speed}: {end:?} {expected:?}"
-            );
-            assert_eq!(
-                motion.known_until(),
-                None,
-                "{damping} from {height}, {speed}"
-            );
+            let astray = (end[0] - expected[0]).abs().max((end[1] - expected[1]).abs());
+            assert!(astray < 1e-6, "{damping} from {height}, {speed}: {end:?} {expected:?}");
+            assert_eq!(motion.known_until(), None, "{damping} from {height}, {speed}");
         }
     }
 }

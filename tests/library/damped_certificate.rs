@@ -18,11 +18,7 @@ const VAN_DER_POL: &str = "x'' - mu*(1 - x^2)*x' + x = 0";
 
 fn solved(equation: &str, method: Option<Method>, order: u32) -> (Oscillator, Solution) {
     let oscillator = Oscillator::parse(equation).expect("an equation");
-    let options = Options {
-        method,
-        order: Some(order),
-        ..Options::default()
-    };
+    let options = Options { method, order: Some(order), ..Options::default() };
     let solution = solve(&oscillator, &options).expect("a solution");
     (oscillator, solution)
 }
@@ -39,17 +35,11 @@ fn certified(equation: &str, order: u32, at: &str) -> DampedCertificate {
 /// omega of van der Pol's equation, by so many orders of its series; the nearest singularity is at
 /// `|mu| = 1.85`.
 fn series(mu: &Rational, order: u32) -> Rational {
-    let options = Options {
-        order: Some(order),
-        frequency_alone: true,
-        ..Options::default()
-    };
+    let options = Options { order: Some(order), frequency_alone: true, ..Options::default() };
     let oscillator = Oscillator::parse(VAN_DER_POL).expect("an equation");
     let solution = solve(&oscillator, &options).expect("a solution");
     let law = Expr::from(solution.law.frequency().expect("a series of omega"));
-    let value = law
-        .substitute(Symbol::new("mu"), &Expr::number(mu.clone()))
-        .expect("a value");
+    let value = law.substitute(Symbol::new("mu"), &Expr::number(mu.clone())).expect("a value");
     value.as_number().expect("a number").clone()
 }
 
@@ -67,11 +57,7 @@ fn thirty_digits_of_van_der_pol() {
         let certificate = certified(VAN_DER_POL, 2, &format!("mu = {mu}"));
         let truth = series(&mu.parse().expect("a fraction"), order);
         assert_eq!(contains(&certificate, &truth), Ok(true), "mu = {mu}");
-        let known = check_damped(&certificate)
-            .expect("a proof")
-            .frequency
-            .radius
-            .value();
+        let known = check_damped(&certificate).expect("a proof").frequency.radius.value();
         assert!(known < 1e-30, "mu = {mu}: {known}");
     }
 }
@@ -83,13 +69,9 @@ fn strong_self_excitation() {
         let proved = check_damped(&certificate).expect("a proof");
         let (oscillator, solution) = solved(VAN_DER_POL, None, 4);
         let at: Values = format!("mu = {mu}").parse().expect("values");
-        let truth = lindstedt::judge(&oscillator, &solution, &at, 0.01)
-            .expect("a verdict")
-            .true_frequency;
-        assert!(
-            (to_f64(&proved.frequency.middle) / truth - 1.0).abs() < 1e-9,
-            "mu = {mu}"
-        );
+        let truth =
+            lindstedt::judge(&oscillator, &solution, &at, 0.01).expect("a verdict").true_frequency;
+        assert!((to_f64(&proved.frequency.middle) / truth - 1.0).abs() < 1e-9, "mu = {mu}");
         assert!(proved.frequency.radius.value() < 1e-15, "mu = {mu}");
     }
 }
@@ -105,30 +87,19 @@ fn the_error_of_a_formula_is_enclosed() {
     let error = (formula.frequency() - truth).abs();
     assert!(errors.frequency.lower <= error + 1e-15 && error <= errors.frequency.upper + 1e-15);
     // Both where the first harmonic is a cosine, the true one by Runge-Kutta.
-    let samples = motions(&oscillator, &solution, &at)
-        .expect("a motion")
-        .expect("a real frequency")
-        .truth;
+    let samples =
+        motions(&oscillator, &solution, &at).expect("a motion").expect("a real frequency").truth;
     let period = std::f64::consts::TAU / truth;
     let count = samples.len() - 1;
     let wave = |wave: fn(f64) -> f64| -> f64 {
-        samples[..count]
-            .iter()
-            .map(|(t, x, _)| x * wave(truth * t))
-            .sum()
+        samples[..count].iter().map(|(t, x, _)| x * wave(truth * t)).sum()
     };
     let phase = wave(f64::sin).atan2(wave(f64::cos)) / truth;
     let apart = samples[..count].iter().map(|(t, x, _)| {
         let t = (t - phase).rem_euclid(period);
-        (
-            (x - formula.at(t * truth / formula.frequency())).abs(),
-            t,
-            *x,
-        )
+        ((x - formula.at(t * truth / formula.frequency())).abs(), t, *x)
     });
-    let largest = apart
-        .clone()
-        .fold(0.0, |most: f64, (apart, ..)| most.max(apart));
+    let largest = apart.clone().fold(0.0, |most: f64, (apart, ..)| most.max(apart));
     assert!(
         errors.deviation.lower * 0.999 <= largest + 1e-8
             && largest <= errors.deviation.upper + 1e-8,
@@ -180,10 +151,7 @@ fn proved_errors_shrink_with_the_power_that_is_left_out() {
     };
     for (asked, left_out) in [(2, 4.0), (4, 6.0), (6, 8.0)] {
         let exponent = order(asked);
-        assert!(
-            (exponent - left_out).abs() < 0.1,
-            "order {asked}: {exponent}"
-        );
+        assert!((exponent - left_out).abs() < 0.1, "order {asked}: {exponent}");
     }
 }
 
@@ -200,17 +168,10 @@ fn other_forces_and_dampings() {
         let (certificate, proved) = certify_cycle(&oscillator, &solution, &at)
             .unwrap_or_else(|error| panic!("{equation}: {error}"));
         assert_eq!(certificate.odd, odd, "{equation}");
-        let truth = lindstedt::judge(&oscillator, &solution, &at, 0.01)
-            .expect("a verdict")
-            .true_frequency;
-        assert!(
-            (to_f64(&proved.frequency.middle) / truth - 1.0).abs() < 1e-9,
-            "{equation}"
-        );
-        assert!(
-            proved.frequency.radius.value() < 1e-26,
-            "{equation}: {proved:?}"
-        );
+        let truth =
+            lindstedt::judge(&oscillator, &solution, &at, 0.01).expect("a verdict").true_frequency;
+        assert!((to_f64(&proved.frequency.middle) / truth - 1.0).abs() < 1e-9, "{equation}");
+        assert!(proved.frequency.radius.value() < 1e-26, "{equation}: {proved:?}");
         assert_eq!(check_damped(&certificate), Ok(proved), "{equation}");
     }
 }
@@ -220,19 +181,13 @@ fn the_characteristic_exponent_is_that_of_the_mean_damping() {
     // The cycle attracts for mu > 0; backwards in time it repels as fast.
     let exponent = |mu: &str| {
         let certificate = certified(VAN_DER_POL, 2, &format!("mu = {mu}"));
-        check_damped(&certificate)
-            .expect("a proof")
-            .exponent
-            .expect("an exponent")
+        check_damped(&certificate).expect("a proof").exponent.expect("an exponent")
     };
     let (attracts, repels) = (exponent("1/4"), exponent("-1/4"));
     let apart = (&attracts.middle + &repels.middle).abs();
     assert!(attracts.middle.is_negative() && apart < ratio(1, 1_000_000_000).pow(3));
     // -[g]_0 = mu (1 - (a_1^2 + ...)/2), of which the first term is -mu.
-    assert!(
-        (to_f64(&attracts.middle) + 0.25).abs() < 0.002,
-        "{attracts:?}"
-    );
+    assert!((to_f64(&attracts.middle) + 0.25).abs() < 0.002, "{attracts:?}");
 }
 
 #[test]
@@ -253,10 +208,7 @@ fn what_cannot_be_certified_is_refused_with_the_reason() {
     // The velocity of Rayleigh's oscillator is a motion of van der Pol's.
     let of_velocity = of_velocity.expect("an equation");
     let omega = |equation: &str| {
-        check_damped(&certified(equation, 2, "mu = 1/10"))
-            .expect("a proof")
-            .frequency
-            .middle
+        check_damped(&certified(equation, 2, "mu = 1/10")).expect("a proof").frequency.middle
     };
     assert!((omega(&of_velocity) - omega(VAN_DER_POL)).abs() < ratio(1, 1_000_000_000).pow(3));
     // Relaxation: more harmonics than a proof holds.
@@ -291,14 +243,8 @@ fn change(certificate: &mut DampedCertificate, which: u8, place: usize, bit: usi
         5 => certificate.highest = 1 + bit,
         6 => certificate.odd = false,
         7 => certificate.bits += 1,
-        8 => certificate
-            .sines
-            .truncate(2 + place % certificate.sines.len()),
-        9 => certificate
-            .inverse
-            .iter_mut()
-            .flatten()
-            .for_each(|entry| *entry = Integer::zero()),
+        8 => certificate.sines.truncate(2 + place % certificate.sines.len()),
+        9 => certificate.inverse.iter_mut().flatten().for_each(|entry| *entry = Integer::zero()),
         _ => certificate.inverse_bits += 1,
     }
 }
@@ -351,32 +297,21 @@ fn each_inequality_is_checked() {
     // Z1: an inverse that is none, in one column or in all.
     for column in 0..sound.inverse.len() {
         let without = move |certificate: &mut DampedCertificate| {
-            certificate
-                .inverse
-                .iter_mut()
-                .for_each(|row| row[column] = Integer::zero());
+            certificate.inverse.iter_mut().for_each(|row| row[column] = Integer::zero());
         };
         assert!(no_contraction(reason(&without)), "column {column}");
     }
     // Z1, the column of 1/omega alone: its error counts for all, or for nothing.
-    assert!(no_contraction(reason(
-        &|certificate| certificate.sigma = -64
-    )));
+    assert!(no_contraction(reason(&|certificate| certificate.sigma = -64)));
     // Z1 beyond the block: one harmonic in it.
     assert!(no_contraction(reason(&|certificate| {
         certificate.highest = 1;
         certificate.inverse.truncate(2);
-        certificate
-            .inverse
-            .iter_mut()
-            .for_each(|row| row.truncate(2));
+        certificate.inverse.iter_mut().for_each(|row| row.truncate(2));
     })));
     // Y0 and Z2: too far for the curvature of the problem.
     let far = |error: CheckError| {
-        matches!(
-            error,
-            CheckError::NotProved(NotProved::TooFar(_) | NotProved::TooLarge(_))
-        )
+        matches!(error, CheckError::NotProved(NotProved::TooFar(_) | NotProved::TooLarge(_)))
     };
     for place in [1, 3] {
         assert!(far(reason(
@@ -397,10 +332,7 @@ fn each_inequality_is_checked() {
     shaken(&mut certificate);
     assert!(matches!(
         check_damped(&certificate),
-        Err(CheckError::ClaimedLess {
-            what: "the radius",
-            ..
-        } | CheckError::NotProved(_))
+        Err(CheckError::ClaimedLess { what: "the radius", .. } | CheckError::NotProved(_))
     ));
     // At rest: every inequality may hold but that of the first harmonic.
     assert!(matches!(
@@ -424,10 +356,7 @@ fn each_inequality_is_checked() {
     // What is claimed.
     assert!(matches!(
         reason(&|certificate| certificate.claim = ratio(1, i64::MAX) * ratio(1, i64::MAX)),
-        CheckError::ClaimedLess {
-            what: "the radius",
-            ..
-        }
+        CheckError::ClaimedLess { what: "the radius", .. }
     ));
     let mut boastful = sound.clone();
     if let Some(formula) = &mut boastful.formula {
@@ -435,10 +364,7 @@ fn each_inequality_is_checked() {
     }
     assert!(matches!(
         check_damped(&boastful),
-        Err(CheckError::ClaimedLess {
-            what: "the deviation",
-            ..
-        })
+        Err(CheckError::ClaimedLess { what: "the deviation", .. })
     ));
     // The symmetry.
     for spoil in ["x^2", "1/10"] {
@@ -478,25 +404,13 @@ fn a_cycle_begins_at_the_positive_cosine_of_its_first_harmonic() {
         list.iter_mut().for_each(|units| *units = -&*units);
     }
     // With X and F of the other sign the inverse has one in the row of 1/omega.
-    turned.inverse[0]
-        .iter_mut()
-        .for_each(|entry| *entry = -&*entry);
+    turned.inverse[0].iter_mut().for_each(|entry| *entry = -&*entry);
     let reason = |certificate: &DampedCertificate| {
-        check_damped(certificate)
-            .expect_err("no certificate")
-            .to_string()
+        check_damped(certificate).expect_err("no certificate").to_string()
     };
-    assert!(
-        reason(&turned).contains("no positive cosine"),
-        "{}",
-        reason(&turned)
-    );
+    assert!(reason(&turned).contains("no positive cosine"), "{}", reason(&turned));
     turned.formula = None;
-    assert!(
-        reason(&turned).contains("no positive cosine"),
-        "{}",
-        reason(&turned)
-    );
+    assert!(reason(&turned).contains("no positive cosine"), "{}", reason(&turned));
     // The same formula with a negative frequency, or as one of half the frequency.
     let with = |change: fn(&mut JudgedFormula)| {
         let mut other = sound.clone();
@@ -511,10 +425,7 @@ fn a_cycle_begins_at_the_positive_cosine_of_its_first_harmonic() {
     let slow = with(|formula| {
         formula.frequency = formula.frequency.clone() >> 1;
         for list in [&mut formula.coefficients, &mut formula.sines] {
-            *list = list
-                .iter()
-                .flat_map(|units| [units.clone(), Integer::zero()])
-                .collect();
+            *list = list.iter().flat_map(|units| [units.clone(), Integer::zero()]).collect();
         }
     });
     assert!(slow.contains("without a first harmonic"), "{slow}");
@@ -522,10 +433,7 @@ fn a_cycle_begins_at_the_positive_cosine_of_its_first_harmonic() {
     let mut later = sound.clone();
     let formula = later.formula.as_mut().expect("a formula");
     for list in [&mut formula.coefficients, &mut formula.sines] {
-        list.iter_mut()
-            .skip(1)
-            .step_by(2)
-            .for_each(|units| *units = -&*units);
+        list.iter_mut().skip(1).step_by(2).for_each(|units| *units = -&*units);
     }
     assert_eq!(
         check_damped(&later).expect("a proof").formula,
@@ -539,12 +447,7 @@ fn a_cycle_is_proved_where_its_formula_has_no_value() {
     let (oscillator, solution) = solved(VAN_DER_POL, None, 2);
     let at: Values = "mu = 3".parse().expect("values");
     let refused = certify_cycle(&oscillator, &solution, &at).expect_err("no formula");
-    assert!(
-        refused
-            .help()
-            .is_some_and(|help| help.contains("--no-formula")),
-        "{refused}"
-    );
+    assert!(refused.help().is_some_and(|help| help.contains("--no-formula")), "{refused}");
     let (certificate, proved) = certify_cycle_motion(&oscillator, &solution, &at).expect("a proof");
     assert_eq!(check_damped(&certificate).as_ref(), Ok(&proved));
     assert!(proved.formula.is_none() && certificate.formula.is_none());
@@ -571,17 +474,10 @@ fn the_law_is_held_against_the_numbers() {
         ("omega^2 = 1 - mu^2/8 + 23*mu^4/1537", "mu = 1/2"),
         ("omega = 1 - mu^2/8 + 23*mu^4/1536", "mu = 1/2"),
     ] {
-        assert!(
-            matches!(with_law(law, values), Err(CheckError::Malformed(_))),
-            "{law}"
-        );
+        assert!(matches!(with_law(law, values), Err(CheckError::Malformed(_))), "{law}");
     }
     for (law, values, is_held) in [
-        (
-            "omega^2 = 1 - k/2 + 23*mu^4/1536, k = mu^2/4",
-            "mu = 1/2",
-            true,
-        ),
+        ("omega^2 = 1 - k/2 + 23*mu^4/1536, k = mu^2/4", "mu = 1/2", true),
         ("omega^2 = 1 - mu^2/8 + 23*mu^4/1536", "", false),
         ("a perfect formula", "", false),
         ("0 = omega^2 - 1", "", false),

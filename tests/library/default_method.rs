@@ -24,28 +24,12 @@ fn a_force_without_an_expansion_is_answered_and_the_answer_says_why_not_as_usual
         ("x'' + x^3 = 0", Method::Exact, "A = 2"),
         ("x'' + sgn(x)/abs(x)^(1/3) = 0", Method::Exact, "A = 2"),
         ("x'' + c*x^(-1/5) = 0", Method::Exact, "A = 1/2, c = 3"),
-        (
-            "x'' + c*sgn(x)*abs(x)^p = 0",
-            Method::Exact,
-            "A = 1, c = 3, p = -2/3",
-        ),
-        (
-            "x'' + k*sgn(x)*abs(x)^p = 0",
-            Method::Exact,
-            "A = 1, k = 2, p = 3/2",
-        ),
-        (
-            "x'' + x + sgn(x)*sqrt(abs(x)) = 0",
-            Method::Hamiltonian,
-            "A = 1",
-        ),
+        ("x'' + c*sgn(x)*abs(x)^p = 0", Method::Exact, "A = 1, c = 3, p = -2/3"),
+        ("x'' + k*sgn(x)*abs(x)^p = 0", Method::Exact, "A = 1, k = 2, p = 3/2"),
+        ("x'' + x + sgn(x)*sqrt(abs(x)) = 0", Method::Hamiltonian, "A = 1"),
         ("x'' + x + H(x) = 0", Method::Exact, "A = 1"),
         ("x'' + tanh(x)^3 = 0", Method::Exact, "A = 1"),
-        (
-            "(1 + x^2)*x'' + x*x'^2 + x^3 = 0",
-            Method::Hamiltonian,
-            "A = 1",
-        ),
+        ("(1 + x^2)*x'' + x*x'^2 + x^3 = 0", Method::Hamiltonian, "A = 1"),
     ] {
         let solution = answered(equation, &Options::default());
         assert_eq!(solution.method, method, "{equation}");
@@ -56,35 +40,19 @@ fn a_force_without_an_expansion_is_answered_and_the_answer_says_why_not_as_usual
         let oscillator = Oscillator::parse(equation).expect(equation);
         let at: Values = at.parse().expect("values");
         let judged = judge(&oscillator, &solution, &at, 0.01).expect(equation);
-        assert_eq!(
-            judged.verdict,
-            Verdict::Pass,
-            "{equation}: {:?}",
-            judged.relative_error
-        );
+        assert_eq!(judged.verdict, Verdict::Pass, "{equation}: {:?}", judged.relative_error);
     }
 }
 
 #[test]
 fn an_order_asks_for_so_many_harmonics() {
     let equation = "x'' + sgn(x)*abs(x)^(1/3) = 0";
-    let options = Options {
-        order: Some(3),
-        ..Options::default()
-    };
+    let options = Options { order: Some(3), ..Options::default() };
     let solution = answered(equation, &options);
-    assert_eq!(
-        (solution.method, solution.order),
-        (Method::HarmonicBalance, 3)
-    );
+    assert_eq!((solution.method, solution.order), (Method::HarmonicBalance, 3));
     let oscillator = Oscillator::parse(equation).expect(equation);
-    let judged = judge(
-        &oscillator,
-        &solution,
-        &"A = 1".parse().expect("a value"),
-        1e-3,
-    )
-    .expect(equation);
+    let judged =
+        judge(&oscillator, &solution, &"A = 1".parse().expect("a value"), 1e-3).expect(equation);
     assert_eq!(judged.verdict, Verdict::Pass);
 }
 
@@ -92,27 +60,9 @@ fn an_order_asks_for_so_many_harmonics() {
 fn what_is_asked_of_an_expansion_is_refused_as_before() {
     let options = Options::default;
     for (equation, options) in [
-        (
-            "x'' + x^3 = 0",
-            Options {
-                method: Some(Method::LindstedtPoincare),
-                ..options()
-            },
-        ),
-        (
-            "x'' + x*abs(x) = 0",
-            Options {
-                small: Some("A".to_owned()),
-                ..options()
-            },
-        ),
-        (
-            "x'' + x^3 = 0",
-            Options {
-                frequency_alone: true,
-                ..options()
-            },
-        ),
+        ("x'' + x^3 = 0", Options { method: Some(Method::LindstedtPoincare), ..options() }),
+        ("x'' + x*abs(x) = 0", Options { small: Some("A".to_owned()), ..options() }),
+        ("x'' + x^3 = 0", Options { frequency_alone: true, ..options() }),
         // Not a stable place of rest: no method answers.
         ("x'' - x*abs(x) = 0", options()),
         ("x'' + abs(x) = 0", options()),
@@ -138,10 +88,7 @@ fn a_letter_may_stand_for_an_exponent() {
         let numbers = at.numbers();
         let [found, expected] =
             [&form.value, &expected.value].map(|law| law.evaluate(&numbers).expect("a number"));
-        assert!(
-            (found / expected - 1.0).abs() < 1e-12,
-            "p = {p}: {found} {expected}"
-        );
+        assert!((found / expected - 1.0).abs() < 1e-12, "p = {p}: {found} {expected}");
     }
 }
 
@@ -179,20 +126,11 @@ fn quadratic_terms_are_not_left_out() {
         let slow = answered(damped, &Options::default());
         assert!(slow.validity.contains(&Note::QuadraticTerms), "{damped}");
         let modulation = slow.modulation.expect(damped);
-        assert_eq!(
-            modulation.phase_rate.expand(),
-            frequency.expand(),
-            "{damped}"
-        );
+        assert_eq!(modulation.phase_rate.expand(), frequency.expand(), "{damped}");
         let resonance = answered(driven, &Options::default());
-        assert!(
-            resonance.validity.contains(&Note::QuadraticTerms),
-            "{driven}"
-        );
+        assert!(resonance.validity.contains(&Note::QuadraticTerms), "{driven}");
         let branches = resonance.response.expect(driven).branches.expect(driven);
-        let at_rest = frequency
-            .substitute("a".into(), &Expr::zero())
-            .expect("a number");
+        let at_rest = frequency.substitute("a".into(), &Expr::zero()).expect("a number");
         assert_eq!(
             (at_rest + Expr::from(&branches.centre)).expand(),
             frequency.expand(),
@@ -200,15 +138,11 @@ fn quadratic_terms_are_not_left_out() {
         );
     }
     // Where it is said what is small, the answer says what it leaves out.
-    for equation in [
-        "x'' + 2*eps*x' + x + eps*x^2 = 0",
-        "x'' + 2*eps*x' + x + eps*x^2 = eps*F*cos(Omega*t)",
-    ] {
+    for equation in
+        ["x'' + 2*eps*x' + x + eps*x^2 = 0", "x'' + 2*eps*x' + x + eps*x^2 = eps*F*cos(Omega*t)"]
+    {
         let solution = answered(equation, &Options::default());
-        assert!(
-            solution.validity.contains(&Note::QuadraticTermsLeftOut),
-            "{equation}"
-        );
+        assert!(solution.validity.contains(&Note::QuadraticTermsLeftOut), "{equation}");
     }
 }
 
@@ -221,23 +155,14 @@ fn a_limit_cycle_in_a_well_is_the_unstable_one() {
         Oscillator::parse("x'' + mu*(x^2 - b)*x' - x + x^3 = 0").expect("an oscillator");
     oscillator.about = Some(Expr::one());
     let solution = solve(&oscillator, &Options::default()).expect("slow equations");
-    let [cycle] = solution
-        .modulation
-        .expect("slow equations")
-        .steady
-        .try_into()
-        .expect("one cycle");
+    let [cycle] =
+        solution.modulation.expect("slow equations").steady.try_into().expect("one cycle");
     let stays = |b: f64| {
         let numbers = [("b".into(), b), ("mu".into(), 0.1)].into();
         cycle.amplitude.evaluate(&numbers).expect("an amplitude")
     };
     let attracts = cycle.attracts_where.expect("a condition");
-    assert!(
-        attracts
-            .evaluate(&[("mu".into(), 0.1)].into())
-            .expect("a number")
-            < 0.0
-    );
+    assert!(attracts.evaluate(&[("mu".into(), 0.1)].into()).expect("a number") < 0.0);
     // x^2 = 1 +- 2 sqrt(e) at the turning points.
     let root = 1e-3;
     let [low, high] = [-1.0, 1.0].map(|side| f64::sqrt(1.0 + side * 2.0 * root));
@@ -246,9 +171,7 @@ fn a_limit_cycle_in_a_well_is_the_unstable_one() {
     for k in 0..64 {
         let angle = std::f64::consts::PI * (f64::from(k) + 0.5) / 64.0;
         let x = middle - half * angle.cos();
-        let speed = (2.0 * root * root - 0.5 * (x * x - 1.0).powi(2))
-            .max(0.0)
-            .sqrt();
+        let speed = (2.0 * root * root - 0.5 * (x * x - 1.0).powi(2)).max(0.0).sqrt();
         drained += x * x * speed * angle.sin();
         fed += speed * angle.sin();
     }
@@ -264,15 +187,10 @@ fn a_force_that_is_infinite_at_rest_swings_through() {
     let solution = answered("x'' + sgn(x)/abs(x)^(1/3) = 0", &Options::default());
     let law = &solution.law.closed_form().expect("a closed law").value;
     for amplitude in [1e-3, 1.0, 7.0] {
-        let frequency = law
-            .evaluate(&[("A".into(), amplitude)].into())
-            .expect("a number");
+        let frequency = law.evaluate(&[("A".into(), amplitude)].into()).expect("a number");
         let quarter = amplitude.powf(2.0 / 3.0) * std::f64::consts::PI * f64::sqrt(3.0) / 4.0;
         let truth = std::f64::consts::FRAC_PI_2 / quarter;
-        assert!(
-            (frequency / truth - 1.0).abs() < 1e-14,
-            "{amplitude}: {frequency} and {truth}"
-        );
+        assert!((frequency / truth - 1.0).abs() < 1e-14, "{amplitude}: {frequency} and {truth}");
     }
 }
 
@@ -281,11 +199,7 @@ fn a_force_that_is_infinite_at_rest_swings_through() {
 fn period_through_a_logarithm(s: f64, k: f64, amplitude: f64) -> f64 {
     const STEP: f64 = 0.05;
     let rate = |u: f64| {
-        let lost = if u == 0.0 {
-            2.0
-        } else {
-            -(-2.0 * u * u).exp_m1() / (u * u)
-        };
+        let lost = if u == 0.0 { 2.0 } else { -(-2.0 * u * u).exp_m1() / (u * u) };
         8.0 * amplitude * (-u * u).exp() / (s * amplitude * amplitude * lost + 2.0 * k).sqrt()
     };
     let sum: f64 = (1..160).map(|step| rate(f64::from(step) * STEP)).sum();
@@ -307,22 +221,12 @@ fn a_force_like_one_over_x_has_its_period() {
         ("x'' + 5*x + 1/(100*x) = 0", 5.0, 0.01),
     ] {
         let oscillator = Oscillator::parse(equation).expect(equation);
-        let options = Options {
-            method: Some(Method::Exact),
-            ..Options::default()
-        };
+        let options = Options { method: Some(Method::Exact), ..Options::default() };
         let exact = answered(equation, &options);
         for amplitude in ["1/50", "2", "-7"] {
             let at: Values = format!("A = {amplitude}").parse().expect("a value");
             let judged = judge(&oscillator, &exact, &at, 1e-9).expect(equation);
-            let size = at
-                .iter()
-                .next()
-                .expect("A")
-                .1
-                .evaluate(&[].into())
-                .expect("a number")
-                .abs();
+            let size = at.iter().next().expect("A").1.evaluate(&[].into()).expect("a number").abs();
             let omega = 2.0 * pi / period_through_a_logarithm(s, k, size);
             // The judge, and the law or the quadrature of the method.
             assert!(
@@ -337,18 +241,10 @@ fn a_force_like_one_over_x_has_its_period() {
             // Nobody follows the path: nothing is said of it, and that is said.
             assert_eq!((judged.max_deviation, judged.residual), (None, None));
             let reason = judged.no_deviation.as_deref().unwrap_or_default();
-            assert!(
-                reason.contains("does not follow the true motion"),
-                "{equation}: {reason}"
-            );
+            assert!(reason.contains("does not follow the true motion"), "{equation}: {reason}");
             // No range speaks of a displacement that there is not.
             let ranges = judged.ranges.iter();
-            assert!(
-                ranges
-                    .clone()
-                    .all(|range| !range.text.contains("displacement")),
-                "{equation}"
-            );
+            assert!(ranges.clone().all(|range| !range.text.contains("displacement")), "{equation}");
         }
     }
 }
@@ -357,10 +253,8 @@ fn a_force_like_one_over_x_has_its_period() {
 #[test]
 fn a_force_that_rounding_makes_uneven_is_taken_through_its_pole() {
     let equation = "x'' + 1/x + 1/(x - 3) + 1/(x + 3) = 0";
-    let (oscillator, solution) = (
-        Oscillator::parse(equation).expect(equation),
-        answered(equation, &Options::default()),
-    );
+    let (oscillator, solution) =
+        (Oscillator::parse(equation).expect(equation), answered(equation, &Options::default()));
     for amplitude in [1.0_f64, 0.7, 1.5] {
         let rate = |u: f64| {
             let x = amplitude * (-u * u).exp();
@@ -369,16 +263,11 @@ fn a_force_that_rounding_makes_uneven_is_taken_through_its_pole() {
         };
         // At the ends of the steps beside zero the integrand is even, and its value at zero a
         // limit: middles of steps do without.
-        let period: f64 = (0..160)
-            .map(|step| 0.05 * rate((f64::from(step) + 0.5) * 0.05))
-            .sum();
+        let period: f64 = (0..160).map(|step| 0.05 * rate((f64::from(step) + 0.5) * 0.05)).sum();
         let at: Values = format!("A = {amplitude}").parse().expect("a value");
         let judged = judge(&oscillator, &solution, &at, 1e-8).expect(equation);
         let omega = std::f64::consts::TAU / period;
-        assert!(
-            (judged.true_frequency / omega - 1.0).abs() < 1e-10,
-            "{amplitude}: {omega}"
-        );
+        assert!((judged.true_frequency / omega - 1.0).abs() < 1e-10, "{amplitude}: {omega}");
         assert_eq!(judged.verdict, Verdict::Pass);
     }
 }
@@ -388,16 +277,9 @@ fn a_force_that_rounding_makes_uneven_is_taken_through_its_pole() {
 fn balance_of_one_over_x(coefficients: &[(usize, f64)], k: usize) -> f64 {
     const POINTS: usize = 4000;
     let theta = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / POINTS as f64;
-    let x = |theta: f64| {
-        coefficients
-            .iter()
-            .map(|(j, a)| a * (*j as f64 * theta).cos())
-            .sum::<f64>()
-    };
-    let sum: f64 = (0..POINTS)
-        .map(theta)
-        .map(|theta| (k as f64 * theta).cos() / x(theta))
-        .sum();
+    let x =
+        |theta: f64| coefficients.iter().map(|(j, a)| a * (*j as f64 * theta).cos()).sum::<f64>();
+    let sum: f64 = (0..POINTS).map(theta).map(|theta| (k as f64 * theta).cos() / x(theta)).sum();
     2.0 / POINTS as f64 * sum
 }
 
@@ -410,33 +292,19 @@ fn methods_of_few_terms_take_one_over_x_where_their_integral_exists() {
         (Method::EnergyBalance, "omega^2 = 2*k*log(2)/A^2"),
         (Method::AmplitudeFrequency, "4*k/(3*A^2)"),
     ] {
-        let options = Options {
-            method: Some(method),
-            ..Options::default()
-        };
+        let options = Options { method: Some(method), ..Options::default() };
         let solution = answered("x'' + k/x = 0", &options);
-        let squared = solution
-            .law
-            .frequency_squared()
-            .map(|law| Expr::from(law).to_string());
+        let squared = solution.law.frequency_squared().map(|law| Expr::from(law).to_string());
         let found = squared.or_else(|| solution.law.closed_form().map(ToString::to_string));
         assert_eq!(found.as_deref(), Some(law), "{method:?}");
-        let said = solution
-            .validity
-            .iter()
-            .any(|note| matches!(note, Note::EndlessPotential { .. }));
+        let said =
+            solution.validity.iter().any(|note| matches!(note, Note::EndlessPotential { .. }));
         assert!(said, "{method:?}");
     }
     // f/x = 1/x^2 has no bound at rest.
-    let max_min = Options {
-        method: Some(Method::MaxMin),
-        ..Options::default()
-    };
+    let max_min = Options { method: Some(Method::MaxMin), ..Options::default() };
     let oscillator = Oscillator::parse("x'' + k/x = 0").expect("an equation");
-    assert!(matches!(
-        solve(&oscillator, &max_min),
-        Err(Refusal::Unbounded { .. })
-    ));
+    assert!(matches!(solve(&oscillator, &max_min), Err(Refusal::Unbounded { .. })));
     for order in 1..5 {
         let options = Options {
             method: Some(Method::HarmonicBalance),
@@ -473,19 +341,9 @@ fn weaker_powers_go_over_into_one_over_x() {
         let solution = answered(&equation, &Options::default());
         assert_eq!(solution.method, Method::Exact, "{equation}");
         let oscillator = Oscillator::parse(&equation).expect("an equation");
-        let judged = judge(
-            &oscillator,
-            &solution,
-            &"A = 1".parse().expect("a value"),
-            1e-8,
-        )
-        .expect("a motion");
-        assert_eq!(
-            judged.verdict,
-            Verdict::Pass,
-            "{equation}: {:?}",
-            judged.relative_error
-        );
+        let judged = judge(&oscillator, &solution, &"A = 1".parse().expect("a value"), 1e-8)
+            .expect("a motion");
+        assert_eq!(judged.verdict, Verdict::Pass, "{equation}: {:?}", judged.relative_error);
         let off = (judged.true_frequency - limit).abs();
         assert!(off < 0.15 * last, "{equation}: {off}");
         last = off;
@@ -498,35 +356,21 @@ fn what_falls_in_is_refused_and_says_why() {
         let oscillator = Oscillator::parse(equation).expect(equation);
         solve(&oscillator, &Options::default()).expect_err(equation)
     };
-    for equation in [
-        "x'' + 1/x^3 = 0",
-        "x'' + x + 2/x^3 = 0",
-        "x'' + sgn(x)*abs(x)^(-11/10) = 0",
-    ] {
+    for equation in ["x'' + 1/x^3 = 0", "x'' + x + 2/x^3 = 0", "x'' + sgn(x)*abs(x)^(-11/10) = 0"] {
         let refusal = refused(equation);
-        let falls_in = matches!(
-            refusal,
-            Refusal::Oscillator(OscillatorError::FallsIn { uneven: false, .. })
-        );
+        let falls_in =
+            matches!(refusal, Refusal::Oscillator(OscillatorError::FallsIn { uneven: false, .. }));
         assert!(falls_in, "{equation}: {refusal}");
     }
     for equation in ["x'' + 1 + 1/x = 0", "x'' + x^2 + 1/x = 0"] {
         let refusal = refused(equation);
-        let uneven = matches!(
-            refusal,
-            Refusal::Oscillator(OscillatorError::FallsIn { uneven: true, .. })
-        );
+        let uneven =
+            matches!(refusal, Refusal::Oscillator(OscillatorError::FallsIn { uneven: true, .. }));
         assert!(uneven, "{equation}: {refusal}");
     }
     // What pushes away from zero has wells beside it.
-    assert_eq!(
-        answered("x'' + x - 1/x = 0", &Options::default()).equilibrium,
-        Expr::from(1)
-    );
-    assert_eq!(
-        answered("x'' + x - 1/x^3 = 0", &Options::default()).equilibrium,
-        Expr::from(1)
-    );
+    assert_eq!(answered("x'' + x - 1/x = 0", &Options::default()).equilibrium, Expr::from(1));
+    assert_eq!(answered("x'' + x - 1/x^3 = 0", &Options::default()).equilibrium, Expr::from(1));
 }
 
 #[test]
@@ -535,17 +379,9 @@ fn a_path_through_an_infinite_force_is_neither_drawn_nor_followed() {
     let oscillator = Oscillator::parse(equation).expect(equation);
     let solution = answered(equation, &Options::default());
     assert_eq!(solution.method, Method::Averaging);
-    let error = judge(
-        &oscillator,
-        &solution,
-        &"A = 1".parse().expect("a value"),
-        0.01,
-    )
-    .expect_err("no path");
-    assert!(
-        matches!(error, VerificationError::NotFollowed { .. }),
-        "{error}"
-    );
+    let error = judge(&oscillator, &solution, &"A = 1".parse().expect("a value"), 0.01)
+        .expect_err("no path");
+    assert!(matches!(error, VerificationError::NotFollowed { .. }), "{error}");
     let free = Oscillator::parse("x*x'' + 1 = 0").expect("an equation");
     let exact = answered("x*x'' + 1 = 0", &Options::default());
     let error = motions(&free, &exact, &"A = 1".parse().expect("a value")).err();
@@ -555,8 +391,5 @@ fn a_path_through_an_infinite_force_is_neither_drawn_nor_followed() {
         Note::InsteadOf { reason, .. } => Some(reason.clone()),
         _ => None,
     });
-    assert_eq!(
-        reason.as_deref(),
-        Some("`1/x` has no Taylor series about x = 0, x' = 0")
-    );
+    assert_eq!(reason.as_deref(), Some("`1/x` has no Taylor series about x = 0, x' = 0"));
 }

@@ -26,10 +26,9 @@ fn certified(equation: &str, at: &str) -> Result<(DampedCertificate, Certified),
     // A linear equation has its exact motion by default, and it is the amplitude of slow equations
     // that is certified.
     let solution = match derived(&Options::default()) {
-        exact if exact.method == Method::Exact => derived(&Options {
-            method: Some(Method::MultipleScales),
-            ..Options::default()
-        }),
+        exact if exact.method == Method::Exact => {
+            derived(&Options { method: Some(Method::MultipleScales), ..Options::default() })
+        }
         other => other,
     };
     certify_driven(&oscillator, &solution, &at)
@@ -42,18 +41,11 @@ fn proved(equation: &str, at: &str) -> (DampedCertificate, Certified) {
 /// Position and velocity at t = 0 of the approximate motion, in doubles.
 fn start(certificate: &DampedCertificate, omega: f64) -> [f64; 2] {
     let value = |units: &Integer| {
-        to_f64(&Rational::new(
-            units.clone(),
-            Integer::from(1) << certificate.bits,
-        ))
+        to_f64(&Rational::new(units.clone(), Integer::from(1) << certificate.bits))
     };
     let position = certificate.cosines.iter().map(value).sum();
-    let velocity: f64 = certificate
-        .sines
-        .iter()
-        .enumerate()
-        .map(|(k, units)| k as f64 * value(units))
-        .sum();
+    let velocity: f64 =
+        certificate.sines.iter().enumerate().map(|(k, units)| k as f64 * value(units)).sum();
     [position, omega * velocity]
 }
 
@@ -61,10 +53,8 @@ fn start(certificate: &DampedCertificate, omega: f64) -> [f64; 2] {
 #[test]
 fn the_amplitude_of_a_linear_oscillator_is_enclosed() {
     for omega in [ratio(9, 10), ratio(1, 1), ratio(7, 5)] {
-        let (_, proof) = proved(
-            "x'' + x'/5 + x - cos(Omega*t)/10 = 0",
-            &format!("Omega = {omega}"),
-        );
+        let (_, proof) =
+            proved("x'' + x'/5 + x - cos(Omega*t)/10 = 0", &format!("Omega = {omega}"));
         let amplitude = proof.amplitude.expect("an amplitude");
         assert!(amplitude.radius.value() < 1e-30, "{omega}");
         let radius = ratio(1, 1_000_000_000_000_000).pow(2);
@@ -82,68 +72,26 @@ fn the_amplitude_of_a_linear_oscillator_is_enclosed() {
 fn shooting_finds_what_is_proved() {
     for (equation, at, periods, odd) in [
         (DUFFING, "Omega = 6/5", 1, true),
-        (
-            "x'' + x'/20 + sin(x) - cos(Omega*t)/10 = 0",
-            "Omega = 9/10",
-            1,
-            true,
-        ),
+        ("x'' + x'/20 + sin(x) - cos(Omega*t)/10 = 0", "Omega = 9/10", 1, true),
         // In a letter that stands for a wave of the drive in certificates.
-        (
-            "s'' + s'/20 + sin(s) - cos(Omega*t)/10 = 0",
-            "Omega = 9/10",
-            1,
-            true,
-        ),
-        (
-            "x'' + x'/20 + x + x^2/5 - cos(Omega*t)/5 = 0",
-            "Omega = 1/2",
-            1,
-            false,
-        ),
-        (
-            "x'' + x'/20 + x + x^2/5 - sin(Omega*t + 1/3)/20 = 0",
-            "Omega = 1",
-            1,
-            false,
-        ),
-        (
-            "x'' + x'/50 + (1 + cos(Omega*t)/5)*x + x^3/10 = 0",
-            "Omega = 101/50",
-            2,
-            true,
-        ),
-        (
-            "x'' + x'/50 + x + x^3/10 - 5*cos(Omega*t) = 0",
-            "Omega = 4",
-            3,
-            true,
-        ),
-        (
-            "x'' - (1 - x^2)*x'/10 + x - cos(Omega*t)/10 = 0",
-            "Omega = 101/100",
-            1,
-            true,
-        ),
+        ("s'' + s'/20 + sin(s) - cos(Omega*t)/10 = 0", "Omega = 9/10", 1, true),
+        ("x'' + x'/20 + x + x^2/5 - cos(Omega*t)/5 = 0", "Omega = 1/2", 1, false),
+        ("x'' + x'/20 + x + x^2/5 - sin(Omega*t + 1/3)/20 = 0", "Omega = 1", 1, false),
+        ("x'' + x'/50 + (1 + cos(Omega*t)/5)*x + x^3/10 = 0", "Omega = 101/50", 2, true),
+        ("x'' + x'/50 + x + x^3/10 - 5*cos(Omega*t) = 0", "Omega = 4", 3, true),
+        ("x'' - (1 - x^2)*x'/10 + x - cos(Omega*t)/10 = 0", "Omega = 101/100", 1, true),
     ] {
         let (certificate, proof) = proved(equation, at);
         assert_eq!(
-            (
-                certificate.odd,
-                certificate.drive.as_ref().map(|drive| drive.periods)
-            ),
+            (certificate.odd, certificate.drive.as_ref().map(|drive| drive.periods)),
             (odd, Some(periods)),
             "{equation}"
         );
         let values: Values = at.parse().expect("values");
         let omega = values.get(Symbol::new("Omega")).expect("a frequency");
         let oscillator = Oscillator::parse(equation).expect(equation);
-        let names = [
-            Symbol::new("t"),
-            oscillator.coordinate,
-            oscillator.velocity(),
-            Symbol::new("Omega"),
-        ];
+        let names =
+            [Symbol::new("t"), oscillator.coordinate, oscillator.velocity(), Symbol::new("Omega")];
         let force = CompiledFunction::new(&oscillator.force, &names).expect("a function");
         let acceleration = |t: f64, x: f64, v: f64| -force.call(&[t, x, v, omega]);
         let period = std::f64::consts::TAU * periods as f64 / omega;
@@ -157,24 +105,13 @@ fn shooting_finds_what_is_proved() {
         let drive = certificate.drive.as_ref().expect("a drive");
         let own = found.harmonic(u32::try_from(drive.harmonic).expect("small"));
         let amplitude = proof.amplitude.as_ref().expect("an amplitude");
-        assert!(
-            (to_f64(&amplitude.middle) - own).abs() < 1e-8,
-            "{equation}: {own}"
-        );
-        assert_eq!(
-            check_damped(&certificate).as_ref(),
-            Ok(&proof),
-            "{equation}"
-        );
+        assert!((to_f64(&amplitude.middle) - own).abs() < 1e-8, "{equation}: {own}");
+        assert_eq!(check_damped(&certificate).as_ref(), Ok(&proof), "{equation}");
         let document = json::damped_certificate(&certificate);
         let text = serde_json::to_string(&document).expect("text");
         let read: json::DampedCertificateDocument =
             serde_json::from_str(&text).expect("a document");
-        assert_eq!(
-            read.read().expect("a certificate"),
-            certificate,
-            "{equation}"
-        );
+        assert_eq!(read.read().expect("a certificate"), certificate, "{equation}");
     }
 }
 
@@ -186,36 +123,15 @@ fn a_formula_is_held_against_the_nearest_of_equal_motions() {
     let is_same = |one: f64, other: f64| (one / other - 1.0).abs() < 1e-3;
     for (equation, about, at, copies) in [
         // Period two, and -X is X a period of the drive later.
-        (
-            "x'' + x'/50 + (1 + cos(Omega*t)/5)*x + x^3/10 = 0",
-            0,
-            "Omega = 101/50",
-            2,
-        ),
-        (
-            "x'' + x'/50 + x + x^3/10 - 5*cos(Omega*t) = 0",
-            0,
-            "Omega = 4",
-            3,
-        ),
-        (
-            "x'' + x'/20 + x + x^2/5 - cos(Omega*t)/5 = 0",
-            0,
-            "Omega = 1/2",
-            1,
-        ),
+        ("x'' + x'/50 + (1 + cos(Omega*t)/5)*x + x^3/10 = 0", 0, "Omega = 101/50", 2),
+        ("x'' + x'/50 + x + x^3/10 - 5*cos(Omega*t) = 0", 0, "Omega = 4", 3),
+        ("x'' + x'/20 + x + x^2/5 - cos(Omega*t)/5 = 0", 0, "Omega = 1/2", 1),
         (DUFFING, 0, "Omega = 6/5", 1),
         // In one of two wells: the mirror image is in the other, half a period later.
-        (
-            "x'' + x'/10 - x/2 + x^3/2 - cos(Omega*t)/50 = 0",
-            1,
-            "Omega = 1",
-            2,
-        ),
+        ("x'' + x'/10 - x/2 + x^3/2 - cos(Omega*t)/50 = 0", 1, "Omega = 1", 2),
     ] {
-        let oscillator = Oscillator::parse(equation)
-            .expect(equation)
-            .about(Expr::number(ratio(about, 1)));
+        let oscillator =
+            Oscillator::parse(equation).expect(equation).about(Expr::number(ratio(about, 1)));
         let at: Values = at.parse().expect("values");
         let asked = with_resonance_at(&oscillator, &Options::default(), &at).expect(equation);
         let solution = solve(&oscillator, &asked).expect(equation);
@@ -225,35 +141,16 @@ fn a_formula_is_held_against_the_nearest_of_equal_motions() {
         let drive = certificate.drive.clone().expect("a drive");
         for period in 1..drive.periods {
             let mut other = certificate.clone();
-            turn(
-                &mut other,
-                std::f64::consts::TAU * period as f64 / drive.periods as f64,
-                1.0,
-            );
-            let again = check_damped(&other)
-                .expect("a proof")
-                .formula
-                .expect("errors");
-            assert!(
-                is_same(again.deviation.upper, errors.deviation.upper),
-                "{equation}"
-            );
-            assert!(
-                is_same(again.deviation.lower, errors.deviation.lower),
-                "{equation}"
-            );
+            turn(&mut other, std::f64::consts::TAU * period as f64 / drive.periods as f64, 1.0);
+            let again = check_damped(&other).expect("a proof").formula.expect("errors");
+            assert!(is_same(again.deviation.upper, errors.deviation.upper), "{equation}");
+            assert!(is_same(again.deviation.lower, errors.deviation.lower), "{equation}");
         }
         if !certificate.odd && copies > drive.periods {
             let mut other = certificate.clone();
             turn(&mut other, std::f64::consts::PI, -1.0);
-            let again = check_damped(&other)
-                .expect("a proof")
-                .formula
-                .expect("errors");
-            assert!(
-                is_same(again.deviation.upper, errors.deviation.upper),
-                "{equation}"
-            );
+            let again = check_damped(&other).expect("a proof").formula.expect("errors");
+            assert!(is_same(again.deviation.upper, errors.deviation.upper), "{equation}");
         }
     }
 }
@@ -264,9 +161,7 @@ fn turn(certificate: &mut DampedCertificate, angle: f64, sign: f64) {
     let bits = certificate.bits;
     let formula = certificate.formula.as_mut().expect("a formula");
     let value = |units: Option<&Integer>| {
-        units.map_or(0.0, |units| {
-            to_f64(&Rational::new(units.clone(), Integer::from(1) << bits))
-        })
+        units.map_or(0.0, |units| to_f64(&Rational::new(units.clone(), Integer::from(1) << bits)))
     };
     let length = formula.coefficients.len().max(formula.sines.len());
     let in_units = |value: f64| {
@@ -276,10 +171,7 @@ fn turn(certificate: &mut DampedCertificate, angle: f64, sign: f64) {
     };
     let (mut cosines, mut sines) = (vec![], vec![]);
     for k in 0..length {
-        let (a, b) = (
-            value(formula.coefficients.get(k)),
-            value(formula.sines.get(k)),
-        );
+        let (a, b) = (value(formula.coefficients.get(k)), value(formula.sines.get(k)));
         let (sine, cosine) = (k as f64 * angle).sin_cos();
         cosines.push(in_units(sign * (a * cosine + b * sine)));
         sines.push(in_units(sign * (b * cosine - a * sine)));
@@ -298,14 +190,8 @@ fn turn(certificate: &mut DampedCertificate, angle: f64, sign: f64) {
 fn the_law_of_a_driven_motion_is_held_against_the_numbers() {
     for (equation, at) in [
         (DUFFING, "Omega = 6/5"),
-        (
-            "x'' + x'/20 + x + x^2/5 - cos(Omega*t)/5 = 0",
-            "Omega = 1/2",
-        ),
-        (
-            "x'' + x'/50 + (1 + cos(Omega*t)/5)*x + x^3/10 = 0",
-            "Omega = 101/50",
-        ),
+        ("x'' + x'/20 + x + x^2/5 - cos(Omega*t)/5 = 0", "Omega = 1/2"),
+        ("x'' + x'/50 + (1 + cos(Omega*t)/5)*x + x^3/10 = 0", "Omega = 101/50"),
     ] {
         let (certificate, proof) = proved(equation, at);
         assert!(proof.law_is_held, "{equation}: {:?}", certificate.formula);
@@ -313,10 +199,7 @@ fn the_law_of_a_driven_motion_is_held_against_the_numbers() {
         if let Some(formula) = &mut other.formula {
             formula.law = formula.law.replacen("cos", "sin", 1);
         }
-        assert!(
-            matches!(check_damped(&other), Err(CheckError::Malformed(_))),
-            "{equation}"
-        );
+        assert!(matches!(check_damped(&other), Err(CheckError::Malformed(_))), "{equation}");
     }
 }
 
@@ -342,20 +225,11 @@ fn the_error_of_the_formula_is_enclosed() {
 #[test]
 fn what_cannot_be_certified_is_refused_with_the_reason() {
     let refused = |equation: &str, at: &str| certified(equation, at).expect_err("no certificate");
-    assert!(matches!(
-        refused(DUFFING, "Omega = sqrt(2)"),
-        NotCertified::DrivingFrequency(_)
-    ));
+    assert!(matches!(refused(DUFFING, "Omega = sqrt(2)"), NotCertified::DrivingFrequency(_)));
     // The slope of a sign is zero, and still it is no term of the position.
-    let friction = refused(
-        "x'' + x'/10 + sgn(x')/100 + x - cos(Omega*t)/5 = 0",
-        "Omega = 11/10",
-    );
+    let friction = refused("x'' + x'/10 + sgn(x')/100 + x - cos(Omega*t)/5 = 0", "Omega = 11/10");
     assert_eq!(friction, NotCertified::NotDriven("sgn(x')/100".to_owned()));
-    let cubic = refused(
-        "x'' + x'^3/20 + x + x^3/5 - cos(Omega*t)/5 = 0",
-        "Omega = 1",
-    );
+    let cubic = refused("x'' + x'^3/20 + x + x^3/5 - cos(Omega*t)/5 = 0", "Omega = 1");
     assert_eq!(cubic, NotCertified::NotDriven("x'^3/20".to_owned()));
 }
 
@@ -377,17 +251,11 @@ fn each_inequality_is_checked() {
         |error: CheckError| matches!(error, CheckError::NotProved(NotProved::NoContraction(_)));
     for column in 0..sound.inverse.len() {
         assert!(no_contraction(reason(&move |certificate| {
-            certificate
-                .inverse
-                .iter_mut()
-                .for_each(|row| row[column] = Integer::zero());
+            certificate.inverse.iter_mut().for_each(|row| row[column] = Integer::zero());
         })));
     }
     let far = |error: CheckError| {
-        matches!(
-            error,
-            CheckError::NotProved(NotProved::TooFar(_) | NotProved::TooLarge(_))
-        )
+        matches!(error, CheckError::NotProved(NotProved::TooFar(_) | NotProved::TooLarge(_)))
     };
     for place in [1, 3] {
         assert!(far(reason(
@@ -402,11 +270,7 @@ fn each_inequality_is_checked() {
         let more = parse_expression(spoil).expect("an expression");
         let even =
             |certificate: &mut DampedCertificate| certificate.force = &certificate.force + &more;
-        assert_eq!(
-            reason(&even),
-            CheckError::NotProved(NotProved::NotOdd),
-            "{spoil}"
-        );
+        assert_eq!(reason(&even), CheckError::NotProved(NotProved::NotOdd), "{spoil}");
     }
     for spoil in [
         (|certificate: &mut DampedCertificate| certificate.sigma = 1) as fn(&mut DampedCertificate),
@@ -429,10 +293,7 @@ fn each_inequality_is_checked() {
     }
     assert!(matches!(
         check_damped(&boastful),
-        Err(CheckError::ClaimedLess {
-            what: "the error of the amplitude",
-            ..
-        })
+        Err(CheckError::ClaimedLess { what: "the error of the amplitude", .. })
     ));
 }
 

@@ -16,9 +16,7 @@ type Digits = (bool, Vec<u32>);
 
 fn number<T: Num + Neg<Output = T> + From<u32>>((negative, digits): &Digits) -> T {
     let base = || T::from(1 << 16) * T::from(1 << 16);
-    let size = digits
-        .iter()
-        .fold(T::zero(), |sum, &digit| sum * base() + T::from(digit));
+    let size = digits.iter().fold(T::zero(), |sum, &digit| sum * base() + T::from(digit));
     if *negative { -size } else { size }
 }
 
@@ -32,9 +30,8 @@ fn small_or_long() -> impl Strategy<Value = Digits> {
 }
 
 fn fraction() -> impl Strategy<Value = (Digits, Digits)> {
-    let nonzero = small_or_long().prop_filter("a denominator", |(_, digits)| {
-        digits.iter().any(|digit| *digit != 0)
-    });
+    let nonzero = small_or_long()
+        .prop_filter("a denominator", |(_, digits)| digits.iter().any(|digit| *digit != 0));
     (small_or_long(), nonzero)
 }
 
@@ -63,14 +60,8 @@ fn agree(ours: &Integer, theirs: &BigInt) -> Result<(), TestCaseError> {
 fn agree_as_fractions(ours: &Rational, theirs: &BigRational) -> Result<(), TestCaseError> {
     agree(ours.numer(), theirs.numer())?;
     agree(ours.denom(), theirs.denom())?;
-    prop_assert_eq!(
-        format!("{ours}|{ours:>+50}"),
-        format!("{theirs}|{theirs:>+50}")
-    );
-    prop_assert_eq!(
-        &ours.to_string().parse::<Rational>().expect("a fraction"),
-        ours
-    );
+    prop_assert_eq!(format!("{ours}|{ours:>+50}"), format!("{theirs}|{theirs:>+50}"));
+    prop_assert_eq!(&ours.to_string().parse::<Rational>().expect("a fraction"), ours);
     Ok(())
 }
 
@@ -112,9 +103,7 @@ fn is_nearest(value: &Rational, found: f64) -> Result<(), TestCaseError> {
         return Ok(());
     }
     let error = (value - exact(found)).abs();
-    for neighbour in [found.next_down(), found.next_up()]
-        .into_iter()
-        .filter(|end| end.is_finite())
+    for neighbour in [found.next_down(), found.next_up()].into_iter().filter(|end| end.is_finite())
     {
         let other = (value - exact(neighbour)).abs();
         prop_assert!(
@@ -287,8 +276,5 @@ fn doubles_at_the_ends_of_their_range() {
     ] {
         assert_eq!(to_f64(&value), expected);
     }
-    assert_eq!(
-        [f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(from_f64),
-        [None, None, None]
-    );
+    assert_eq!([f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(from_f64), [None, None, None]);
 }

@@ -160,32 +160,20 @@ fn full_tree() -> impl Strategy<Value = Raw> {
 
 fn rational_point() -> impl Strategy<Value = BTreeMap<Symbol, Rational>> {
     proptest::collection::vec((-20_i64..=20, 1_i64..=7), SYMBOLS.len()).prop_map(|values| {
-        let values = values
-            .into_iter()
-            .map(|(numerator, denominator)| ratio(numerator, denominator));
-        SYMBOLS
-            .iter()
-            .map(|name| Symbol::new(name))
-            .zip(values)
-            .collect()
+        let values =
+            values.into_iter().map(|(numerator, denominator)| ratio(numerator, denominator));
+        SYMBOLS.iter().map(|name| Symbol::new(name)).zip(values).collect()
     })
 }
 
 fn float_point() -> impl Strategy<Value = BTreeMap<Symbol, f64>> {
-    proptest::collection::vec(-2.0..2.0, SYMBOLS.len()).prop_map(|values| {
-        SYMBOLS
-            .iter()
-            .map(|name| Symbol::new(name))
-            .zip(values)
-            .collect()
-    })
+    proptest::collection::vec(-2.0..2.0, SYMBOLS.len())
+        .prop_map(|values| SYMBOLS.iter().map(|name| Symbol::new(name)).zip(values).collect())
 }
 
 fn at(expr: &Expr, point: &BTreeMap<Symbol, Rational>) -> Option<Rational> {
-    let values = point
-        .iter()
-        .map(|(symbol, value)| (*symbol, Expr::number(value.clone())))
-        .collect();
+    let values =
+        point.iter().map(|(symbol, value)| (*symbol, Expr::number(value.clone()))).collect();
     expr.substitute_all(&values).ok()?.as_number().cloned()
 }
 

@@ -8,10 +8,7 @@ use lindstedt::impact::friction::{DEFAULT_ALPHA, FrictionSetup, FrictionStudy, s
 use lindstedt::impact::{Friction, Integrator, Model, Settings, Start, simulate};
 
 fn with(alpha: f64) -> FrictionStudy {
-    let setup = FrictionSetup {
-        alpha,
-        ..FrictionSetup::default()
-    };
+    let setup = FrictionSetup { alpha, ..FrictionSetup::default() };
     study(setup).expect("a study")
 }
 
@@ -24,10 +21,7 @@ fn the_page_says_what_is_computed() {
     let sections: Vec<&str> = printed.trim_end().split("\n\n").skip(1).collect();
     assert_eq!(sections.len(), 6);
     for section in sections {
-        assert!(
-            page.contains(&format!("```text\n{section}\n```")),
-            "{section}"
-        );
+        assert!(page.contains(&format!("```text\n{section}\n```")), "{section}");
     }
 }
 
@@ -48,12 +42,7 @@ fn one_pi_makes_every_printed_digit() {
         .collect();
     assert_eq!(cut, ["+0.99413"]);
     // No other comes near: only the two zeros come out by themselves.
-    assert!(
-        table
-            .readings
-            .iter()
-            .all(|reading| reading.name == "3.14" || reading.either == 2)
-    );
+    assert!(table.readings.iter().all(|reading| reading.name == "3.14" || reading.either == 2));
     let [least, greatest] = table.pi_range.expect("a range");
     assert!(
         least < best.value && best.value < greatest && greatest - least < 1e-7,
@@ -76,30 +65,14 @@ fn coulomb_stops_and_the_arctangent_creeps_at_the_rate_of_its_linear_equation() 
     for alpha in [1e-3, 0.01, 0.03, 0.032, DEFAULT_ALPHA, 0.2, 0.7] {
         let near_rest = with(alpha).near_rest;
         let (stop, creep) = (near_rest.stop, near_rest.creep);
-        assert!(
-            stop.x.sin().abs() <= alpha && stop.t > 0.0,
-            "{alpha}: {stop:?}"
-        );
+        assert!(stop.x.sin().abs() <= alpha && stop.t > 0.0, "{alpha}: {stop:?}");
         // Another integrator stops it there too.
-        let model = Model {
-            alpha,
-            right: None,
-            ..Model::default()
-        };
-        let settings = Settings {
-            duration: stop.t + 20.0,
-            ..Settings::default()
-        };
+        let model = Model { alpha, right: None, ..Model::default() };
+        let settings = Settings { duration: stop.t + 20.0, ..Settings::default() };
         let judged = simulate(&model, Start::default(), Integrator::RungeKutta, &settings)
             .expect("a motion");
-        assert!(
-            (judged.end_x - stop.x).abs() < 1e-7 && judged.end_velocity == 0.0,
-            "{alpha}"
-        );
-        let last = judged
-            .turns
-            .iter()
-            .find(|turn| (turn.x - judged.end_x).abs() < 1e-12);
+        assert!((judged.end_x - stop.x).abs() < 1e-7 && judged.end_velocity == 0.0, "{alpha}");
+        let last = judged.turns.iter().find(|turn| (turn.x - judged.end_x).abs() < 1e-12);
         assert!(
             last.is_some_and(|turn| (turn.t - stop.t).abs() < 1e-4),
             "{alpha}: {last:?} {stop:?}"
@@ -131,20 +104,10 @@ fn a_strong_creep_is_its_formula() {
     for alpha in [0.8, 0.9, 0.95] {
         let near_rest = with(alpha).near_rest;
         let creep = &near_rest.creep;
-        let model = Model {
-            alpha,
-            friction: Friction::Arctangent,
-            right: None,
-            ..Model::default()
-        };
-        let start = Start {
-            x: near_rest.stop.x,
-            velocity: 0.0,
-        };
-        let settings = Settings {
-            duration: creep.motion.end_time,
-            ..Settings::default()
-        };
+        let model =
+            Model { alpha, friction: Friction::Arctangent, right: None, ..Model::default() };
+        let start = Start { x: near_rest.stop.x, velocity: 0.0 };
+        let settings = Settings { duration: creep.motion.end_time, ..Settings::default() };
         let judged = simulate(&model, start, Integrator::RungeKutta, &settings).expect("a motion");
         for sample in &creep.samples {
             let (x, _) = judged.path.at(sample.t).expect("a state");
@@ -166,29 +129,14 @@ fn a_strong_creep_is_its_formula() {
 fn a_strong_friction_has_a_rest_time_by_the_arctangent() {
     for alpha in [0.8, 0.9, 0.95] {
         let times = with(alpha).near_rest.rest_times;
-        assert!(
-            times.coulomb.is_err() && times.difference().is_none(),
-            "{alpha}: {times:?}"
-        );
-        let model = Model {
-            alpha,
-            friction: Friction::Arctangent,
-            ..Model::default()
-        };
-        let settings = Settings {
-            duration: 200.0,
-            ..Settings::default()
-        };
+        assert!(times.coulomb.is_err() && times.difference().is_none(), "{alpha}: {times:?}");
+        let model = Model { alpha, friction: Friction::Arctangent, ..Model::default() };
+        let settings = Settings { duration: 200.0, ..Settings::default() };
         let judged = simulate(&model, Start::default(), Integrator::RungeKutta, &settings)
             .expect("a motion");
-        let (found, truth) = (
-            times.arctangent.expect("a rest"),
-            judged.rest().time.expect("a rest"),
-        );
-        assert!(
-            (found / truth - 1.0).abs() < 1e-6,
-            "{alpha}: {found} {truth}"
-        );
+        let (found, truth) =
+            (times.arctangent.expect("a rest"), judged.rest().time.expect("a rest"));
+        assert!((found / truth - 1.0).abs() < 1e-6, "{alpha}: {found} {truth}");
     }
 }
 
@@ -198,16 +146,8 @@ fn a_strong_friction_has_a_rest_time_by_the_arctangent() {
 fn the_missing_work_is_that_of_the_books() {
     let alpha = 0.01;
     let cycle = with(alpha).near_rest.first_cycle;
-    let model = Model {
-        alpha,
-        friction: Friction::Arctangent,
-        right: None,
-        ..Model::default()
-    };
-    let settings = Settings {
-        duration: cycle.until,
-        ..Settings::default()
-    };
+    let model = Model { alpha, friction: Friction::Arctangent, right: None, ..Model::default() };
+    let settings = Settings { duration: cycle.until, ..Settings::default() };
     let motion =
         simulate(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
     let turns: Vec<f64> = motion.turns.iter().map(|turn| turn.x).collect();
@@ -217,16 +157,9 @@ fn the_missing_work_is_that_of_the_books() {
     assert!((cycle.largest_error - 1.0).abs() < 1e-6);
     assert!(cycle.over_ten_percent < cycle.over_one_percent && cycle.over_one_percent < 1.0);
     // Small swings are harmonic: from a release at 0.2 to within the loss of a cycle.
-    let small = study(FrictionSetup {
-        alpha: 1e-4,
-        amplitude: 0.2,
-        ..FrictionSetup::default()
-    });
+    let small = study(FrictionSetup { alpha: 1e-4, amplitude: 0.2, ..FrictionSetup::default() });
     let small = small.expect("a study").near_rest.first_cycle;
-    assert!(
-        (small.work_share / work_share(0.2) - 1.0).abs() < 1e-3,
-        "{small:?}"
-    );
+    assert!((small.work_share / work_share(0.2) - 1.0).abs() < 1e-3, "{small:?}");
 }
 
 #[test]
@@ -240,16 +173,8 @@ fn wrong_numbers_get_their_message() {
         (&["--amplitude", "0"], 1, "below pi"),
         (&["--amplitude", "3.2"], 1, "below pi"),
         (&["--amplitude", "inf"], 1, "below pi"),
-        (
-            &["--amplitude", "0.04"],
-            1,
-            "holds the pendulum where it is released",
-        ),
-        (
-            &["--amplitude", "3.13"],
-            1,
-            "holds the pendulum where it is released",
-        ),
+        (&["--amplitude", "0.04"], 1, "holds the pendulum where it is released"),
+        (&["--amplitude", "3.13"], 1, "holds the pendulum where it is released"),
         (&["--speed", "inf"], 1, "finite number"),
         (&["--speed", "x"], 2, "--speed"),
         (&["--tolerance", "0.1"], 2, "no verdict"),
@@ -262,26 +187,17 @@ fn wrong_numbers_get_their_message() {
             .expect("the program starts");
         let message = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {message}");
-        assert!(
-            message.contains(words) && output.stdout.is_empty(),
-            "{arguments:?}: {message}"
-        );
+        assert!(message.contains(words) && output.stdout.is_empty(), "{arguments:?}: {message}");
     }
 }
 
 #[test]
 fn the_table_has_a_row_for_every_speed() {
-    let setup = FrictionSetup {
-        speeds: vec![0.01, -1e300, 0.0],
-        ..FrictionSetup::default()
-    };
+    let setup = FrictionSetup { speeds: vec![0.01, -1e300, 0.0], ..FrictionSetup::default() };
     let table = friction::csv(&study(setup).expect("a study"));
     let lines: Vec<&str> = table.lines().collect();
     assert_eq!(lines.len(), 2 + 11 + 3);
-    assert_eq!(
-        lines[1],
-        "speed,sign,arctangent,error,printed_value,printed_error"
-    );
+    assert_eq!(lines[1], "speed,sign,arctangent,error,printed_value,printed_error");
     assert!(lines[2].ends_with(",-0.99923,0.07667"), "{}", lines[2]);
     assert_eq!(lines[13], "0.01,1,0.5,50,,");
     assert_eq!(lines[15], "0,0,0,0,,");
@@ -292,11 +208,8 @@ fn the_table_has_a_row_for_every_speed() {
 fn a_picture_is_drawn_of_creep_and_of_swing() {
     for (alpha, formula) in [(DEFAULT_ALPHA, true), (0.02, false)] {
         let picture = friction::picture(&with(alpha)).expect("a picture");
-        for words in [
-            "Friction near zero speed",
-            "Coming to rest",
-            "From rest where sgn holds it",
-        ] {
+        for words in ["Friction near zero speed", "Coming to rest", "From rest where sgn holds it"]
+        {
             assert!(picture.contains(words), "{words}");
         }
         assert_eq!(picture.contains("creep by formula"), formula);

@@ -9,11 +9,7 @@ use lindstedt::{Oscillator, Symbol};
 
 fn response(equation: &str, range: [f64; 2], values: &str, harmonics: usize) -> Response {
     let question = Question::new(equation, "Omega", range, values).expect(equation);
-    respond(&Question {
-        harmonics: Some(harmonics),
-        ..question
-    })
-    .expect(equation)
+    respond(&Question { harmonics: Some(harmonics), ..question }).expect(equation)
 }
 
 fn points(response: &Response) -> impl Iterator<Item = &Point> {
@@ -29,18 +25,11 @@ fn after_a_period(
     period: f64,
 ) -> [f64; 2] {
     let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
-    course.values = numbers
-        .iter()
-        .map(|(name, value)| (Symbol::new(name), *value))
-        .collect();
+    course.values = numbers.iter().map(|(name, value)| (Symbol::new(name), *value)).collect();
     course.begin("x".into(), start[0]).expect("a state");
     course.begin("x'".into(), start[1]).expect("a state");
     (course.duration, course.tolerance) = (period, 1e-12);
-    let state = course
-        .follow()
-        .expect("a motion")
-        .at(period)
-        .expect("a state");
+    let state = course.follow().expect("a motion").at(period).expect("a state");
     [state[0], state[1]]
 }
 
@@ -48,16 +37,9 @@ fn after_a_period(
 /// not stop, with r = Omega.
 #[test]
 fn motions_that_do_not_stop_are_those_of_den_hartog() {
-    let found = response(
-        "x'' + x + alpha*sgn(x') = F*cos(Omega*t)",
-        [1.2, 2.0],
-        "F = 1, alpha = 1/5",
-        24,
-    );
-    assert_eq!(
-        (found.branches.len(), found.verdict, found.unjudged),
-        (1, Verdict::Pass, 0)
-    );
+    let found =
+        response("x'' + x + alpha*sgn(x') = F*cos(Omega*t)", [1.2, 2.0], "F = 1, alpha = 1/5", 24);
+    assert_eq!((found.branches.len(), found.verdict, found.unjudged), (1, Verdict::Pass, 0));
     assert!(found.jumps && found.simulated.len() > 3);
     for point in points(&found) {
         let r = point.parameter;
@@ -65,11 +47,7 @@ fn motions_that_do_not_stop_are_those_of_den_hartog() {
         let angle = std::f64::consts::PI / r;
         let friction = angle.sin() / (r * (1.0 + angle.cos()));
         let peak = (response.powi(2) - (0.2 * friction).powi(2)).sqrt();
-        assert!(
-            (point.peak / peak - 1.0).abs() < 2e-3,
-            "{r}: {} {peak}",
-            point.peak
-        );
+        assert!((point.peak / peak - 1.0).abs() < 2e-3, "{r}: {} {peak}", point.peak);
         assert_eq!(point.stable, Some(true));
     }
 }
@@ -79,35 +57,14 @@ fn motions_that_do_not_stop_are_those_of_den_hartog() {
 #[test]
 fn multipliers_across_a_jump_are_those_of_the_map() {
     for (equation, range) in [
-        (
-            "x'' + x'/10 + x + x^3/5 + alpha*sgn(x') = F*cos(Omega*t)",
-            [1.3, 1.8],
-        ),
-        (
-            "x'' + x'/10 + x + alpha*x*H(x') = F*cos(Omega*t)",
-            [1.4, 1.8],
-        ),
-        (
-            "x'' + x'/10 + x + alpha*sgn(x' - 1/10) = F*cos(Omega*t)",
-            [1.4, 1.8],
-        ),
+        ("x'' + x'/10 + x + x^3/5 + alpha*sgn(x') = F*cos(Omega*t)", [1.3, 1.8]),
+        ("x'' + x'/10 + x + alpha*x*H(x') = F*cos(Omega*t)", [1.4, 1.8]),
+        ("x'' + x'/10 + x + alpha*sgn(x' - 1/10) = F*cos(Omega*t)", [1.4, 1.8]),
         // A step in place, a slanted line, two velocities, place and velocity: by the map alone.
-        (
-            "x'' + x'/10 + x + alpha*sgn(x) = F*cos(Omega*t)",
-            [1.5, 1.8],
-        ),
-        (
-            "x'' + x'/10 + x + alpha*H(x' + x/2 - 1/10)*x^2 = F*cos(Omega*t)",
-            [1.5, 1.8],
-        ),
-        (
-            "x'' + x'/10 + x + alpha*(sgn(x') + sgn(x' - 1/2))/2 = F*cos(Omega*t)",
-            [1.5, 1.8],
-        ),
-        (
-            "x'' + x'/10 + x + alpha*(sgn(x') + H(x - 1/5)/3) = F*cos(Omega*t)",
-            [1.5, 1.8],
-        ),
+        ("x'' + x'/10 + x + alpha*sgn(x) = F*cos(Omega*t)", [1.5, 1.8]),
+        ("x'' + x'/10 + x + alpha*H(x' + x/2 - 1/10)*x^2 = F*cos(Omega*t)", [1.5, 1.8]),
+        ("x'' + x'/10 + x + alpha*(sgn(x') + sgn(x' - 1/2))/2 = F*cos(Omega*t)", [1.5, 1.8]),
+        ("x'' + x'/10 + x + alpha*(sgn(x') + H(x - 1/5)/3) = F*cos(Omega*t)", [1.5, 1.8]),
     ] {
         let found = response(equation, range, "F = 1, alpha = 1/5", 12);
         // However few the harmonics, the multipliers are those of the true motion beside them.
@@ -119,26 +76,17 @@ fn multipliers_across_a_jump_are_those_of_the_map() {
             let map = |start: [f64; 2]| after_a_period(equation, &numbers, start, period);
             let [x, v] = point.start;
             let back = map(point.start);
-            assert!(
-                (back[0] - x).hypot(back[1] - v) < 1e-6,
-                "{equation}: {back:?} {point:?}"
-            );
+            assert!((back[0] - x).hypot(back[1] - v) < 1e-6, "{equation}: {back:?} {point:?}");
             const STEP: f64 = 1e-4;
             let slope = |to: [f64; 2], from: [f64; 2]| {
                 let (to, from) = (map(to), map(from));
-                [
-                    (to[0] - from[0]) / (2.0 * STEP),
-                    (to[1] - from[1]) / (2.0 * STEP),
-                ]
+                [(to[0] - from[0]) / (2.0 * STEP), (to[1] - from[1]) / (2.0 * STEP)]
             };
             let by_x = slope([x + STEP, v], [x - STEP, v]);
             let by_v = slope([x, v + STEP], [x, v - STEP]);
             let (trace, determinant) = (by_x[0] + by_v[1], by_x[0] * by_v[1] - by_v[0] * by_x[1]);
             let [one, other] = point.multipliers.expect("multipliers");
-            assert!(
-                ((one + other).re - trace).abs() < 1e-3,
-                "{equation}: {point:?} {trace}"
-            );
+            assert!(((one + other).re - trace).abs() < 1e-3, "{equation}: {point:?} {trace}");
             assert!(
                 ((one * other).re - determinant).abs() < 1e-3,
                 "{equation}: {point:?} {determinant}"
@@ -162,14 +110,9 @@ fn a_motion_that_sticks_has_a_multiplier_of_zero() {
     let (k, period) = (0.5, 4.0 * std::f64::consts::PI);
     let mut start = [0.5, 0.0];
     for _ in 0..6 {
-        let course = follow(
-            &driven,
-            start,
-            k,
-            Until::Time(period),
-            &Options::with_tolerance(1e-11),
-        )
-        .expect("a motion");
+        let course =
+            follow(&driven, start, k, Until::Time(period), &Options::with_tolerance(1e-11))
+                .expect("a motion");
         let [x, v, a, c, b, d] = course.end;
         assert!((a * d - b * c).abs() < 1e-12);
         let expected = after_a_period("x'' + x + 3/5*sgn(x') = cos(t/2)", &[], start, period);
@@ -198,12 +141,7 @@ fn without_a_stop(r: f64, alpha: f64) -> (f64, f64) {
 fn a_branch_goes_on_where_the_motion_begins_to_stick() {
     let equation = "x'' + x + alpha*sgn(x') = F*cos(Omega*t)";
     let found = response(equation, [0.35, 0.85], "F = 1, alpha = 1/2", 24);
-    assert_eq!(
-        (found.branches.len(), found.unjudged),
-        (1, 0),
-        "{:?}",
-        found.branches
-    );
+    assert_eq!((found.branches.len(), found.unjudged), (1, 0), "{:?}", found.branches);
     let (mut low, mut high) = (0.5, 0.7);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
@@ -221,11 +159,7 @@ fn a_branch_goes_on_where_the_motion_begins_to_stick() {
             let (peak, _) = without_a_stop(r, 0.5);
             // Waves are slow to come near; the error that stands beside them is theirs.
             let error = point.error.expect("an error");
-            assert!(
-                (point.peak / peak - 1.0).abs() < error + 1e-6,
-                "{r}: {} {peak}",
-                point.peak
-            );
+            assert!((point.peak / peak - 1.0).abs() < error + 1e-6, "{r}: {} {peak}", point.peak);
             continue;
         }
         sticking += 1;
@@ -252,33 +186,14 @@ fn a_branch_ends_where_friction_bears_the_drive() {
         [0.2, 2.0],
         "alpha = 1/2",
     );
-    let question = Question {
-        harmonics: Some(12),
-        ..question.expect("a question")
-    };
+    let question = Question { harmonics: Some(12), ..question.expect("a question") };
     let found = respond(&question).expect("a response");
-    let [branch] = &found.branches[..] else {
-        panic!("one branch: {:?}", found.branches)
-    };
-    let ends = [
-        (branch.ends[0], branch.points.first()),
-        (branch.ends[1], branch.points.last()),
-    ];
-    let held = ends
-        .iter()
-        .find(|(end, _)| *end == BranchEnd::Held)
-        .and_then(|(_, point)| *point);
+    let [branch] = &found.branches[..] else { panic!("one branch: {:?}", found.branches) };
+    let ends = [(branch.ends[0], branch.points.first()), (branch.ends[1], branch.points.last())];
+    let held = ends.iter().find(|(end, _)| *end == BranchEnd::Held).and_then(|(_, point)| *point);
     let last = held.expect("an end at rest");
-    assert!(
-        (0.5..0.52).contains(&last.parameter) && last.stuck > 0.8,
-        "{last:?}"
-    );
-    assert!(
-        branch
-            .points
-            .iter()
-            .any(|point| point.parameter > 1.99 && point.stuck == 0.0)
-    );
+    assert!((0.5..0.52).contains(&last.parameter) && last.stuck > 0.8, "{last:?}");
+    assert!(branch.points.iter().any(|point| point.parameter > 1.99 && point.stuck == 0.0));
 }
 
 /// Dry friction that damps and a damper that feeds: a cycle that repels, in closed form from one
@@ -292,15 +207,9 @@ fn a_cycle_across_a_jump_is_that_of_its_half_swings() {
     let growth = (std::f64::consts::PI / 3.0_f64.sqrt()).exp();
     for point in points(&found) {
         let turn = point.parameter * (growth + 1.0) / (growth - 1.0);
-        assert!(
-            (point.start[0] / turn - 1.0).abs() < 1e-8,
-            "{point:?} {turn}"
-        );
+        assert!((point.start[0] / turn - 1.0).abs() < 1e-8, "{point:?} {turn}");
         let multiplier = point.multipliers.expect("multipliers")[0].re;
-        assert!(
-            (multiplier / growth.powi(2) - 1.0).abs() < 1e-6,
-            "{multiplier}"
-        );
+        assert!((multiplier / growth.powi(2) - 1.0).abs() < 1e-6, "{multiplier}");
         assert!(
             (point.frequency / 0.75_f64.sqrt() - 1.0).abs() < 1e-9 && point.stable == Some(false)
         );
@@ -316,20 +225,10 @@ fn a_mass_on_a_belt_sticks_and_slips() {
     let equation = format!("x'' + x'/50 + x + {friction} = 0");
     let found = respond(&Question::new(&equation, "v", [0.1, 1.0], "").expect("a question"))
         .expect("a response");
-    assert_eq!(
-        (found.branches.len(), found.verdict),
-        (2, Verdict::Pass),
-        "{:?}",
-        found.error
-    );
+    assert_eq!((found.branches.len(), found.verdict), (2, Verdict::Pass), "{:?}", found.error);
     for (index, branch) in found.branches.iter().enumerate() {
         let sticks = branch.points[branch.points.len() / 2].stuck > 0.0;
-        for point in branch
-            .points
-            .iter()
-            .step_by(25)
-            .filter(|point| point.peak > 1e-3)
-        {
+        for point in branch.points.iter().step_by(25).filter(|point| point.peak > 1e-3) {
             assert_eq!(
                 (point.stuck > 0.0, point.stable),
                 (sticks, Some(sticks)),
@@ -342,22 +241,12 @@ fn a_mass_on_a_belt_sticks_and_slips() {
                 "{point:?} {back:?}"
             );
             if sticks {
-                assert!(
-                    point.multipliers.expect("multipliers")[0].norm() < 1e-8,
-                    "{point:?}"
-                );
+                assert!(point.multipliers.expect("multipliers")[0].norm() < 1e-8, "{point:?}");
             }
         }
     }
     // 1/50 = (3/10) 5 e^(-10 v).
     let born = 0.1 * (0.3_f64 * 5.0 * 50.0).ln();
-    let hopf: Vec<f64> = found
-        .bifurcations
-        .iter()
-        .map(|found| found.parameter)
-        .collect();
-    assert!(
-        hopf.iter().any(|parameter| (parameter - born).abs() < 1e-6),
-        "{hopf:?} {born}"
-    );
+    let hopf: Vec<f64> = found.bifurcations.iter().map(|found| found.parameter).collect();
+    assert!(hopf.iter().any(|parameter| (parameter - born).abs() < 1e-6), "{hopf:?} {born}");
 }

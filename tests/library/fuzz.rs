@@ -15,10 +15,7 @@ use lindstedt::verify::comparison::compare;
 use proptest::prelude::*;
 
 fn cases() -> u32 {
-    std::env::var("LINDSTEDT_FUZZ_CASES")
-        .ok()
-        .and_then(|number| number.parse().ok())
-        .unwrap_or(300)
+    std::env::var("LINDSTEDT_FUZZ_CASES").ok().and_then(|number| number.parse().ok()).unwrap_or(300)
 }
 
 /// Pieces of equations, right and wrong, in any order.
@@ -45,10 +42,7 @@ fn equations() -> impl Strategy<Value = String> {
             (inner.clone(), inner.clone()).prop_map(|(a, b)| format!("({a} - {b})")),
             (inner.clone(), inner.clone()).prop_map(|(a, b)| format!("({a})/({b})")),
             (inner.clone(), 0..5_u32).prop_map(|(a, n)| format!("({a})^{n}")),
-            (
-                inner.clone(),
-                prop::sample::select(vec!["1/2", "-1", "3/2", "1/3"])
-            )
+            (inner.clone(), prop::sample::select(vec!["1/2", "-1", "3/2", "1/3"]))
                 .prop_map(|(a, n)| format!("({a})^({n})")),
             (
                 prop::sample::select(vec![
@@ -70,10 +64,7 @@ fn answer(equation: &str) {
         return;
     };
     for method in Method::ALL {
-        for amplitude in [
-            AmplitudeConvention::Initial,
-            AmplitudeConvention::FirstHarmonic,
-        ] {
+        for amplitude in [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic] {
             let options = Options {
                 method: Some(method),
                 order: Some(2),
@@ -105,22 +96,15 @@ fn compared(equation: &str, amplitude: &str) {
     };
     let mut values = Values::default();
     for name in &oscillator.parameters {
-        values
-            .insert(*name, "1".parse().expect("a number"))
-            .expect("a value");
+        values.insert(*name, "1".parse().expect("a number")).expect("a value");
     }
-    values
-        .insert("A".into(), amplitude.parse().expect("a number"))
-        .expect("a value");
+    values.insert("A".into(), amplitude.parse().expect("a number")).expect("a value");
     if std::env::var_os("LINDSTEDT_FUZZ_TRACE").is_some() {
         eprintln!("{amplitude} {equation}");
     }
     if let Ok(table) = compare(&oscillator, &values, None, 0.01) {
         assert!(!text::comparison(&table, 80).is_empty() && !latex::comparison(&table).is_empty());
-        assert_eq!(
-            json::comparison(&table).equation,
-            table.equation.to_string()
-        );
+        assert_eq!(json::comparison(&table).equation, table.equation.to_string());
     }
 }
 

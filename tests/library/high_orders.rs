@@ -10,11 +10,7 @@ use lindstedt::{Method, Options, Oscillator, Solution, Symbol, judge, solve};
 
 /// The frequency alone to an order.
 fn frequency(equation: &str, order: u32) -> Solution {
-    let options = Options {
-        order: Some(order),
-        frequency_alone: true,
-        ..Options::default()
-    };
+    let options = Options { order: Some(order), frequency_alone: true, ..Options::default() };
     solve(&Oscillator::parse(equation).expect("an equation"), &options).expect("a series")
 }
 
@@ -45,31 +41,20 @@ fn conservative_motions_are_singular_on_their_separatrix() {
     let cases = [
         ("x'' + sin(x) = 0", 80, "A^2", &pi * &pi, 1e-12),
         ("x'' + x + eps*x^3 = 0", 40, "eps*A^2", ratio(-1, 1), 1e-10),
-        (
-            "x'' + k*x + eps*x^3 = 0",
-            40,
-            "eps*A^2/omega0^2",
-            ratio(-1, 1),
-            1e-10,
-        ),
+        ("x'' + k*x + eps*x^3 = 0", 40, "eps*A^2/omega0^2", ratio(-1, 1), 1e-10),
         ("x'' + x + x^2 = 0", 40, "A", ratio(1, 2), 1e-12),
     ];
     for (equation, order, variable, place, precision) in cases {
         let found = found(equation, order);
         assert_eq!(found.variable_in_words(), variable, "{equation}");
         let [real, imaginary] = &found.nearest.place;
-        assert!(
-            holds(real, &place) && real.error < precision,
-            "{equation}: {found:?}"
-        );
+        assert!(holds(real, &place) && real.error < precision, "{equation}: {found:?}");
         assert_eq!(imaginary.value, ratio(0, 1), "{equation}: {found:?}");
         // The period grows like a logarithm there.
         let exponent = found.nearest.exponent.as_ref().expect("a logarithm");
         assert_eq!(exponent.value, ratio(0, 1), "{equation}: {found:?}");
     }
-    let (symbol, radius) = found("x'' + sin(x) = 0", 80)
-        .in_symbol()
-        .expect("the amplitude alone");
+    let (symbol, radius) = found("x'' + sin(x) = 0", 80).in_symbol().expect("the amplitude alone");
     assert_eq!(symbol, Symbol::new("A"));
     assert!(holds(&radius, &pi), "{radius:?}");
 }
@@ -88,17 +73,11 @@ fn zeros_of_the_frequency_are_no_singularities() {
     ] {
         for order in orders {
             let solution = frequency(equation, order);
-            assert!(
-                converges_everywhere(&solution).is_none(),
-                "{equation} {order}"
-            );
+            assert!(converges_everywhere(&solution).is_none(), "{equation} {order}");
             if let Some(found) = converges(&solution) {
                 said += 1;
                 let one = ratio(1, 1);
-                assert!(
-                    holds(&found.nearest.radius, &one),
-                    "{equation} {order}: {found:?}"
-                );
+                assert!(holds(&found.nearest.radius, &one), "{equation} {order}: {found:?}");
             }
         }
     }
@@ -112,29 +91,18 @@ fn a_series_without_a_singularity_says_so() {
     for order in [24, 32, 48] {
         let solution = frequency("x'' + exp(-x) - exp(-2*x) = 0", order);
         assert_eq!(converges(&solution), None, "{order}");
-        let note = converges_everywhere(&solution)
-            .expect("an entire function")
-            .to_string();
-        assert!(
-            note.starts_with("the series converges everywhere"),
-            "{note}"
-        );
+        let note = converges_everywhere(&solution).expect("an entire function").to_string();
+        assert!(note.starts_with("the series converges everywhere"), "{note}");
     }
     let linear = frequency("x'' + x + eps*x = 0", 30);
     assert_eq!(converges(&linear), None);
     let note = converges_everywhere(&linear).expect("an end").to_string();
     assert!(note.contains("omega^2 ends with eps,"), "{note}");
     // What has a singularity does not converge everywhere.
-    for (equation, order) in [
-        ("x'' + sin(x) = 0", 60),
-        ("x'' + x + x^2 = 0", 24),
-        (VAN_DER_POL, 60),
-    ] {
-        assert_eq!(
-            converges_everywhere(&frequency(equation, order)),
-            None,
-            "{equation}"
-        );
+    for (equation, order) in
+        [("x'' + sin(x) = 0", 60), ("x'' + x + x^2 = 0", 24), (VAN_DER_POL, 60)]
+    {
+        assert_eq!(converges_everywhere(&frequency(equation, order)), None, "{equation}");
     }
 }
 
@@ -171,16 +139,11 @@ fn the_error_of_a_radius_is_never_larger_than_said() {
     for degree in [24, 36] {
         for (numerator, denominator) in [(-6, 1), (-1, 2), (1, 2), (5, 2)] {
             let power = ratio(numerator, denominator);
-            let singular = multiplied(
-                &planted(&near, &power, degree),
-                &exponential(&ratio(1, 3), degree),
-            );
+            let singular =
+                multiplied(&planted(&near, &power, degree), &exponential(&ratio(1, 3), degree));
             let beyond = planted(&far, &ratio(1, 4), degree);
-            let sum: Vec<Rational> = singular
-                .iter()
-                .zip(&beyond)
-                .map(|(one, other)| one + other)
-                .collect();
+            let sum: Vec<Rational> =
+                singular.iter().zip(&beyond).map(|(one, other)| one + other).collect();
             let through_zero = multiplied(&singular, &planted(&zero, &ratio(1, 1), degree));
             for (name, coefficients) in [("sum", sum), ("zero", through_zero)] {
                 assert!(
@@ -206,22 +169,10 @@ fn the_error_of_a_radius_is_never_larger_than_said() {
 fn the_branch_points_of_van_der_pol() {
     let found = found(VAN_DER_POL, 120);
     let nearest = &found.nearest;
-    assert_eq!(
-        (found.variable_in_words().as_str(), found.highest),
-        ("mu^2", 60)
-    );
-    assert!(
-        nearest.radius.error < 1e-11 && nearest.angle.error < 1e-11,
-        "{found:?}"
-    );
-    assert!(
-        (to_f64(&nearest.radius.value) - 3.42).abs() < 0.005,
-        "{found:?}"
-    );
-    assert_eq!(
-        nearest.exponent.as_ref().expect("a square root").value,
-        ratio(1, 2)
-    );
+    assert_eq!((found.variable_in_words().as_str(), found.highest), ("mu^2", 60));
+    assert!(nearest.radius.error < 1e-11 && nearest.angle.error < 1e-11, "{found:?}");
+    assert!((to_f64(&nearest.radius.value) - 3.42).abs() < 0.005, "{found:?}");
+    assert_eq!(nearest.exponent.as_ref().expect("a square root").value, ratio(1, 2));
     let (_, size) = found.in_symbol().expect("mu alone");
     assert!((to_f64(&size.value) - 1.85).abs() < 0.005, "{size:?}");
     // Another way to it: the recurrence that the coefficients of a pair obey, by least squares in
@@ -234,19 +185,13 @@ fn the_branch_points_of_van_der_pol() {
         (other.radius / to_f64(&nearest.radius.value) - 1.0).abs() < 1e-4,
         "{other:?} {found:?}"
     );
-    assert!(
-        (other.angle - to_f64(&nearest.angle.value)).abs() < 1e-4,
-        "{other:?} {found:?}"
-    );
+    assert!((other.angle - to_f64(&nearest.angle.value)).abs() < 1e-4, "{other:?} {found:?}");
     // So do the twenty and more of order 40, where the kind of the singularity cannot be told yet.
     for order in [40, 44, 48, 52] {
         let early = converges(&frequency(VAN_DER_POL, order))
             .unwrap_or_else(|| panic!("order {order}: no singularity"));
         let own = &early.nearest;
-        assert!(
-            own.exponent.is_none() && own.radius.error < 0.1,
-            "{early:?}"
-        );
+        assert!(own.exponent.is_none() && own.radius.error < 0.1, "{early:?}");
         assert!(
             holds(&own.radius, &nearest.radius.value) && holds(&own.angle, &nearest.angle.value),
             "{early:?}"
@@ -323,10 +268,7 @@ impl Cycle {
                     let (place, _) = Self::state(&series, &end);
                     let force = product(
                         &fixed(&self.mu),
-                        &product(
-                            &((Integer::from(1) << BITS) - product(&place, &place)),
-                            &rate,
-                        ),
+                        &product(&((Integer::from(1) << BITS) - product(&place, &place)), &rate),
                     ) - &place;
                     end -= (rate << BITS) / force;
                 }
@@ -355,10 +297,7 @@ impl Cycle {
             misses = [last, miss(&next)];
             places = [place, next];
         }
-        Rational::new(
-            self.half_turn(&places[1]).0 * Integer::from(2),
-            Integer::from(1) << BITS,
-        )
+        Rational::new(self.half_turn(&places[1]).0 * Integer::from(2), Integer::from(1) << BITS)
     }
 }
 
@@ -403,12 +342,7 @@ fn quotients_of_high_degree_hold_far_beyond_the_radius() {
     for (mu, error) in [("mu = 3", 1e-8), ("mu = 5", 1e-5)] {
         let judged =
             judge(&oscillator, &quotient, &mu.parse().expect("a value"), 1e-3).expect("a verdict");
-        assert!(
-            judged
-                .relative_error
-                .is_some_and(|found| found.abs() < error),
-            "{mu}: {judged:?}"
-        );
+        assert!(judged.relative_error.is_some_and(|found| found.abs() < error), "{mu}: {judged:?}");
     }
 }
 
@@ -418,27 +352,16 @@ fn quotients_of_high_degree_hold_far_beyond_the_radius() {
 fn roots_of_quadratic_equations_hold_farther_than_quotients() {
     let oscillator = Oscillator::parse(VAN_DER_POL).expect("an equation");
     let by = |method: Method, degrees: Degrees| {
-        let options = Options {
-            method: Some(method),
-            degrees: Some(degrees),
-            ..Options::default()
-        };
+        let options =
+            Options { method: Some(method), degrees: Some(degrees), ..Options::default() };
         solve(&oscillator, &options).expect("an approximant")
     };
     let root = by(Method::HermitePade, Degrees::Quadratic(13, 13, 12));
     let quotient = by(Method::Pade, Degrees::Quotient(20, 19));
-    let followed = root
-        .validity
-        .iter()
-        .map(ToString::to_string)
-        .find(|note| note.contains("cross"));
+    let followed =
+        root.validity.iter().map(ToString::to_string).find(|note| note.contains("cross"));
     assert!(followed.is_some_and(|note| note.contains("mu^2 = 1.1397")));
-    for (mu, least) in [
-        ("mu = 3", 1e-10),
-        ("mu = 5", 1e-5),
-        ("mu = 8", 1e-3),
-        ("mu = 12", 1e-2),
-    ] {
+    for (mu, least) in [("mu = 3", 1e-10), ("mu = 5", 1e-5), ("mu = 8", 1e-3), ("mu = 12", 1e-2)] {
         let error = |solution: &Solution| {
             let judged = judge(&oscillator, solution, &mu.parse().expect("a value"), 1e-3)
                 .expect("a verdict");
@@ -473,10 +396,7 @@ fn a_root_goes_through_a_removable_zero_of_its_denominator() {
     let zero = |a: f64, b: f64, c: f64| 2.0 * c / (-b + f64::sqrt(b * b - 4.0 * a * c));
     let of_r = zero(6695.0, -1_052_879_520.0, 4_388_010_496.0);
     let of_p = -zero(1_094_216_137.0, -3_462_316_704.0, 2_330_809_856.0);
-    assert!(
-        (of_r - 4.1678).abs() < 1e-3 && (of_p + 0.97).abs() < 0.01,
-        "{of_r} {of_p}"
-    );
+    assert!((of_r - 4.1678).abs() < 1e-3 && (of_p + 0.97).abs() < 0.01, "{of_r} {of_p}");
     for (size, error) in [
         (of_p, 1e-2),
         (of_p + 1e-9, 1e-2),
@@ -498,21 +418,11 @@ fn a_root_goes_through_a_removable_zero_of_its_denominator() {
         let off = found.frequency_squared / elliptic(size) - 1.0;
         assert!(off.abs() < error, "{size}: {off}");
     }
-    let judged = judge(
-        &oscillator,
-        &root,
-        &"eps = 1, A = 1".parse().expect("values"),
-        0.01,
-    )
-    .expect("a verdict");
+    let judged = judge(&oscillator, &root, &"eps = 1, A = 1".parse().expect("values"), 0.01)
+        .expect("a verdict");
     let words = text::solution(&root, Some(&judged), 0.01);
     let (_, reach) = words.split_once("within 1 % up to A = ").expect("a range");
-    let reach: f64 = reach
-        .split_whitespace()
-        .next()
-        .expect("a number")
-        .parse()
-        .expect("a number");
+    let reach: f64 = reach.split_whitespace().next().expect("a number").parse().expect("a number");
     assert!(reach > 40.0, "{words}");
 }
 
@@ -527,23 +437,14 @@ fn an_irrational_linear_frequency_is_no_letter_of_the_expansion() {
     ] {
         let [own, other] = [force, halved].map(|force| {
             let equation = format!("x'' + {force} = 0");
-            let options = Options {
-                order: Some(8),
-                ..Options::default()
-            };
-            solve(
-                &Oscillator::parse(&equation).expect("an equation"),
-                &options,
-            )
-            .expect("a series")
+            let options = Options { order: Some(8), ..Options::default() };
+            solve(&Oscillator::parse(&equation).expect("an equation"), &options).expect("a series")
         });
         let omega0 = Symbol::new("omega0");
         for step in &own.steps {
             let coefficients = [&step.resonance, &step.correction];
             assert!(
-                coefficients
-                    .iter()
-                    .all(|own| !own.symbols().contains(&omega0)),
+                coefficients.iter().all(|own| !own.symbols().contains(&omega0)),
                 "{force}: {step:?}"
             );
         }
@@ -562,16 +463,9 @@ fn rounded_closed_forms_are_written_with_fifteen_digits() {
     let longest = |text: &str| {
         let numbers = text.split(|letter: char| !letter.is_ascii_digit() && letter != '.');
         let digits = numbers.map(|number| number.trim_start_matches(['0', '.']).replace('.', ""));
-        digits
-            .map(|digits| digits.trim_end_matches('0').len())
-            .max()
-            .unwrap_or(0)
+        digits.map(|digits| digits.trim_end_matches('0').len()).max().unwrap_or(0)
     };
-    for equation in [
-        "x'' + x^3 - cos(x) = 0",
-        "x'' + exp(x) - 2 = 0",
-        "x'' + x^3 - x - 1 = 0",
-    ] {
+    for equation in ["x'' + x^3 - cos(x) = 0", "x'' + exp(x) - 2 = 0", "x'' + x^3 - x - 1 = 0"] {
         let oscillator = Oscillator::parse(equation).expect("an equation");
         let by = |method, degrees, order| Options {
             method: Some(method),
@@ -597,11 +491,7 @@ fn rounded_closed_forms_are_written_with_fifteen_digits() {
                     .frequency_squared
             };
             let off = squared(&solution) / squared(&series) - 1.0;
-            let allowed = if solution.degrees.is_some() {
-                1e-9
-            } else {
-                1e-3
-            };
+            let allowed = if solution.degrees.is_some() { 1e-9 } else { 1e-3 };
             assert!(off.abs() < allowed, "{equation}: {off} {words}");
         }
     }
@@ -623,12 +513,9 @@ fn digits_that_cancel_are_said_to_be_lost() {
         let truth = 1.0 - (1.0 - f64::exp(-f64::from(amplitude))).powi(2);
         let off = judged.frequency.expect("a frequency").powi(2) / truth - 1.0;
         let allowed = match said {
-            Some((_, rest)) => rest
-                .split_whitespace()
-                .next()
-                .expect("a number")
-                .parse()
-                .expect("a number"),
+            Some((_, rest)) => {
+                rest.split_whitespace().next().expect("a number").parse().expect("a number")
+            }
             None => 1e-12,
         };
         assert!(off.abs() <= allowed, "{amplitude}: {off} {allowed}");
@@ -670,19 +557,10 @@ fn the_frequency_alone_has_the_verdict_of_the_whole() {
     ] {
         let oscillator = Oscillator::parse(equation).expect("an equation");
         let verdict = |frequency_alone: bool| {
-            let options = Options {
-                order: Some(8),
-                frequency_alone,
-                ..Options::default()
-            };
+            let options = Options { order: Some(8), frequency_alone, ..Options::default() };
             let solution = solve(&oscillator, &options).expect("an answer");
-            judge(
-                &oscillator,
-                &solution,
-                &values.parse().expect("values"),
-                0.01,
-            )
-            .expect("a verdict")
+            judge(&oscillator, &solution, &values.parse().expect("values"), 0.01)
+                .expect("a verdict")
         };
         let (whole, alone) = (verdict(false), verdict(true));
         assert_eq!(
@@ -695,10 +573,6 @@ fn the_frequency_alone_has_the_verdict_of_the_whole() {
             (whole.relative_error, whole.slope),
             "{equation}"
         );
-        assert_eq!(
-            (alone.max_deviation, alone.residual),
-            (None, None),
-            "{equation}"
-        );
+        assert_eq!((alone.max_deviation, alone.residual), (None, None), "{equation}");
     }
 }

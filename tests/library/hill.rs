@@ -10,11 +10,7 @@ use lindstedt::{Oscillator, Symbol, Values};
 
 fn curves(equation: &str, order: u32, tongues: usize) -> TransitionCurves {
     let oscillator = Oscillator::parse(equation).expect("an oscillator");
-    let options = Options {
-        order,
-        tongues,
-        ..Options::default()
-    };
+    let options = Options { order, tongues, ..Options::default() };
     transition_curves(&oscillator, &options).unwrap_or_else(|error| panic!("{equation}: {error}"))
 }
 
@@ -39,31 +35,15 @@ fn mathieu_has_the_published_series() {
     let derived = curves("x'' + (delta - 2*q*cos(2*t))*x = 0", 6, 3);
     let published = [
         ("a0", "-q^2/2 + 7*q^4/128 - 29*q^6/2304"),
-        (
-            "b1",
-            "1 - q - q^2/8 + q^3/64 - q^4/1536 - 11*q^5/36864 + 49*q^6/589824",
-        ),
-        (
-            "a1",
-            "1 + q - q^2/8 - q^3/64 - q^4/1536 + 11*q^5/36864 + 49*q^6/589824",
-        ),
+        ("b1", "1 - q - q^2/8 + q^3/64 - q^4/1536 - 11*q^5/36864 + 49*q^6/589824"),
+        ("a1", "1 + q - q^2/8 - q^3/64 - q^4/1536 + 11*q^5/36864 + 49*q^6/589824"),
         ("b2", "4 - q^2/12 + 5*q^4/13824 - 289*q^6/79626240"),
         ("a2", "4 + 5*q^2/12 - 763*q^4/13824 + 1002401*q^6/79626240"),
-        (
-            "b3",
-            "9 + q^2/16 - q^3/64 + 13*q^4/20480 + 5*q^5/16384 - 1961*q^6/23592960",
-        ),
-        (
-            "a3",
-            "9 + q^2/16 + q^3/64 + 13*q^4/20480 - 5*q^5/16384 - 1961*q^6/23592960",
-        ),
+        ("b3", "9 + q^2/16 - q^3/64 + 13*q^4/20480 + 5*q^5/16384 - 1961*q^6/23592960"),
+        ("a3", "9 + q^2/16 + q^3/64 + 13*q^4/20480 - 5*q^5/16384 - 1961*q^6/23592960"),
     ];
     for (name, series) in published {
-        assert_eq!(
-            derived.ordered(named(&derived, name)).to_string(),
-            series,
-            "{name}"
-        );
+        assert_eq!(derived.ordered(named(&derived, name)).to_string(), series, "{name}");
     }
 }
 
@@ -77,12 +57,8 @@ fn tongues_open_with_the_power_of_their_number() {
         let [above, below] =
             [format!("a{n}"), format!("b{n}")].map(|name| named(&derived, &name).clone());
         let coefficient = |polynomial: &Polynomial, power: usize| {
-            let terms = polynomial
-                .terms()
-                .filter(|term| term.0.exponent(q) == power as i32);
-            terms
-                .map(|(_, number)| lindstedt::exact::to_f64(number))
-                .sum::<f64>()
+            let terms = polynomial.terms().filter(|term| term.0.exponent(q) == power as i32);
+            terms.map(|(_, number)| lindstedt::exact::to_f64(number)).sum::<f64>()
         };
         for power in 0..n {
             assert_eq!(
@@ -93,10 +69,7 @@ fn tongues_open_with_the_power_of_their_number() {
         }
         let expected = 8.0 / 4.0_f64.powi(n as i32) / (factorial * factorial);
         let width = coefficient(&above, n) - coefficient(&below, n);
-        assert!(
-            (width / expected - 1.0).abs() < 1e-14,
-            "n = {n}: {width} and {expected}"
-        );
+        assert!((width / expected - 1.0).abs() < 1e-14, "n = {n}: {width} and {expected}");
         factorial *= n as f64;
     }
 }
@@ -119,10 +92,7 @@ fn the_judge_knows_the_table_of_characteristic_values() {
         let name = derived.curves[curve.curve].name.as_str();
         let truth = curve.truth.expect("a tongue that reaches so far");
         assert!((truth - table[name]).abs() < 1e-8, "{name}: {truth}");
-        assert!(
-            !curve.passes,
-            "{name}: an expansion to first order at q = 5"
-        );
+        assert!(!curve.passes, "{name}: an expansion to first order at q = 5");
     }
 }
 
@@ -143,10 +113,7 @@ fn a_curve_at_zero_is_judged() {
     let derived = curves("x'' + eps*sin(t)*x' + (delta + eps*cos(t))*x = 0", 4, 1);
     let judged = judge(&derived, &values(&[("eps", 0.3)]), 1e-2).expect("a judgement");
     let first = &judged[0];
-    assert_eq!(
-        (first.value, first.truth, first.relative_error),
-        (Some(0.0), Some(0.0), Some(0.0))
-    );
+    assert_eq!((first.value, first.truth, first.relative_error), (Some(0.0), Some(0.0), Some(0.0)));
     assert!(judged.iter().all(|curve| curve.passes), "{judged:?}");
 }
 
@@ -156,14 +123,9 @@ fn errors_fall_with_the_order() {
     let damped = "x'' + 2*zeta*x' + (delta + eps*cos(2*t))*x = 0";
     let driven = "x'' + 2*zeta*x' + (1 + eps*cos(Omega*t) + eps*sin(2*Omega*t)/2)*x = 0";
     let in_speed = "x'' + eps*cos(t)*x' + (delta + eps*sin(t)^2)*x = 0";
-    for (equation, order) in [
-        (damped, 2),
-        (damped, 4),
-        (driven, 2),
-        (driven, 3),
-        (in_speed, 3),
-        (in_speed, 5),
-    ] {
+    for (equation, order) in
+        [(damped, 2), (damped, 4), (driven, 2), (driven, 3), (in_speed, 3), (in_speed, 5)]
+    {
         let derived = curves(equation, order, 2);
         let errors = |size: f64| {
             let mut at = vec![("eps", size)];
@@ -194,10 +156,7 @@ fn errors_fall_with_the_order() {
                 curve.name
             );
         }
-        assert!(
-            compared >= 2,
-            "{equation}, order {order}: {compared} curves compared"
-        );
+        assert!(compared >= 2, "{equation}, order {order}: {compared} curves compared");
     }
 }
 
@@ -234,11 +193,7 @@ fn curves_do_not_depend_on_the_phase() {
     let sine = curves("x'' + (delta + eps*sin(2*t))*x = 0", 7, 4);
     assert_eq!(cosine.curves.len(), sine.curves.len());
     for (first, second) in cosine.curves.iter().zip(&sine.curves) {
-        assert_eq!(
-            first.middle, second.middle,
-            "{} and {}",
-            first.name, second.name
-        );
+        assert_eq!(first.middle, second.middle, "{} and {}", first.name, second.name);
         assert_eq!(second.under_root, None, "{}", second.name);
     }
 }
@@ -248,29 +203,15 @@ fn curves_do_not_depend_on_the_phase() {
 #[test]
 fn damping_draws_the_first_tongue_back() {
     let derived = curves("x'' + 2*zeta*x' + (delta + eps*cos(2*t))*x = 0", 1, 1);
-    let lower = derived
-        .curves
-        .iter()
-        .find(|curve| curve.name == "lower1")
-        .expect("a curve");
+    let lower = derived.curves.iter().find(|curve| curve.name == "lower1").expect("a curve");
     let root = lower.under_root.as_ref().expect("a root");
     assert_eq!(derived.ordered(root).to_string(), "eps^2/4 - 4*zeta^2");
     let closed =
         judge(&derived, &values(&[("eps", 0.1), ("zeta", 0.03)]), 0.01).expect("a judgement");
-    assert!(
-        closed[1..]
-            .iter()
-            .all(|curve| curve.truth.is_none() && curve.passes),
-        "{closed:?}"
-    );
+    assert!(closed[1..].iter().all(|curve| curve.truth.is_none() && curve.passes), "{closed:?}");
     let open =
         judge(&derived, &values(&[("eps", 0.1), ("zeta", 0.02)]), 0.01).expect("a judgement");
-    assert!(
-        open[1..]
-            .iter()
-            .all(|curve| curve.truth.is_some() && curve.passes),
-        "{open:?}"
-    );
+    assert!(open[1..].iter().all(|curve| curve.truth.is_some() && curve.passes), "{open:?}");
 }
 
 #[test]
@@ -280,34 +221,19 @@ fn what_has_no_transition_curves_is_refused_with_its_term() {
         transition_curves(&oscillator, &Options::default()).expect_err(equation)
     };
     let term = |error: &HillError| error.term().map(str::to_owned);
-    assert_eq!(
-        term(&refusal("x'' + (delta + eps*cos(t))*x + x^3 = 0")).as_deref(),
-        Some("x^3")
-    );
+    assert_eq!(term(&refusal("x'' + (delta + eps*cos(t))*x + x^3 = 0")).as_deref(), Some("x^3"));
     assert_eq!(
         term(&refusal("x'' + (delta + eps*cos(t))*x = F*cos(t)")).as_deref(),
         Some("F*cos(t)")
     );
-    assert_eq!(
-        term(&refusal("x'' + delta*x + t*x = 0")).as_deref(),
-        Some("t*x")
-    );
-    assert_eq!(
-        refusal("x'' + 2*zeta*x' + delta*x = 0"),
-        HillError::Constant
-    );
-    assert_eq!(
-        refusal("x'' + (1 + eps*cos(t))*x = 0"),
-        HillError::NoUnknown
-    );
+    assert_eq!(term(&refusal("x'' + delta*x + t*x = 0")).as_deref(), Some("t*x"));
+    assert_eq!(refusal("x'' + 2*zeta*x' + delta*x = 0"), HillError::Constant);
+    assert_eq!(refusal("x'' + (1 + eps*cos(t))*x = 0"), HillError::NoUnknown);
     assert!(matches!(
         refusal("x'' + (delta + eps*cos(t) + eps*cos(pi*t))*x = 0"),
         HillError::NotPeriodic(_)
     ));
-    assert!(matches!(
-        refusal("x'' + (delta + cos(t)/5)*x = 0"),
-        HillError::NumberIsSmall(_)
-    ));
+    assert!(matches!(refusal("x'' + (delta + cos(t)/5)*x = 0"), HillError::NumberIsSmall(_)));
 }
 
 /// The table of the page is what the program finds.
@@ -339,9 +265,7 @@ fn curves_are_told_apart_on_either_side() {
         for eps in [0.3, -0.3] {
             let judged = judge(&derived, &values(&[("eps", eps)]), 1e-4).expect("a judgement");
             assert!(
-                judged
-                    .iter()
-                    .all(|curve| curve.passes && curve.value.is_some()),
+                judged.iter().all(|curve| curve.passes && curve.value.is_some()),
                 "{equation}, {eps}: {judged:?}"
             );
         }
@@ -359,11 +283,7 @@ fn tongues_are_counted_by_the_shortest_period_and_open_at_their_order() {
         let [at, half] = [0.2, 0.1].map(|eps| move |_: Symbol| Some(eps));
         let expected = named(&plain, &curve.name).evaluate(half).expect("a number") - 0.1;
         let found = curve.middle.evaluate(at).expect("a number");
-        assert!(
-            (found - expected).abs() < 1e-14,
-            "{}: {found} and {expected}",
-            curve.name
-        );
+        assert!((found - expected).abs() < 1e-14, "{}: {found} and {expected}", curve.name);
     }
     let damped = curves("x'' + 2*zeta*x' + (delta + eps*cos(2*t))*x = 0", 2, 2);
     let judged =
@@ -393,43 +313,23 @@ fn a_frequency_that_scales_the_time_is_solved_for() {
         _ => None,
     };
     for curve in &scaled.curves {
-        let delta = named(&mathieu, &curve.name)
-            .evaluate(numbers)
-            .expect("a value");
+        let delta = named(&mathieu, &curve.name).evaluate(numbers).expect("a value");
         let value = curve.middle.evaluate(numbers).expect("a value");
-        assert!(
-            (-9.81 / 0.7 * value - delta).abs() < 1e-12,
-            "{}: {value}, {delta}",
-            curve.name
-        );
+        assert!((-9.81 / 0.7 * value - delta).abs() < 1e-12, "{}: {value}, {delta}", curve.name);
     }
     // The pendulum that stands on its head, P. L. Kapitza: W^2 > 2 g l/amp^2 for a small amplitude.
-    let judged = judge(
-        &scaled,
-        &values(&[("g", 9.81), ("l", 1.0), ("amp", 0.1)]),
-        1e-6,
-    )
-    .expect("a verdict");
+    let judged =
+        judge(&scaled, &values(&[("g", 9.81), ("l", 1.0), ("amp", 0.1)]), 1e-6).expect("a verdict");
     assert!(judged.iter().all(|curve| curve.passes));
     let least = judged[0].truth.expect("a frequency");
-    assert!(
-        (least / (2.0 * 9.81_f64).sqrt() * 0.1 - 1.0).abs() < 0.01,
-        "{least}"
-    );
+    assert!((least / (2.0 * 9.81_f64).sqrt() * 0.1 - 1.0).abs() < 0.01, "{least}");
     assert!(judged[1].truth.is_none());
     // Hanging down it is unstable between two frequencies near 2 sqrt(g/l).
     let hanging = curves("x'' + (g/l + amp*W^2/l*cos(W*t))*x = 0", 6, 3);
-    let judged = judge(
-        &hanging,
-        &values(&[("g", 9.81), ("l", 1.0), ("amp", 0.1)]),
-        1e-6,
-    )
-    .expect("a verdict");
+    let judged = judge(&hanging, &values(&[("g", 9.81), ("l", 1.0), ("amp", 0.1)]), 1e-6)
+        .expect("a verdict");
     assert!(judged.iter().all(|curve| curve.passes));
-    let tongue: Vec<f64> = judged[1..3]
-        .iter()
-        .filter_map(|curve| curve.truth)
-        .collect();
+    let tongue: Vec<f64> = judged[1..3].iter().filter_map(|curve| curve.truth).collect();
     let twice = 2.0 * 9.81_f64.sqrt();
     assert!(tongue[0] > twice && tongue[1] < twice, "{tongue:?}");
 }
@@ -438,10 +338,7 @@ fn a_frequency_that_scales_the_time_is_solved_for() {
 fn a_frequency_in_several_terms_is_no_unknown() {
     let oscillator =
         Oscillator::parse("x'' + c*x' + (-g/l + amp*W^2/l*cos(W*t))*x = 0").expect("an oscillator");
-    let options = Options {
-        solve_for: Some("W".to_owned()),
-        ..Options::default()
-    };
+    let options = Options { solve_for: Some("W".to_owned()), ..Options::default() };
     let error = transition_curves(&oscillator, &options).expect_err("a refusal");
     assert!(matches!(error, HillError::InSeveralTerms(..)), "{error}");
 }

@@ -16,17 +16,11 @@ use lindstedt::verify::{Reach, Verdict, VerificationError, judge};
 use lindstedt::{Oscillator, Symbol, Values};
 
 fn about_zero(equation: &str) -> Oscillator {
-    Oscillator::parse(equation)
-        .expect(equation)
-        .about(Expr::zero())
+    Oscillator::parse(equation).expect(equation).about(Expr::zero())
 }
 
 fn by(oscillator: &Oscillator, method: Method, order: Option<u32>) -> Solution {
-    let options = Options {
-        method: Some(method),
-        order,
-        ..Options::default()
-    };
+    let options = Options { method: Some(method), order, ..Options::default() };
     solve(oscillator, &options).unwrap_or_else(|refusal| panic!("{method:?}: {refusal}"))
 }
 
@@ -36,9 +30,7 @@ fn at(text: &str) -> Values {
 
 fn note(solution: &Solution) -> String {
     let notes = solution.validity.iter();
-    let found = notes
-        .filter(|note| matches!(note, Note::CrossWell(_)))
-        .map(ToString::to_string);
+    let found = notes.filter(|note| matches!(note, Note::CrossWell(_))).map(ToString::to_string);
     found.collect::<Vec<_>>().join("; ")
 }
 
@@ -62,9 +54,8 @@ fn the_law_is_the_elliptic_one() {
             let numbers: BTreeMap<Symbol, f64> = [("k", k), ("c", c), ("A", amplitude)]
                 .map(|(name, value)| (Symbol::new(name), value))
                 .into();
-            let found = frequency_squared_of(&oscillator, &solution, &numbers)
-                .expect("a motion")
-                .sqrt();
+            let found =
+                frequency_squared_of(&oscillator, &solution, &numbers).expect("a motion").sqrt();
             assert!(
                 (found / expected - 1.0).abs() < 1e-9,
                 "{k} {c} {amplitude}: {found} for {expected}"
@@ -77,30 +68,18 @@ fn the_law_is_the_elliptic_one() {
 fn the_truth_is_the_runge_kutta_return() {
     let fifth: (&str, fn(f64) -> f64, &[f64]) =
         ("x'' - x + x^5 = 0", |x| x.powi(5) - x, &[1.4, -2.0]);
-    let pendulum: (&str, fn(f64) -> f64, &[f64]) = (
-        TURNING_PENDULUM,
-        |x| x.sin() * (1.0 - 2.0 * x.cos()),
-        &[1.6, 2.0, -3.0],
-    );
+    let pendulum: (&str, fn(f64) -> f64, &[f64]) =
+        (TURNING_PENDULUM, |x| x.sin() * (1.0 - 2.0 * x.cos()), &[1.6, 2.0, -3.0]);
     let corner: (&str, fn(f64) -> f64, &[f64]) =
         ("x'' - x + x*abs(x) = 0", |x| x * x.abs() - x, &[1.6, 5.0]);
     for (equation, force, amplitudes) in [fifth, pendulum, corner] {
         let oscillator = about_zero(equation);
         for &amplitude in amplitudes {
             let path = swing(&|_, x, _| -force(x), 0.0, amplitude, 1e3).expect("a return");
-            for method in [
-                Method::Exact,
-                Method::HarmonicBalance,
-                Method::EnergyBalance,
-            ] {
+            for method in [Method::Exact, Method::HarmonicBalance, Method::EnergyBalance] {
                 let solution = by(&oscillator, method, None);
-                let judged = judge(
-                    &oscillator,
-                    &solution,
-                    &at(&format!("A = {amplitude}")),
-                    0.01,
-                )
-                .expect(equation);
+                let judged = judge(&oscillator, &solution, &at(&format!("A = {amplitude}")), 0.01)
+                    .expect(equation);
                 assert!(
                     (judged.true_frequency * path.period() / (2.0 * PI) - 1.0).abs() < 1e-7,
                     "{equation} at {amplitude}"
@@ -124,10 +103,7 @@ fn where_they_begin_and_end_is_said_in_closed_form() {
     for (equation, words) in [
         ("x'' - x + x^3 = 0", "|A| > sqrt(2)"),
         ("x'' - 2*x + x^5/3 = 0", "|A| > sqrt(3*sqrt(2))"),
-        (
-            "x'' - k*x + c*x^3 = 0",
-            "|A| > sqrt(2*k/c); for positive c, k",
-        ),
+        ("x'' - k*x + c*x^3 = 0", "|A| > sqrt(2*k/c); for positive c, k"),
         (TURNING_PENDULUM, "pi/2 < |A| < pi"),
         ("x'' - x + x*abs(x) = 0", "|A| > 3/2"),
         (
@@ -144,15 +120,8 @@ fn where_they_begin_and_end_is_said_in_closed_form() {
         }
     }
     let moved = Oscillator::parse("x'' - (x - 1) + (x - 1)^3 = 0").expect("an equation");
-    let said = note(&by(
-        &moved.about(Expr::one()),
-        Method::HarmonicBalance,
-        None,
-    ));
-    assert!(
-        said.contains("equilibrium x = 1") && said.ends_with("|A| > sqrt(2)"),
-        "{said}"
-    );
+    let said = note(&by(&moved.about(Expr::one()), Method::HarmonicBalance, None));
+    assert!(said.contains("equilibrium x = 1") && said.ends_with("|A| > sqrt(2)"), "{said}");
     // The same without being asked, where letters leave it open.
     let open = Oscillator::parse("x'' - k*x + c*x^3 = 0").expect("an equation");
     assert!(
@@ -201,19 +170,11 @@ fn a_motion_that_stays_in_one_well_is_no_motion_over_both() {
         assert!(compare(&oscillator, &at(&format!("A = {amplitude}")), None, 0.01).is_err());
     }
     let well = about_zero("x'' - x + x^3 = 0");
-    let judged = judge(
-        &well,
-        &by(&well, Method::Exact, None),
-        &at("A = sqrt(2)"),
-        0.01,
-    );
+    let judged = judge(&well, &by(&well, Method::Exact, None), &at("A = sqrt(2)"), 0.01);
     assert!(
         matches!(
             judged,
-            Err(VerificationError::Period(PeriodError::Separatrix {
-                place: 0.0,
-                ..
-            }))
+            Err(VerificationError::Period(PeriodError::Separatrix { place: 0.0, .. }))
         ),
         "{judged:?}"
     );
@@ -227,10 +188,7 @@ fn a_motion_that_stays_in_one_well_is_no_motion_over_both() {
 
 #[test]
 fn what_expands_about_rest_refuses_and_says_what_does_not() {
-    for (equation, term) in [
-        ("x'' - x + x^3 = 0", "-x"),
-        ("x'' - k*x + c*x^3 = 0", "-k*x"),
-    ] {
+    for (equation, term) in [("x'' - x + x^3 = 0", "-x"), ("x'' - k*x + c*x^3 = 0", "-k*x")] {
         let oscillator = about_zero(equation);
         for method in [
             Method::LindstedtPoincare,
@@ -239,32 +197,17 @@ fn what_expands_about_rest_refuses_and_says_what_does_not() {
             Method::HermitePade,
             Method::MultipleScales,
         ] {
-            let options = Options {
-                method: Some(method),
-                ..Options::default()
-            };
+            let options = Options { method: Some(method), ..Options::default() };
             let refusal = solve(&oscillator, &options).expect_err("a refusal");
             match &refusal {
-                Refusal::Unsuited {
-                    reason: Unsuited::PushesAway { .. },
-                    ..
-                } => assert_eq!(refusal.term(), Some(term)),
+                Refusal::Unsuited { reason: Unsuited::PushesAway { .. }, .. } => {
+                    assert_eq!(refusal.term(), Some(term))
+                }
                 other => panic!("{method:?}: {other}"),
             }
-            assert!(
-                refusal
-                    .help()
-                    .expect("help")
-                    .to_string()
-                    .contains("method exact")
-            );
+            assert!(refusal.help().expect("help").to_string().contains("method exact"));
         }
-        assert_eq!(
-            solve(&oscillator, &Options::default())
-                .expect("a law")
-                .method,
-            Method::Exact
-        );
+        assert_eq!(solve(&oscillator, &Options::default()).expect("a law").method, Method::Exact);
     }
 }
 
@@ -283,10 +226,7 @@ fn they_are_offered_where_they_are() {
         let oscillator = Oscillator::parse(equation).expect(equation);
         let refusal = solve(&oscillator, &Options::default()).expect_err(equation);
         assert!(
-            matches!(
-                refusal,
-                Refusal::Oscillator(OscillatorError::Unstable { .. })
-            ),
+            matches!(refusal, Refusal::Oscillator(OscillatorError::Unstable { .. })),
             "{equation}: {refusal}"
         );
         let help = refusal.help().expect("help").to_string();
@@ -306,16 +246,10 @@ fn they_are_offered_where_they_are() {
         "x'' - x = 0",
     ] {
         for method in Method::ALL {
-            let options = Options {
-                method: Some(method),
-                ..Options::default()
-            };
+            let options = Options { method: Some(method), ..Options::default() };
             let refusal = solve(&about_zero(equation), &options).expect_err(equation);
             assert!(
-                matches!(
-                    refusal,
-                    Refusal::Oscillator(OscillatorError::NoSuchEquilibrium { .. })
-                ),
+                matches!(refusal, Refusal::Oscillator(OscillatorError::NoSuchEquilibrium { .. })),
                 "{equation}: {refusal}"
             );
         }
@@ -330,10 +264,7 @@ fn values_of_letters_may_make_rest_stable() {
             .map(|(name, value)| (Symbol::new(name), value.parse().expect("a value")))
             .into()
     };
-    assert_eq!(
-        with_numbers_where_needed(&letters, &values("2")).expect("two wells"),
-        None
-    );
+    assert_eq!(with_numbers_where_needed(&letters, &values("2")).expect("two wells"), None);
     let stable = with_numbers_where_needed(&letters, &values("-2"))
         .expect("one well")
         .expect("another equation");
@@ -356,13 +287,8 @@ fn ranges_begin_and_end_where_the_error_crosses_the_tolerance() {
             compare(&oscillator, &at(&format!("A = {amplitude}")), None, 0.01).expect(equation);
         for row in &table.rows {
             let error = |size: f64| {
-                let judged = judge(
-                    &oscillator,
-                    &row.solution,
-                    &at(&format!("A = {size:?}")),
-                    0.01,
-                )
-                .expect("a motion");
+                let judged = judge(&oscillator, &row.solution, &at(&format!("A = {size:?}")), 0.01)
+                    .expect("a motion");
                 judged.relative_error.map_or(f64::INFINITY, f64::abs)
             };
             let passes = row.verdict == Some(Verdict::Pass);
@@ -407,19 +333,12 @@ fn ranges_begin_and_end_where_the_error_crosses_the_tolerance() {
 fn motions_between_two_separatrices_have_their_own_root() {
     let oscillator = about_zero("x'' - x + x^3 - x^5/10 + x^7/1000 = 0");
     for method in [Method::HomotopyPerturbation, Method::ParameterExpansion] {
-        for (order, amplitudes) in [
-            (2, ["1.7", "2", "2.5", "-3"]),
-            (3, ["1.9", "2", "2.5", "-3"]),
-        ] {
+        for (order, amplitudes) in [(2, ["1.7", "2", "2.5", "-3"]), (3, ["1.9", "2", "2.5", "-3"])]
+        {
             let solution = by(&oscillator, method, Some(order));
             for amplitude in amplitudes {
-                let judged = judge(
-                    &oscillator,
-                    &solution,
-                    &at(&format!("A = {amplitude}")),
-                    0.01,
-                )
-                .expect("a motion");
+                let judged = judge(&oscillator, &solution, &at(&format!("A = {amplitude}")), 0.01)
+                    .expect("a motion");
                 assert_eq!(
                     judged.verdict,
                     Verdict::Pass,
@@ -433,10 +352,7 @@ fn motions_between_two_separatrices_have_their_own_root() {
     let solution = by(&well, Method::HomotopyPerturbation, None);
     let numbers = [(Symbol::new("A"), 1.45)].into();
     let found = evaluate(&well, &solution, &numbers);
-    assert!(
-        matches!(found, Err(NoNumbers::NoneOfFirstOrder)),
-        "{found:?}"
-    );
+    assert!(matches!(found, Err(NoNumbers::NoneOfFirstOrder)), "{found:?}");
 }
 
 #[test]
@@ -447,15 +363,9 @@ fn a_formula_that_is_not_real_at_first_says_from_where_on() {
     // = 1.2599.
     let judged = judge(&oscillator, &solution, &at("A = 1.35"), 0.01).expect("a motion");
     assert_eq!(judged.verdict, Verdict::Fail);
-    let from = judged
-        .ranges
-        .iter()
-        .find(|range| range.text.contains("is positive from A = 1.44604 on"));
-    assert!(
-        from.is_some_and(|range| range.outside),
-        "{:?}",
-        judged.ranges
-    );
+    let from =
+        judged.ranges.iter().find(|range| range.text.contains("is positive from A = 1.44604 on"));
+    assert!(from.is_some_and(|range| range.outside), "{:?}", judged.ranges);
 }
 
 /// A force that waves has a hilltop every wave: what a verdict passes lies in the range that is
@@ -470,17 +380,9 @@ fn over_many_hilltops_a_balance_has_no_range() {
     ] {
         let solution = by(&oscillator, method, None);
         for amplitude in ["8", "12", "24"] {
-            let judged = judge(
-                &oscillator,
-                &solution,
-                &at(&format!("A = {amplitude}")),
-                0.01,
-            )
-            .expect("a motion");
-            let ranges = judged
-                .ranges
-                .iter()
-                .filter(|range| range.text.starts_with("within"));
+            let judged = judge(&oscillator, &solution, &at(&format!("A = {amplitude}")), 0.01)
+                .expect("a motion");
+            let ranges = judged.ranges.iter().filter(|range| range.text.starts_with("within"));
             let ranges: Vec<_> = ranges.collect();
             assert_eq!(!ranges.is_empty(), has_range, "{method:?} {amplitude}");
             let passes = judged.verdict == Verdict::Pass;

@@ -10,32 +10,19 @@ use lindstedt::{Oscillator, Symbol};
 fn derive(equation: &str, order: u32) -> Solution {
     let oscillator = Oscillator::parse(equation).expect("an oscillator");
     let method = Some(Method::HomotopyPerturbation);
-    solve(
-        &oscillator,
-        &Options {
-            method,
-            order: Some(order),
-            ..Options::default()
-        },
-    )
-    .expect("a solution")
+    solve(&oscillator, &Options { method, order: Some(order), ..Options::default() })
+        .expect("a solution")
 }
 
 fn polynomial(text: &str) -> Polynomial {
     let expression = parse_expression(text).expect("an expression");
-    expression
-        .to_polynomial(&mut |_| None)
-        .expect("short")
-        .expect("a polynomial")
+    expression.to_polynomial(&mut |_| None).expect("short").expect("a polynomial")
 }
 
 /// omega at eps = s, A = 1.
 fn frequency(solution: &Solution, s: f64) -> f64 {
     let value = |symbol: Symbol| Some(if symbol.name() == "eps" { s } else { 1.0 });
-    solution
-        .frequency_squared_at(&value)
-        .expect("a root")
-        .sqrt()
+    solution.frequency_squared_at(&value).expect("a root").sqrt()
 }
 
 const DUFFING: &str = "x'' + x + eps*x^3 = 0";
@@ -45,10 +32,7 @@ fn the_relation_of_duffing_to_order_six() {
     // Om = 1 + 3/4 s - 3/128 s^2/Om + 21/131072 s^4/Om^3 - 33/16777216 s^6/Om^5, times Om^5.
     let expected = "omega^12 - omega^10 - 3*eps*A^2*omega^10/4 + 3*eps^2*A^4*omega^8/128 - 21*eps^4*A^8*omega^4/131072 \
                     + 33*eps^6*A^12/16777216";
-    assert_eq!(
-        derive(DUFFING, 6).law.relation(),
-        Some(&polynomial(expected))
-    );
+    assert_eq!(derive(DUFFING, 6).law.relation(), Some(&polynomial(expected)));
 }
 
 #[test]
@@ -66,10 +50,7 @@ fn odd_orders_of_duffing_beyond_the_first_add_nothing() {
 #[test]
 fn the_first_order_is_the_papers_equation_12() {
     let solution = derive("x'' + x - x^3/6 = 0", 1);
-    assert_eq!(
-        solution.law.frequency_squared(),
-        Some(&polynomial("1 - A^2/8"))
-    );
+    assert_eq!(solution.law.frequency_squared(), Some(&polynomial("1 - A^2/8")));
     assert_eq!(
         derive("x'' + sin(x) = 0", 1).law.frequency_squared(),
         Some(&polynomial("1 - A^2/8"))
@@ -79,17 +60,12 @@ fn the_first_order_is_the_papers_equation_12() {
 #[test]
 fn the_second_order_is_a_square_root() {
     let solution = derive(DUFFING, 2);
-    let text = solution
-        .law
-        .closed_form()
-        .expect("a closed form")
-        .to_string();
+    let text = solution.law.closed_form().expect("a closed form").to_string();
     let root = parse_expression(text.strip_prefix("omega^2 = ").expect("omega^2 = ..."))
         .expect("an expression");
     for s in [-0.5, 0.1, 1.0, 2.0, 100.0] {
-        let value = root
-            .evaluate(&[("eps".into(), s), ("A".into(), 1.0)].into())
-            .expect("a number");
+        let value =
+            root.evaluate(&[("eps".into(), s), ("A".into(), 1.0)].into()).expect("a number");
         assert!((value.sqrt() / frequency(&solution, s) - 1.0).abs() < 1e-14);
         let by_hand: f64 = 0.5 * (1.0 + 0.75 * s + f64::sqrt(1.0 + 1.5 * s + 15.0 / 32.0 * s * s));
         assert!((value - by_hand).abs() < 1e-13 * by_hand);
@@ -115,26 +91,17 @@ fn uniformly_close_to_the_elliptic_frequency() {
             .expect("listed")
             .1;
         let error = frequency(&solution, -0.9) / exact - 1.0;
-        assert!(
-            (error / expected - 1.0_f64).abs() < 0.3,
-            "order {order}: {error}"
-        );
+        assert!((error / expected - 1.0_f64).abs() < 0.3, "order {order}: {error}");
     }
 }
 
 #[test]
 fn every_order_of_the_motion() {
     let solution = derive(DUFFING, 1);
-    assert_eq!(
-        solution.displacement.cosine(3).mean().0,
-        polynomial("eps*A^3/(32*omega^2)")
-    );
+    assert_eq!(solution.displacement.cosine(3).mean().0, polynomial("eps*A^3/(32*omega^2)"));
     // The conditions x(0) = A, x'(0) = 0 hold at every order.
     for order in 1..5 {
-        assert_eq!(
-            derive(DUFFING, order).displacement.at_zero().mean().0,
-            polynomial("A")
-        );
+        assert_eq!(derive(DUFFING, order).displacement.at_zero().mean().0, polynomial("A"));
     }
 }
 
@@ -168,15 +135,9 @@ fn the_branch_of_the_linear_frequency_at_any_amplitude_and_scale() {
                         _ => amplitude,
                     })
                 };
-                let omega = solution
-                    .frequency_squared_at(&value)
-                    .expect("a root")
-                    .sqrt();
+                let omega = solution.frequency_squared_at(&value).expect("a root").sqrt();
                 let error = omega / k.sqrt() / duffing_exactly(s) - 1.0;
-                assert!(
-                    error.abs() < 3.2e-4,
-                    "order {order}, s = {s:e}, k = {k}: {error}"
-                );
+                assert!(error.abs() < 3.2e-4, "order {order}, s = {s:e}, k = {k}: {error}");
             }
         }
     }
@@ -189,13 +150,7 @@ fn a_branch_ends_where_its_discriminant_vanishes() {
     let ending = -1.0 / (0.75 + (3.0_f64 / 32.0).sqrt());
     let solution = derive(DUFFING, 2);
     let at = |amplitude: f64| {
-        let value = |symbol: Symbol| {
-            Some(if symbol.name() == "eps" {
-                -1.0
-            } else {
-                amplitude
-            })
-        };
+        let value = |symbol: Symbol| Some(if symbol.name() == "eps" { -1.0 } else { amplitude });
         solution.branch_at(&value)
     };
     let edge = (-ending).sqrt();
@@ -214,29 +169,15 @@ fn forces_without_a_linear_part_start_from_their_lowest_power() {
     // Mixed powers: cubic at small amplitudes, of the fifth degree at large ones; omega of each by
     // Gamma functions.
     let oscillator = Oscillator::parse("x'' + x^3 + x^5 = 0").expect("an oscillator");
-    let options = Options {
-        method: Some(Method::ParameterExpansion),
-        order: Some(2),
-        ..Options::default()
-    };
+    let options =
+        Options { method: Some(Method::ParameterExpansion), order: Some(2), ..Options::default() };
     let solution = solve(&oscillator, &options).expect("a solution");
     let omega = |amplitude: f64| {
         let value = |symbol: Symbol| (symbol.name() == "A").then_some(amplitude);
-        solution
-            .frequency_squared_at(&value)
-            .expect("a root")
-            .sqrt()
+        solution.frequency_squared_at(&value).expect("a root").sqrt()
     };
-    assert!(
-        (omega(1e-12) / 1e-12 / 0.847213 - 1.0).abs() < 2e-3,
-        "{}",
-        omega(1e-12)
-    );
-    assert!(
-        (omega(1e12) / 1e24 / 0.746834 - 1.0).abs() < 2e-2,
-        "{}",
-        omega(1e12)
-    );
+    assert!((omega(1e-12) / 1e-12 / 0.847213 - 1.0).abs() < 2e-3, "{}", omega(1e-12));
+    assert!((omega(1e12) / 1e24 / 0.746834 - 1.0).abs() < 2e-2, "{}", omega(1e12));
     let (below, above) = (omega(0.999), omega(1.001));
     assert!(below < above && above < 1.01 * below, "{below} {above}");
 }
@@ -254,10 +195,7 @@ fn validity_says_what_is_open_and_where_it_was_cut() {
         solve(&Oscillator::parse(equation).expect("an equation"), &options).expect("a solution")
     };
     let says = |solution: &Solution, words: &str| {
-        solution
-            .validity
-            .iter()
-            .any(|note| note.to_string().contains(words))
+        solution.validity.iter().any(|note| note.to_string().contains(words))
     };
     // Where hbar is open it is said to be; the first order and a given one leave nothing open.
     for (order, hbar, open) in [
@@ -276,27 +214,14 @@ fn validity_says_what_is_open_and_where_it_was_cut() {
     }
     let solution = of(Method::IterationPerturbation, DUFFING, None, None);
     assert!(!says(&solution, "cut after"), "{:?}", solution.validity);
-    let solution = of(
-        Method::IterationPerturbation,
-        "x'' + sin(x) = 0",
-        None,
-        None,
-    );
+    let solution = of(Method::IterationPerturbation, "x'' + sin(x) = 0", None, None);
     let highest = solution.displacement.highest_harmonic();
     assert!(
-        says(
-            &solution,
-            &format!("the motion is cut after its harmonic {highest}")
-        ),
+        says(&solution, &format!("the motion is cut after its harmonic {highest}")),
         "{:?}",
         solution.validity
     );
-    let solution = of(
-        Method::IterationPerturbation,
-        "x'' + k*x + x^3 = 0",
-        Some(2),
-        None,
-    );
+    let solution = of(Method::IterationPerturbation, "x'' + k*x + x^3 = 0", Some(2), None);
     let words = "after 2 passes; the frequency is the root that continues omega0^2 from A = 0";
     assert!(says(&solution, words), "{:?}", solution.validity);
 }
@@ -311,15 +236,11 @@ fn a_table_says_which_hbar_was_used() {
         let oscillator =
             Oscillator::parse(&format!("x'' + x + {parameter}*x^3 = 0")).expect("an oscillator");
         let mut at = Values::default();
-        at.insert("A".into(), "2".parse().expect("a number"))
-            .expect("a value");
-        at.insert(parameter.into(), "1".parse().expect("a number"))
-            .expect("a value");
+        at.insert("A".into(), "2".parse().expect("a number")).expect("a value");
+        at.insert(parameter.into(), "1".parse().expect("a number")).expect("a value");
         let comparison = compare(&oscillator, &at, Some("A"), 0.01).expect("a table");
-        let row = comparison
-            .rows
-            .iter()
-            .find(|row| row.solution.method == Method::HomotopyAnalysis);
+        let row =
+            comparison.rows.iter().find(|row| row.solution.method == Method::HomotopyAnalysis);
         let (name, value) = row.and_then(|row| row.chosen_hbar()).expect("a chosen one");
         assert_eq!(name.name(), own);
         // That of homotopy perturbation is -1; the one of least residual is near.
@@ -327,20 +248,11 @@ fn a_table_says_which_hbar_was_used() {
         let value = value.to_string();
         let digits = &value[..6];
         let table = latex::comparison(&comparison);
-        assert!(
-            table.contains(&format!("{} = {digits}", latex::symbol(name))),
-            "{digits} {table}"
-        );
+        assert!(table.contains(&format!("{} = {digits}", latex::symbol(name))), "{digits} {table}");
         let table = text::comparison(&comparison, usize::MAX);
-        assert!(
-            table.contains(&format!("{own} = {digits}")),
-            "{digits} {table}"
-        );
+        assert!(table.contains(&format!("{own} = {digits}")), "{digits} {table}");
         let table = serde_json::to_string(&json::comparison(&comparison)).expect("JSON");
-        assert!(
-            table.contains(&format!("\"{own}\":{digits}")),
-            "{digits} {table}"
-        );
+        assert!(table.contains(&format!("\"{own}\":{digits}")), "{digits} {table}");
     }
 }
 
@@ -380,20 +292,17 @@ fn formulas_hold_in_any_units() {
                 let at = [("A".into(), amplitude.parse().expect("a number"))].into();
                 evaluate(&oscillator, &solution, &at).map(|found| found.frequency_squared)
             };
-            let (found, expected) = (
-                squared(large, format!("{amplitude}e-12")),
-                squared(small, amplitude.to_owned()),
-            );
+            let (found, expected) =
+                (squared(large, format!("{amplitude}e-12")), squared(small, amplitude.to_owned()));
             match (found, expected) {
                 (Ok(found), Ok(expected)) => {
                     compared += 1;
                     let error = found / 1e16 / expected - 1.0;
                     assert!(error.abs() < 1e-9, "{large} {method:?}: {found} {expected}");
                 }
-                (found, expected) => assert!(
-                    found.is_err() && expected.is_err(),
-                    "{found:?} {expected:?}"
-                ),
+                (found, expected) => {
+                    assert!(found.is_err() && expected.is_err(), "{found:?} {expected:?}")
+                }
             }
         }
     }
@@ -405,17 +314,11 @@ fn formulas_hold_in_any_units() {
 fn homotopy_analysis_says_where_its_first_frequency_is_not_real() {
     let oscillator =
         Oscillator::parse("x'' + 1.32*tanh(6830*x) + 0.703*x = 0").expect("an oscillator");
-    let options = Options {
-        method: Some(Method::HomotopyAnalysis),
-        order: Some(3),
-        ..Options::default()
-    };
+    let options =
+        Options { method: Some(Method::HomotopyAnalysis), order: Some(3), ..Options::default() };
     let solution = solve(&oscillator, &options).expect("a solution");
     let at = |amplitude: f64| evaluate(&oscillator, &solution, &[("A".into(), amplitude)].into());
     let refused = at(3.88).expect_err("not real");
-    assert!(
-        refused.to_string().contains("w0 has no real value"),
-        "{refused}"
-    );
+    assert!(refused.to_string().contains("w0 has no real value"), "{refused}");
     assert!(at(1e-5).is_ok());
 }

@@ -11,23 +11,11 @@ use lindstedt::{
     Method, Oscillator, Symbol, Values, expr::parse_expression, hill, impact, judge, response,
 };
 
-const HOSTILE: [f64; 10] = [
-    0.0,
-    1.0,
-    -1.0,
-    1e-320,
-    1e-12,
-    1e308,
-    -1e308,
-    f64::NAN,
-    f64::INFINITY,
-    f64::NEG_INFINITY,
-];
+const HOSTILE: [f64; 10] =
+    [0.0, 1.0, -1.0, 1e-320, 1e-12, 1e308, -1e308, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
 fn pairs() -> impl Iterator<Item = (f64, f64)> {
-    HOSTILE
-        .into_iter()
-        .flat_map(|one| HOSTILE.map(|other| (one, other)))
+    HOSTILE.into_iter().flat_map(|one| HOSTILE.map(|other| (one, other)))
 }
 
 #[test]
@@ -37,11 +25,7 @@ fn numerics() {
         let _ = root::find_minimum(f64::cos, a, b);
         let _ = quadrature::integrate_smooth(|x| 1.0 / x, a, b, 1e-9);
         let _ = quadrature::integrate_piecewise(|x| 1.0 / x, &[a, b, a], 1e-9);
-        let start = State {
-            t: 0.0,
-            x: a,
-            v: 1.0,
-        };
+        let start = State { t: 0.0, x: a, v: 1.0 };
         let options = ode::Options::default();
         if let Ok(path) = ode::integrate(|_, x, v| -x - v, start, b.min(100.0), &[], &options) {
             let _ = HOSTILE.map(|t| (path.at(t), path.phase_at(t)));
@@ -53,17 +37,7 @@ fn numerics() {
             maximum_steps: 20_000,
             ..options
         };
-        let _ = ode::integrate(
-            |_, x, _| -x,
-            State {
-                t: 0.0,
-                x: 1.0,
-                v: 1.0,
-            },
-            10.0,
-            &[],
-            &options,
-        );
+        let _ = ode::integrate(|_, x, _| -x, State { t: 0.0, x: 1.0, v: 1.0 }, 10.0, &[], &options);
         let _ = period::swing(&|_, x, _| -x, a, b, 100.0);
         let force = |x: f64| x + x * x * x;
         let _ = period::conservative_period(&period::Force::smooth(&force), a, b);
@@ -111,11 +85,7 @@ fn systems_and_courses() {
             let _ = system.solve(0.0, &[1.0, 0.0], b, &[], &limited(a, 2000));
         }
         for start in [&[][..], &[1.0], &[1.0, 2.0, 3.0]] {
-            assert!(
-                system
-                    .solve(0.0, start, 1.0, &[], &limited(1e-9, 2000))
-                    .is_err()
-            );
+            assert!(system.solve(0.0, start, 1.0, &[], &limited(1e-9, 2000)).is_err());
         }
         let _ = system.solve(0.0, &[1.0, 0.0], 1.0, &[], &limited(1e-9, 0));
     }
@@ -156,15 +126,9 @@ fn choices_of_a_method() {
     ] {
         let oscillator = Oscillator::parse(equation).expect("an equation");
         for method in Method::ALL {
-            let choice = Options {
-                method: Some(method),
-                ..Options::default()
-            };
+            let choice = Options { method: Some(method), ..Options::default() };
             for order in [0, u32::MAX - 1, u32::MAX] {
-                let asked = Options {
-                    order: Some(order),
-                    ..choice.clone()
-                };
+                let asked = Options { order: Some(order), ..choice.clone() };
                 let answer = solve(&oscillator, &asked);
                 assert!(
                     answer.is_err() || order == 0,
@@ -172,34 +136,14 @@ fn choices_of_a_method() {
                     method.name()
                 );
             }
-            for (p, q) in [
-                (0, 0),
-                (1, 0),
-                (0, 1),
-                (u32::MAX, 1),
-                (1, u32::MAX),
-                (u32::MAX, u32::MAX),
-            ] {
+            for (p, q) in
+                [(0, 0), (1, 0), (0, 1), (u32::MAX, 1), (1, u32::MAX), (u32::MAX, u32::MAX)]
+            {
                 let resonance = Some((p, q));
-                assert!(
-                    solve(
-                        &oscillator,
-                        &Options {
-                            resonance,
-                            ..choice.clone()
-                        }
-                    )
-                    .is_err()
-                );
+                assert!(solve(&oscillator, &Options { resonance, ..choice.clone() }).is_err());
             }
             for cycle in [Some(0), Some(u32::MAX)] {
-                let _ = solve(
-                    &oscillator,
-                    &Options {
-                        cycle,
-                        ..choice.clone()
-                    },
-                );
+                let _ = solve(&oscillator, &Options { cycle, ..choice.clone() });
             }
         }
         let solution = solve(&oscillator, &Options::default());
@@ -226,11 +170,7 @@ fn choices_of_a_method() {
 fn curves_and_responses() {
     let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0").expect("an equation");
     for (order, tongues) in [(0, 0), (u32::MAX, 1), (1, usize::MAX), (1, 0)] {
-        let options = hill::Options {
-            order,
-            tongues,
-            ..hill::Options::default()
-        };
+        let options = hill::Options { order, tongues, ..hill::Options::default() };
         let Ok(curves) = hill::transition_curves(&mathieu, &options) else {
             continue;
         };
@@ -252,26 +192,16 @@ fn curves_and_responses() {
 
 #[test]
 fn impacts() {
-    let limited = |settings: impact::Settings| impact::Settings {
-        maximum_steps: 2000,
-        ..settings
-    };
+    let limited = |settings: impact::Settings| impact::Settings { maximum_steps: 2000, ..settings };
     for parameter in impact::Parameter::ALL {
         for a in HOSTILE {
             let mut case = impact::Case::default();
             case.set(parameter, a);
-            let _ = (
-                case.get(parameter),
-                case.stiffness(),
-                case.dissipation(None),
-            );
+            let _ = (case.get(parameter), case.stiffness(), case.dissipation(None));
             let Ok((model, start)) = case.motion() else {
                 continue;
             };
-            let settings = limited(impact::Settings {
-                duration: 5.0,
-                ..Default::default()
-            });
+            let settings = limited(impact::Settings { duration: 5.0, ..Default::default() });
             for integrator in [
                 impact::Integrator::Taylor,
                 impact::Integrator::RungeKutta,
@@ -283,27 +213,12 @@ fn impacts() {
     }
     let model = impact::Model::default();
     for a in HOSTILE {
-        let five = impact::Settings {
-            duration: 5.0,
-            ..Default::default()
-        };
+        let five = impact::Settings { duration: 5.0, ..Default::default() };
         for settings in [
-            impact::Settings {
-                duration: a,
-                ..five
-            },
-            impact::Settings {
-                relative_tolerance: a,
-                ..five
-            },
-            impact::Settings {
-                absolute_tolerance: a,
-                ..five
-            },
-            impact::Settings {
-                rest_energy: Some(a),
-                ..five
-            },
+            impact::Settings { duration: a, ..five },
+            impact::Settings { relative_tolerance: a, ..five },
+            impact::Settings { absolute_tolerance: a, ..five },
+            impact::Settings { rest_energy: Some(a), ..five },
         ] {
             let settings = limited(settings);
             let _ = impact::simulate(
@@ -316,24 +231,13 @@ fn impacts() {
         }
     }
     for (a, b) in pairs() {
-        let _ = (
-            impact::hertz::penetration(a, b),
-            impact::hertz::duration(a, b),
-        );
-        let setup = impact::Setup {
-            release: a,
-            barrier: b,
-            ..Default::default()
-        };
+        let _ = (impact::hertz::penetration(a, b), impact::hertz::duration(a, b));
+        let setup = impact::Setup { release: a, barrier: b, ..Default::default() };
         let _ = impact::solve(setup).map(|found| {
             let _ = [0, 1].map(|points| found.paths(points));
             found.verdicts(f64::NAN)
         });
-        let setup = impact::Setup {
-            stiffness: a,
-            release: b,
-            ..Default::default()
-        };
+        let setup = impact::Setup { stiffness: a, release: b, ..Default::default() };
         let _ = impact::solve(setup);
     }
 }
@@ -341,17 +245,10 @@ fn impacts() {
 #[test]
 fn searches() {
     let space = Space::new(vec![[0.0, 1.0], [1.0, 2.0]]).expect("a box");
-    let worth = |values: &[f64]| Evaluation {
-        objectives: values.to_vec(),
-        ..Evaluation::default()
-    };
-    let lists: [&[f64]; 5] = [
-        &[],
-        &[0.5],
-        &[0.5, 1.5],
-        &[0.5, 1.5, 2.0],
-        &[f64::NAN, f64::INFINITY],
-    ];
+    let worth =
+        |values: &[f64]| Evaluation { objectives: values.to_vec(), ..Evaluation::default() };
+    let lists: [&[f64]; 5] =
+        [&[], &[0.5], &[0.5, 1.5], &[0.5, 1.5, 2.0], &[f64::NAN, f64::INFINITY]];
     let mut random = generator(0, 0);
     for one in lists {
         for other in lists {
@@ -384,13 +281,7 @@ fn searches() {
     }
     for evaluations in [0, 1, 3] {
         for every in [0, 1, usize::MAX] {
-            random_search(
-                &space,
-                |_| worth(&[]),
-                (evaluations, every),
-                0.1,
-                &mut random,
-            );
+            random_search(&space, |_| worth(&[]), (evaluations, every), 0.1, &mut random);
             differential_evolution(
                 &space,
                 |_| worth(&[f64::NAN]),
@@ -413,13 +304,7 @@ fn searches() {
                 };
                 options.most_evaluations();
                 for values in lists {
-                    search(
-                        &space,
-                        |_| worth(values),
-                        &options,
-                        &mut random,
-                        &mut |_| true,
-                    );
+                    search(&space, |_| worth(values), &options, &mut random, &mut |_| true);
                     let mut count = 0;
                     let shorter = |_: &[f64]| {
                         count += 1;

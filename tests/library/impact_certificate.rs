@@ -73,12 +73,9 @@ proptest! {
 /// All five numbers are proved to 30 digits and more, and the period is the sum of its phases.
 #[test]
 fn thirty_digits_and_their_sum() {
-    for (amplitude, barrier, stiffness) in [
-        (1.5, 0.323, 3e7),
-        (1.5, 0.323, 4.2e9),
-        (0.5, -0.25, 1e4),
-        (3.0, 0.0, 10.0),
-    ] {
+    for (amplitude, barrier, stiffness) in
+        [(1.5, 0.323, 3e7), (1.5, 0.323, 4.2e9), (0.5, -0.25, 1e4), (3.0, 0.0, 10.0)]
+    {
         let impact = enclosed(amplitude, barrier, stiffness).expect("a proof");
         for (name, enclosure) in impact.in_order() {
             let relative = enclosure.radius.value() / to_f64(&enclosure.middle);
@@ -107,40 +104,24 @@ fn a_hard_barrier_takes_the_time_of_hertz() {
         let scaled = to_f64(&impact.duration.middle) * stiffness.powf(0.4) * speed.powf(0.2);
         (scaled / constant - 1.0).abs()
     });
-    assert!(
-        errors[2] < 1e-6 && errors[1] < 0.2 * errors[0],
-        "{errors:?}"
-    );
+    assert!(errors[2] < 1e-6 && errors[1] < 0.2 * errors[0], "{errors:?}");
 }
 
 /// Runge-Kutta is within its own errors of what is proved; the closed forms are as far off as is
 /// said.
 #[test]
 fn runge_kutta_is_as_good_as_it_says() {
-    let setup = Setup {
-        stiffness: 1e6,
-        ..Setup::default()
-    };
-    let proved = enclose_impact(
-        &fraction(3, 2),
-        &fraction(323, 1000),
-        &fraction(1_000_000, 1),
-    )
-    .expect("a proof");
+    let setup = Setup { stiffness: 1e6, ..Setup::default() };
+    let proved = enclose_impact(&fraction(3, 2), &fraction(323, 1000), &fraction(1_000_000, 1))
+        .expect("a proof");
     let impact = solve(setup).expect("an impact");
     for (quantity, (name, truth)) in impact.quantities().into_iter().zip(proved.in_order()) {
         assert_eq!(quantity.name, name);
-        assert!(
-            truth.relative_error(quantity.runge_kutta).upper < 1e-8,
-            "{name}"
-        );
+        assert!(truth.relative_error(quantity.runge_kutta).upper < 1e-8, "{name}");
         for (value, error) in quantity.closed_forms.iter().zip(quantity.errors()) {
             let range = truth.relative_error(*value);
             assert!(range.lower <= range.upper && range.upper - range.lower < 1e-14);
-            assert!(
-                (range.upper - error.abs()).abs() < 1e-8,
-                "{name}: {range:?} {error}"
-            );
+            assert!((range.upper - error.abs()).abs() < 1e-8, "{name}: {range:?} {error}");
         }
     }
 }
@@ -176,11 +157,7 @@ fn what_is_no_impact_is_refused() {
         (3.0, 1.5, 1.0, Deep),
     ] {
         let found = enclosed(amplitude, barrier, stiffness);
-        assert_eq!(
-            found.expect_err("no proof"),
-            why,
-            "{amplitude} {barrier} {stiffness}"
-        );
+        assert_eq!(found.expect_err("no proof"), why, "{amplitude} {barrier} {stiffness}");
     }
     // What is extreme ends in a refusal or in numbers, and in time.
     for stiffness in [1e-300, 1e-12, 1e40, 1e300] {

@@ -11,11 +11,7 @@ use lindstedt::{Oscillator, Solution, Symbol};
 
 fn derived(equation: &str, method: Method, order: Option<u32>) -> (Oscillator, Solution) {
     let oscillator = Oscillator::parse(equation).expect(equation);
-    let options = Options {
-        method: Some(method),
-        order,
-        ..Options::default()
-    };
+    let options = Options { method: Some(method), order, ..Options::default() };
     let solution =
         solve(&oscillator, &options).unwrap_or_else(|refusal| panic!("{equation}: {refusal}"));
     (oscillator, solution)
@@ -25,9 +21,7 @@ fn judged(equation: &str, method: Method, order: Option<u32>, at: &[(&str, &str)
     let (oscillator, solution) = derived(equation, method, order);
     let mut values = Values::default();
     for (name, value) in at {
-        values
-            .insert(Symbol::new(name), value.parse().expect("a number"))
-            .expect("a value");
+        values.insert(Symbol::new(name), value.parse().expect("a number")).expect("a value");
     }
     judge(&oscillator, &solution, &values, 0.01)
         .unwrap_or_else(|error| panic!("{equation}: {error}"))
@@ -46,15 +40,9 @@ fn the_exact_frequency_is_that_of_runge_kutta() {
         ("x'' + x*x'^2/3 + x + x^2 = 0", vec![("A", "0.3")]),
         ("x'' + x'^2/4 + x = 0", vec![("A", "0.5")]),
         ("x'' + x'^2*atan(x)^3*sinh(x) + x = 0", vec![("A", "0.6")]),
-        (
-            "(2 + cos(x))*x'' - sin(x)*x'^2/2 + 3*sin(x) = 0",
-            vec![("A", "1")],
-        ),
+        ("(2 + cos(x))*x'' - sin(x)*x'^2/2 + 3*sin(x) = 0", vec![("A", "1")]),
         // The same in SI units of a nanometre and a gigahertz.
-        (
-            "(1 + 1e18*x^2)*x'' + 1e18*x*x'^2 + 1e18*x = 0",
-            vec![("A", "1.5e-9")],
-        ),
+        ("(1 + 1e18*x^2)*x'' + 1e18*x*x'^2 + 1e18*x = 0", vec![("A", "1.5e-9")]),
     ] {
         let verdict = judged(equation, Method::Exact, None, &at);
         let error = verdict.relative_error.expect("a frequency");
@@ -78,12 +66,8 @@ fn a_nonlinear_oscillator_that_swings_like_a_linear_one() {
         (Method::HarmonicBalance, Some(3)),
     ] {
         for amplitude in ["1.2", "-1.2"] {
-            let verdict = judged(
-                equation,
-                method,
-                order,
-                &[("A", amplitude), ("b", "0.7"), ("k", "3")],
-            );
+            let verdict =
+                judged(equation, method, order, &[("A", amplitude), ("b", "0.7"), ("k", "3")]);
             let frequency = verdict.frequency.expect("a frequency");
             assert!(
                 (frequency / exact - 1.0).abs() < 1e-11,
@@ -91,11 +75,7 @@ fn a_nonlinear_oscillator_that_swings_like_a_linear_one() {
                 method.name()
             );
             assert!((verdict.true_frequency / exact - 1.0).abs() < 1e-10);
-            assert!(
-                verdict.max_deviation.expect("a motion") < 1e-8,
-                "{}",
-                method.name()
-            );
+            assert!(verdict.max_deviation.expect("a motion") < 1e-8, "{}", method.name());
         }
     }
 }
@@ -112,12 +92,7 @@ fn laws_of_one_term_are_their_definitions() {
             |x| x / (1.0 + x * x),
             |x| x / (1.0 + x * x),
         ),
-        (
-            "x'' + x*x'^2 + sin(x) = 0",
-            |x| (x * x).exp(),
-            |x| x,
-            f64::sin,
-        ),
+        ("x'' + x*x'^2 + sin(x) = 0", |x| (x * x).exp(), |x| x, f64::sin),
         (
             "(2 + cos(x))*x'' - sin(x)*x'^2/2 + 3*sin(x) = 0",
             |x| 2.0 + x.cos(),
@@ -134,9 +109,7 @@ fn laws_of_one_term_are_their_definitions() {
             };
             let mean = |function: &dyn Fn(f64, f64) -> f64| {
                 let value = |theta: f64| function(theta.cos(), theta.sin());
-                integrate_smooth(value, 0.0, std::f64::consts::PI, 1e-13)
-                    .expect("an integral")
-                    .0
+                integrate_smooth(value, 0.0, std::f64::consts::PI, 1e-13).expect("an integral").0
             };
             let work = mean(&|c, _| mass(size * c) * force(size * c) * c);
             let inertia = mean(&|c, s| {
@@ -169,19 +142,11 @@ fn the_error_of_homotopy_perturbation_has_the_power_of_its_order() {
     for (equation, even, at) in [
         ("(1 + x^2)*x'' + x*x'^2 + x = 0", false, vec![]),
         ("x'' + x*x'^2 + sin(x) = 0", false, vec![]),
-        (
-            "(1 + b*x^2)*x'' - b*x*x'^2 + k*x = 0",
-            false,
-            vec![("b", "0.7"), ("k", "3")],
-        ),
+        ("(1 + b*x^2)*x'' - b*x*x'^2 + k*x = 0", false, vec![("b", "0.7"), ("k", "3")]),
         ("x'' + x'^2/4 + x = 0", true, vec![]),
         ("x'' + x*x'^2/3 + x + x^2 = 0", true, vec![]),
     ] {
-        let amplitudes = if even {
-            ["0.02", "0.04"]
-        } else {
-            ["0.1", "0.2"]
-        };
+        let amplitudes = if even { ["0.02", "0.04"] } else { ["0.1", "0.2"] };
         for order in [1, 2, 3] {
             if even && order == 1 {
                 continue;
@@ -205,20 +170,14 @@ fn the_error_of_homotopy_perturbation_has_the_power_of_its_order() {
         let [near, far] = amplitudes.map(|amplitude| {
             let mut values = at.clone();
             values.push(("A", amplitude));
-            let methods = [
-                (Method::HomotopyPerturbation, order),
-                (Method::LindstedtPoincare, 4),
-            ];
+            let methods = [(Method::HomotopyPerturbation, order), (Method::LindstedtPoincare, 4)];
             let [homotopy, series] = methods.map(|(method, order)| {
                 let verdict = judged(equation, method, Some(order), &values);
                 verdict.frequency.expect("a frequency")
             });
             (homotopy / series - 1.0).abs()
         });
-        assert!(
-            (far / near).log2() > power - 0.4,
-            "{equation}: {near:e}, {far:e}"
-        );
+        assert!((far / near).log2() > power - 0.4, "{equation}: {near:e}, {far:e}");
     }
 }
 
@@ -226,37 +185,22 @@ fn the_error_of_homotopy_perturbation_has_the_power_of_its_order() {
 /// `omega^2 (1 - A^2/4) = 1`.
 #[test]
 fn the_first_order_of_homotopy_perturbation_is_the_balance_of_one_harmonic() {
-    let (_, solution) = derived(
-        "x'' + x*x'^2 + x = 0",
-        Method::HomotopyPerturbation,
-        Some(1),
-    );
+    let (_, solution) = derived("x'' + x*x'^2 + x = 0", Method::HomotopyPerturbation, Some(1));
     let law = solution.law.closed_form().expect("a law").value.clone();
     for (amplitude, expected) in [(0.5, 1.0 / (1.0 - 0.0625)), (1.5, 1.0 / (1.0 - 0.5625))] {
         let value = law.evaluate(&std::collections::BTreeMap::from([("A".into(), amplitude)]));
-        assert!(
-            (value.expect("a number") / expected - 1.0_f64).abs() < 1e-14,
-            "{law}"
-        );
+        assert!((value.expect("a number") / expected - 1.0_f64).abs() < 1e-14, "{law}");
     }
     for equation in ["x'' + x*x'^2 + x = 0", "x'' + x^3*x'^2/2 + 2*x - x^3 = 0"] {
         let [one, other] = [Method::HomotopyPerturbation, Method::HarmonicBalance].map(|method| {
             let verdict = judged(equation, method, Some(1), &[("A", "0.8")]);
             verdict.frequency.expect("a frequency")
         });
-        assert!(
-            (one / other - 1.0).abs() < 1e-12,
-            "{equation}: {one} {other}"
-        );
+        assert!((one / other - 1.0).abs() < 1e-12, "{equation}: {one} {other}");
     }
     // Units do not matter: a nanometre and a gigahertz.
     let frequency = |equation, amplitude| {
-        let verdict = judged(
-            equation,
-            Method::HomotopyPerturbation,
-            Some(2),
-            &[("A", amplitude)],
-        );
+        let verdict = judged(equation, Method::HomotopyPerturbation, Some(2), &[("A", amplitude)]);
         verdict.frequency.expect("a frequency")
     };
     let plain = frequency("(1 + x^2)*x'' + x*x'^2 + x = 0", "0.3");
@@ -276,19 +220,13 @@ fn harmonic_balance_converges_and_its_equations_hold() {
         ),
         ("x'' + x*x'^2/3 + x + x^2 = 0", vec![("A", "0.2")]),
         ("x'' + x*x'^2 + sin(x) = 0", vec![("A", "1")]),
-        (
-            "(1 + 1e18*x^2)*x'' + 1e18*x*x'^2 + 1e18*x = 0",
-            vec![("A", "0.8e-9")],
-        ),
+        ("(1 + 1e18*x^2)*x'' + 1e18*x*x'^2 + 1e18*x = 0", vec![("A", "0.8e-9")]),
     ] {
         let mut last = f64::INFINITY;
         for order in [1, 3, 6] {
             let verdict = judged(equation, Method::HarmonicBalance, Some(order), &at);
             let error = verdict.relative_error.expect("a frequency").abs();
-            assert!(
-                error < 0.2 * last,
-                "{equation} with {order}: {error:e} after {last:e}"
-            );
+            assert!(error < 0.2 * last, "{equation} with {order}: {error:e} after {last:e}");
             last = error;
             let (_, solution) = derived(equation, Method::HarmonicBalance, Some(order));
             let Some(system) = solution.law.system() else {
@@ -324,41 +262,25 @@ fn derivations_lead_from_the_mass_to_the_law() {
         for method in [Method::EnergyBalance, Method::Hamiltonian] {
             let (_, solution) = derived(equation, method, None);
             let law = solution.formula();
-            let lines: Vec<String> = solution
-                .derivation
-                .iter()
-                .map(ToString::to_string)
-                .collect();
+            let lines: Vec<String> = solution.derivation.iter().map(ToString::to_string).collect();
             assert!(lines[0].ends_with(mass), "{lines:?}");
             assert_eq!(lines.last(), Some(&law), "{}", method.name());
         }
     }
     let (_, exact) = derived("(1 + x^2)*x'' + x*x'^2 + x = 0", Method::Exact, None);
     let words = "exact wherever the motion is periodic, by quadrature of the energy";
-    assert!(
-        exact.validity.iter().any(|note| note.to_string() == words),
-        "{:?}",
-        exact.validity
-    );
-    for method in [
-        Method::Exact,
-        Method::Hamiltonian,
-        Method::EnergyBalance,
-        Method::HarmonicBalance,
-    ] {
+    assert!(exact.validity.iter().any(|note| note.to_string() == words), "{:?}", exact.validity);
+    for method in
+        [Method::Exact, Method::Hamiltonian, Method::EnergyBalance, Method::HarmonicBalance]
+    {
         let oscillator = Oscillator::parse("(1 + x^2)*x'' + x*x'^2 + x = 0").expect("an equation");
         let options = Options {
             method: Some(method),
             amplitude: Some(AmplitudeConvention::FirstHarmonic),
             ..Options::default()
         };
-        let refusal = solve(&oscillator, &options)
-            .expect_err("a refusal")
-            .to_string();
-        assert!(
-            refusal.contains("measures the amplitude as A = x(0)"),
-            "{refusal}"
-        );
+        let refusal = solve(&oscillator, &options).expect_err("a refusal").to_string();
+        assert!(refusal.contains("measures the amplitude as A = x(0)"), "{refusal}");
     }
 }
 
@@ -378,17 +300,9 @@ fn other_velocities_are_refused() {
             Method::HarmonicBalance,
             Method::HomotopyPerturbation,
         ] {
-            let options = Options {
-                method: Some(method),
-                ..Options::default()
-            };
-            let refusal = solve(&oscillator, &options)
-                .expect_err("a refusal")
-                .to_string();
-            assert!(
-                refusal.contains(&format!("`{term}`")),
-                "{equation}: {refusal}"
-            );
+            let options = Options { method: Some(method), ..Options::default() };
+            let refusal = solve(&oscillator, &options).expect_err("a refusal").to_string();
+            assert!(refusal.contains(&format!("`{term}`")), "{equation}: {refusal}");
         }
     }
 }
@@ -409,17 +323,12 @@ fn inertia_without_a_value_at_rest_is_refused_and_no_other() {
         let error = verdict.relative_error.expect("a frequency");
         assert!(error.abs() < 1e-9, "{equation}: {error:e}");
     }
-    for equation in [
-        "x'' + x + x'^2/x = 0",
-        "x'' + x + x'^2/x^2 = 0",
-        "x'' + x + x'^2*cos(x)/x = 0",
-    ] {
+    for equation in
+        ["x'' + x + x'^2/x = 0", "x'' + x + x'^2/x^2 = 0", "x'' + x + x'^2*cos(x)/x = 0"]
+    {
         let oscillator = Oscillator::parse(equation).expect(equation);
         for method in [Method::Exact, Method::EnergyBalance, Method::Hamiltonian] {
-            let options = Options {
-                method: Some(method),
-                ..Options::default()
-            };
+            let options = Options { method: Some(method), ..Options::default() };
             let refused = solve(&oscillator, &options).expect_err(equation);
             assert!(
                 refused.term().is_some_and(|term| equation.contains(term)),

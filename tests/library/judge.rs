@@ -17,39 +17,24 @@ use lindstedt::{Oscillator, Symbol};
 fn values(at: &[(&str, &str)]) -> Values {
     let mut values = Values::default();
     for (name, value) in at {
-        values
-            .insert(Symbol::new(name), value.parse().unwrap())
-            .unwrap();
+        values.insert(Symbol::new(name), value.parse().unwrap()).unwrap();
     }
     values
 }
 
 fn judged(equation: &str, method: Method, at: &[(&str, &str)]) -> Verification {
     let oscillator = Oscillator::parse(equation).unwrap();
-    let options = Options {
-        method: Some(method),
-        ..Options::default()
-    };
+    let options = Options { method: Some(method), ..Options::default() };
     let solution = solve(&oscillator, &options).unwrap();
     judge(&oscillator, &solution, &values(at), 0.01).unwrap()
 }
 
 fn compared(equation: &str, at: &[(&str, &str)]) -> Comparison {
-    compare(
-        &Oscillator::parse(equation).unwrap(),
-        &values(at),
-        None,
-        0.01,
-    )
-    .unwrap()
+    compare(&Oscillator::parse(equation).unwrap(), &values(at), None, 0.01).unwrap()
 }
 
 fn texts(verification: &Verification) -> String {
-    let texts: Vec<&str> = verification
-        .ranges
-        .iter()
-        .map(|range| range.text.as_str())
-        .collect();
+    let texts: Vec<&str> = verification.ranges.iter().map(|range| range.text.as_str()).collect();
     texts.join("\n")
 }
 
@@ -124,44 +109,27 @@ fn narrow_places_of_the_force_are_seen() {
 fn a_barrier_is_judged_by_quadrature_between_its_corners() {
     // One half of the period on each side of x = 0.323: a pendulum, and a linear spring so stiff
     // that gravity is a constant.
-    let linear = judged(
-        "x'' + sin(x) + 1e6*(x - 0.323)*H(x - 0.323) = 0",
-        Method::Exact,
-        &[("A", "-3/2")],
-    );
-    assert!(
-        (linear.true_frequency - 1.520_63).abs() < 1e-5,
-        "{}",
-        linear.true_frequency
-    );
+    let linear =
+        judged("x'' + sin(x) + 1e6*(x - 0.323)*H(x - 0.323) = 0", Method::Exact, &[("A", "-3/2")]);
+    assert!((linear.true_frequency - 1.520_63).abs() < 1e-5, "{}", linear.true_frequency);
     assert!(
         linear.frequency.is_some() && !texts(&linear).contains("no amplitude"),
         "{}",
         texts(&linear)
     );
-    let hertz = compared(
-        "x'' + sin(x) + 30406700*(x - 0.323)^(3/2)*H(x - 0.323) = 0",
-        &[("A", "-3/2")],
-    );
+    let hertz =
+        compared("x'' + sin(x) + 30406700*(x - 0.323)^(3/2)*H(x - 0.323) = 0", &[("A", "-3/2")]);
     let frequency = hertz.true_frequency.expect("a true frequency");
     assert!((frequency - 1.52).abs() < 2e-3, "{frequency}");
     for row in &hertz.rows {
         let everywhere = matches!(row.reach, Some(Reach::Everywhere(_)));
-        assert!(
-            row.frequency.is_some() || !everywhere,
-            "{}",
-            row.solution.title()
-        );
+        assert!(row.frequency.is_some() || !everywhere, "{}", row.solution.title());
     }
 }
 
 #[test]
 fn the_unit_of_time_and_length_does_not_matter() {
-    let reference = judged(
-        "x'' + sin(x) = 0",
-        Method::LindstedtPoincare,
-        &[("A", "3/2")],
-    );
+    let reference = judged("x'' + sin(x) = 0", Method::LindstedtPoincare, &[("A", "3/2")]);
     for (equation, amplitude, rate, length) in [
         ("x'' + 1e14*sin(x) = 0", "3/2", 1e7, 1.0),
         ("x'' + 1e16*sin(x) = 0", "3/2", 1e8, 1.0),
@@ -187,17 +155,8 @@ fn the_unit_of_time_and_length_does_not_matter() {
             texts(&found)
         );
         let radius = lindstedt::export::significant(std::f64::consts::PI * length, 3);
-        assert!(
-            texts(&found).contains(&format!("|A| < about {radius}")),
-            "{}",
-            texts(&found)
-        );
-        assert_eq!(
-            found.ranges.len(),
-            reference.ranges.len(),
-            "{}",
-            texts(&found)
-        );
+        assert!(texts(&found).contains(&format!("|A| < about {radius}")), "{}", texts(&found));
+        assert_eq!(found.ranges.len(), reference.ranges.len(), "{}", texts(&found));
     }
 }
 
@@ -212,28 +171,17 @@ fn the_radius_of_convergence_is_that_of_known_singularities() {
         ("x'' + exp(x) - 1 = 0", 2.398),
         ("x'' + 7*x + 1e-6*x^3 = 0", 7e6_f64.sqrt()),
     ] {
-        let found = texts(&judged(
-            equation,
-            Method::LindstedtPoincare,
-            &[("A", "1/2")],
-        ));
+        let found = texts(&judged(equation, Method::LindstedtPoincare, &[("A", "1/2")]));
         let (_, rest) = found.split_once("|A| < about ").unwrap();
         let estimate: f64 = rest.split_once(':').unwrap().0.parse().unwrap();
-        assert!(
-            (estimate / radius - 1.0).abs() < 0.005,
-            "{equation}: {found}"
-        );
+        assert!((estimate / radius - 1.0).abs() < 0.005, "{equation}: {found}");
     }
     let found = judged(
         "x'' + 2*x + eps*x^3 = 0",
         Method::LindstedtPoincare,
         &[("A", "3"), ("eps", "1/10")],
     );
-    assert!(
-        texts(&found).contains("|eps| < about 0.222:"),
-        "{}",
-        texts(&found)
-    );
+    assert!(texts(&found).contains("|eps| < about 0.222:"), "{}", texts(&found));
 }
 
 #[test]
@@ -265,11 +213,8 @@ fn the_range_ends_where_the_error_first_crosses_the_tolerance() {
                     continue;
                 }
                 let mut at = Values::default();
-                at.insert(
-                    "A".into(),
-                    Expr::number(lindstedt::exact::from_f64(size).unwrap()),
-                )
-                .unwrap();
+                at.insert("A".into(), Expr::number(lindstedt::exact::from_f64(size).unwrap()))
+                    .unwrap();
                 let Ok(motion) = exact_frequency(&oscillator, size) else {
                     continue;
                 };
@@ -308,11 +253,9 @@ fn what_velocities_add_has_its_range_and_its_backbone() {
     let cases: [(&str, &str, &Truth); 2] = [
         ("x'' + x + x*x'^2 = 0", "1", &with_velocity_squared),
         // P. M. Mathews and M. Lakshmanan, Q. Appl. Math. 32 (1974) 215: omega^2 = 1/(1 + k*A^2).
-        (
-            "(1 + x^2/2)*x'' - x*x'^2/2 + x = 0",
-            "2/3",
-            &|amplitude: f64| (1.0 + 0.5 * amplitude * amplitude).sqrt().recip(),
-        ),
+        ("(1 + x^2/2)*x'' - x*x'^2/2 + x = 0", "2/3", &|amplitude: f64| {
+            (1.0 + 0.5 * amplitude * amplitude).sqrt().recip()
+        }),
     ];
     for (equation, amplitude, truth) in cases {
         let oscillator = Oscillator::parse(equation).unwrap();
@@ -338,13 +281,8 @@ fn what_velocities_add_has_its_range_and_its_backbone() {
                 let mut at = Values::default();
                 at.insert("A".into(), exact).unwrap();
                 let table = compare(&oscillator, &at, None, 0.01).unwrap();
-                let row = table
-                    .rows
-                    .iter()
-                    .find(|row| row.solution.title() == title)
-                    .unwrap();
-                row.frequency
-                    .map_or(f64::INFINITY, |frequency| frequency / truth(size) - 1.0)
+                let row = table.rows.iter().find(|row| row.solution.title() == title).unwrap();
+                row.frequency.map_or(f64::INFINITY, |frequency| frequency / truth(size) - 1.0)
             };
             assert!(
                 error(inside).abs() < 0.01 && error(outside).abs() > 0.01,
@@ -368,17 +306,10 @@ fn exact_frequency(
 #[test]
 fn the_sides_of_a_well_are_told_apart() {
     let text = |equation: &str, amplitude: &str| {
-        texts(&judged(
-            equation,
-            Method::LindstedtPoincare,
-            &[("A", amplitude)],
-        ))
+        texts(&judged(equation, Method::LindstedtPoincare, &[("A", amplitude)]))
     };
     let quadratic = text("x'' + x - x^2 = 0", "1/4");
-    assert!(
-        quadratic.contains("periodic for -0.5 < A < 1: the separatrix"),
-        "{quadratic}"
-    );
+    assert!(quadratic.contains("periodic for -0.5 < A < 1: the separatrix"), "{quadratic}");
     let other = text("x'' + x + x^2 = 0", "-1/4");
     assert!(other.contains("periodic for -1 < A < 0.5"), "{other}");
     assert!(other.contains("up to A = -0."), "{other}");
@@ -389,24 +320,13 @@ fn the_sides_of_a_well_are_told_apart() {
 #[test]
 fn the_law_that_is_judged_is_named_and_the_other_has_its_own_error() {
     let oscillator = Oscillator::parse("x'' + x + eps*x^3 = 0").unwrap();
-    let options = Options {
-        order: Some(4),
-        ..Options::default()
-    };
+    let options = Options { order: Some(4), ..Options::default() };
     let solution = solve(&oscillator, &options).unwrap();
-    let found = judge(
-        &oscillator,
-        &solution,
-        &values(&[("A", "2"), ("eps", "1")]),
-        0.01,
-    )
-    .unwrap();
+    let found = judge(&oscillator, &solution, &values(&[("A", "2"), ("eps", "1")]), 0.01).unwrap();
     // s = eps*A^2 = 4 in omega^2 = 1 + 3 s/4 - 3 s^2/128 + 9 s^3/512 - 1779 s^4/131072 and in its
     // root, term by term.
-    let (squared, truth) = (
-        1.0 + 3.0 - 0.375 + 1.125 - 1779.0 * 256.0 / 131_072.0,
-        found.true_frequency,
-    );
+    let (squared, truth) =
+        (1.0 + 3.0 - 0.375 + 1.125 - 1779.0 * 256.0 / 131_072.0, found.true_frequency);
     let series = 1.0 + 1.5 - 21.0 / 16.0 + 81.0 * 64.0 / 2048.0 - 6549.0 * 256.0 / 262_144.0;
     assert_eq!(found.judged_on, "omega^2");
     assert!((found.relative_error.unwrap() - (f64::sqrt(squared) / truth - 1.0)).abs() < 1e-12);
@@ -428,11 +348,7 @@ fn coefficients_of_many_digits_cost_no_more_than_short_ones() {
         ),
         ("x'' + asin(sin(x)) = 0", None),
     ] {
-        let found = texts(&judged(
-            equation,
-            Method::LindstedtPoincare,
-            &[("A", "3/10")],
-        ));
+        let found = texts(&judged(equation, Method::LindstedtPoincare, &[("A", "3/10")]));
         match radius {
             Some(radius) => assert!(found.contains(radius), "{found}"),
             None => assert!(!found.contains("converges"), "{found}"),
@@ -460,35 +376,22 @@ fn against_a_pole(k: f64, d: f64, amplitude: f64) -> f64 {
     let rule = |step: f64| -> f64 {
         let point = |j: i32| {
             let t = f64::from(j) * step;
-            let (left, right) = (
-                1.0 / (1.0 + (-PI * t.sinh()).exp()),
-                1.0 / (1.0 + (PI * t.sinh()).exp()),
-            );
+            let (left, right) =
+                (1.0 / (1.0 + (-PI * t.sinh()).exp()), 1.0 / (1.0 + (PI * t.sinh()).exp()));
             // From the nearer turning point.
             let (u, fallen) = if t < 0.0 {
                 let growth = (length * left).exp_m1();
-                (
-                    low * (1.0 + growth),
-                    growth * d / (low * (1.0 + growth)) - length * left,
-                )
+                (low * (1.0 + growth), growth * d / (low * (1.0 + growth)) - length * left)
             } else {
                 let loss = -(-length * right).exp_m1();
-                (
-                    far * (1.0 - loss),
-                    length * right - loss * d / (far * (1.0 - loss)),
-                )
+                (far * (1.0 - loss), length * right - loss * d / (far * (1.0 - loss)))
             };
             length * PI * t.cosh() * left * right * u / (2.0 * k * fallen).sqrt()
         };
-        step * (-(3.3 / step) as i32..=(3.3 / step) as i32)
-            .map(point)
-            .sum::<f64>()
+        step * (-(3.3 / step) as i32..=(3.3 / step) as i32).map(point).sum::<f64>()
     };
     let (coarse, fine) = (rule(0.02), rule(0.01));
-    assert!(
-        (coarse / fine - 1.0).abs() < 1e-9,
-        "{amplitude}: {coarse} {fine}"
-    );
+    assert!((coarse / fine - 1.0).abs() < 1e-9, "{amplitude}: {coarse} {fine}");
     2.0 * fine
 }
 
@@ -496,11 +399,7 @@ fn against_a_pole(k: f64, d: f64, amplitude: f64) -> f64 {
 fn a_motion_that_turns_close_to_a_pole_is_timed() {
     for amplitude in ["-3", "-40", "-3000", "-1110000", "-9e8", "9/10"] {
         let table = compared("x'' + 0.468*x/(0.962 - x)^2 = 0", &[("A", amplitude)]);
-        let value: f64 = if amplitude == "9/10" {
-            0.9
-        } else {
-            amplitude.parse().unwrap()
-        };
+        let value: f64 = if amplitude == "9/10" { 0.9 } else { amplitude.parse().unwrap() };
         let start = if value < 0.0 {
             value
         } else {
@@ -519,15 +418,8 @@ fn a_motion_that_turns_close_to_a_pole_is_timed() {
         };
         let expected = std::f64::consts::TAU / against_a_pole(0.468, 0.962, start);
         let found = table.true_frequency.expect("a true frequency");
-        assert!(
-            (found / expected - 1.0).abs() < 1e-8,
-            "{amplitude}: {found} {expected}"
-        );
-        let exact = table
-            .rows
-            .iter()
-            .find(|row| row.solution.method == Method::Exact)
-            .unwrap();
+        assert!((found / expected - 1.0).abs() < 1e-8, "{amplitude}: {found} {expected}");
+        let exact = table.rows.iter().find(|row| row.solution.method == Method::Exact).unwrap();
         let error = exact.relative_error.expect("a frequency");
         assert!(error.abs() < 1e-10, "{amplitude}: {error}");
     }
@@ -537,24 +429,16 @@ fn a_motion_that_turns_close_to_a_pole_is_timed() {
 /// said.
 #[test]
 fn a_table_without_a_true_motion_has_all_its_rows() {
-    let table = compared(
-        "x'' - mu*(1 - x^2)*x' + x - eps*x^3 = 0",
-        &[("mu", "1/10"), ("eps", "1")],
-    );
+    let table =
+        compared("x'' - mu*(1 - x^2)*x' + x - eps*x^3 = 0", &[("mu", "1/10"), ("eps", "1")]);
     assert_eq!(table.true_frequency, None);
     let reason = table.reason.expect("a reason").to_string();
     assert!(reason.contains("the motion escapes"), "{reason}");
     let answered = table.rows.iter().map(|row| row.solution.method);
-    let all: BTreeSet<Method> = answered
-        .chain(table.refused.iter().map(|refused| refused.method))
-        .collect();
+    let all: BTreeSet<Method> =
+        answered.chain(table.refused.iter().map(|refused| refused.method)).collect();
     assert_eq!(all.len(), Method::ALL.len());
-    assert!(
-        table
-            .rows
-            .iter()
-            .all(|row| row.verdict.is_none() && row.relative_error.is_none())
-    );
+    assert!(table.rows.iter().all(|row| row.verdict.is_none() && row.relative_error.is_none()));
     let known = compared("x'' - mu*(1 - x^2)*x' + x = 0", &[("mu", "1/10")]);
     assert!(known.true_frequency.is_some() && known.reason.is_none());
     assert!(known.rows.iter().all(|row| row.verdict.is_some()));
@@ -565,24 +449,13 @@ fn a_table_without_a_true_motion_has_all_its_rows() {
 #[test]
 fn a_weak_pole_is_still_a_pole() {
     for (equation, amplitude, pole) in [
-        (
-            "x'' + 0.386*(1/(91.7 - x) - 1/91.7) + x = 0",
-            "43900000",
-            true,
-        ),
+        ("x'' + 0.386*(1/(91.7 - x) - 1/91.7) + x = 0", "43900000", true),
         ("x'' + x + 1/1000/(1 - x)^2 - 1/1000 = 0", "1e9", true),
-        (
-            "x'' + x + 1/(1e-8 + (x - 1)^2)/1000 - 1/1000/(1 + 1e-8) = 0",
-            "1000",
-            false,
-        ),
+        ("x'' + x + 1/(1e-8 + (x - 1)^2)/1000 - 1/1000/(1 + 1e-8) = 0", "1000", false),
         ("x'' + x + abs(x - 1)^(-1/2) - 1 = 0", "3", false),
     ] {
         let oscillator = Oscillator::parse(equation).unwrap();
-        let options = Options {
-            method: Some(Method::Hamiltonian),
-            ..Options::default()
-        };
+        let options = Options { method: Some(Method::Hamiltonian), ..Options::default() };
         let solution = solve(&oscillator, &options).unwrap();
         let given = BTreeMap::from([(Symbol::new("A"), amplitude.parse().unwrap())]);
         let found = lindstedt::method::numbers::evaluate(&oscillator, &solution, &given);
@@ -596,11 +469,7 @@ fn a_weak_pole_is_still_a_pole() {
 fn laws_have_numbers_where_there_is_a_motion_and_only_there() {
     let at = |equation: &str, method: Method, order: Option<u32>, amplitude: f64| {
         let oscillator = Oscillator::parse(equation).unwrap();
-        let options = Options {
-            method: Some(method),
-            order,
-            ..Options::default()
-        };
+        let options = Options { method: Some(method), order, ..Options::default() };
         let solution = solve(&oscillator, &options).unwrap();
         let given = BTreeMap::from([(Symbol::new("A"), amplitude)]);
         lindstedt::method::numbers::evaluate(&oscillator, &solution, &given)
@@ -618,25 +487,13 @@ fn laws_have_numbers_where_there_is_a_motion_and_only_there() {
             matches!(&found, Err(reason) if reason.to_string().contains("no periodic motion")),
             "{equation}: {found:?}"
         );
-        assert!(
-            at(equation, Method::Exact, None, 0.1 * amplitude).is_ok(),
-            "{equation}"
-        );
+        assert!(at(equation, Method::Exact, None, 0.1 * amplitude).is_ok(), "{equation}");
     }
     // omega^2 = f'(A/2) = 6/cosh(3 A/2)^2.
     for amplitude in [1.0, 20.0, 100.0] {
-        let found = at(
-            "x'' + 2*tanh(3*x) = 0",
-            Method::FrequencyFormula,
-            None,
-            amplitude,
-        )
-        .unwrap();
+        let found = at("x'' + 2*tanh(3*x) = 0", Method::FrequencyFormula, None, amplitude).unwrap();
         let expected = 24.0 * (-3.0 * amplitude).exp() / (1.0 + (-3.0 * amplitude).exp()).powi(2);
-        assert!(
-            (found / expected - 1.0).abs() < 1e-13,
-            "{amplitude}: {found} {expected}"
-        );
+        assert!((found / expected - 1.0).abs() < 1e-13, "{amplitude}: {found} {expected}");
     }
     // With e = exp(-c A) the period is 4 K(1 - m) sech, 1 - m = 4 e/(1 + e)^2 and K(m) = ln 4 -
     // ln(1 - m)/2 for tiny 1 - m.
@@ -645,10 +502,7 @@ fn laws_have_numbers_where_there_is_a_motion_and_only_there() {
         let complete = 4.0_f64.ln() + 0.5 * (3.0 * amplitude - 4.0_f64.ln());
         let logarithm =
             (6.0_f64.sqrt() * PI / 2.0).ln() + 1.5 * amplitude - 2.0_f64.ln() - complete.ln();
-        assert!(
-            (0.5 * found.ln() / logarithm - 1.0).abs() < 1e-13,
-            "{amplitude}: {found}"
-        );
+        assert!((0.5 * found.ln() / logarithm - 1.0).abs() < 1e-13, "{amplitude}: {found}");
     }
     // A law does not depend on the unit of length: with x = 1e-12 u the coefficients overflow in
     // its higher powers.
@@ -658,10 +512,7 @@ fn laws_have_numbers_where_there_is_a_motion_and_only_there() {
         for amplitude in [0.1, 0.615, 2.0] {
             let expected = at(plain, method, Some(2), amplitude).unwrap();
             let found = at(small, method, Some(2), 1e-12 * amplitude).unwrap();
-            assert!(
-                (found / expected - 1.0).abs() < 1e-11,
-                "{amplitude}: {found} {expected}"
-            );
+            assert!((found / expected - 1.0).abs() < 1e-11, "{amplitude}: {found} {expected}");
         }
     }
 }
@@ -674,11 +525,8 @@ fn a_pole_before_the_amplitude_ends_the_range() {
     for (b, amplitude) in [("0.0578", "2/5"), ("0.0578", "1/10"), ("0.05", "3/10")] {
         let pole = (8.0 * b.parse::<f64>().unwrap() / 7.0).sqrt();
         let table = compared(&format!("x'' + x + {b}*x^5 + x^7 = 0"), &[("A", amplitude)]);
-        let row = table
-            .rows
-            .iter()
-            .find(|row| row.solution.method == Method::Pade)
-            .expect("a quotient");
+        let row =
+            table.rows.iter().find(|row| row.solution.method == Method::Pade).expect("a quotient");
         // 35 A^6/64 is a 6500th there: the error is 1 % within a hundredth of the pole.
         let end = row.reach.and_then(|reach| reach.end()).expect("a crossing");
         assert!((0.985 * pole..pole).contains(&end), "{end} {pole}");
@@ -695,23 +543,10 @@ fn a_motion_of_one_term_through_a_pole_does_not_apply() {
     assert!((truth / expected - 1.0).abs() < 1e-6, "{truth} {expected}");
     let mut through = 0;
     for row in &table.rows {
-        let one_term = row
-            .solution
-            .displacement
-            .harmonics()
-            .iter()
-            .all(|entry| entry.0 <= 1);
+        let one_term = row.solution.displacement.harmonics().iter().all(|entry| entry.0 <= 1);
         if one_term && row.solution.method != Method::Exact {
-            let reason = row
-                .reason
-                .as_ref()
-                .map(ToString::to_string)
-                .unwrap_or_default();
-            assert!(
-                reason.contains("runs through x = 1"),
-                "{}: {reason}",
-                row.solution.title()
-            );
+            let reason = row.reason.as_ref().map(ToString::to_string).unwrap_or_default();
+            assert!(reason.contains("runs through x = 1"), "{}: {reason}", row.solution.title());
             assert!(row.frequency.is_none() && row.verdict != Some(Verdict::Pass));
             through += 1;
         }
@@ -727,25 +562,10 @@ fn harmonic_balance_follows_the_branch_from_rest() {
     type Force = fn(f64) -> f64;
     let quadratic: Force = |x| x + 5.0 * x * x + 10.0 * x.powi(3);
     let cases: [(&str, Force, &[f64], u32); 4] = [
-        (
-            "x'' + x + 5*x^2 + 10*x^3 = 0",
-            quadratic,
-            &[0.1, 0.7, 0.8, 0.9, 1.0],
-            10,
-        ),
+        ("x'' + x + 5*x^2 + 10*x^3 = 0", quadratic, &[0.1, 0.7, 0.8, 0.9, 1.0], 10),
         ("x'' + x^3 - x^4 = 0", |x| x.powi(3) - x.powi(4), &[0.2], 8),
-        (
-            "x'' + x^3 - x^4 + x^5 = 0",
-            |x| x.powi(3) - x.powi(4) + x.powi(5),
-            &[0.5, 2.0],
-            10,
-        ),
-        (
-            "x'' + x - 3*x^2 + 3*x^3 = 0",
-            |x| x - 3.0 * x * x + 3.0 * x.powi(3),
-            &[0.4, 1.5],
-            10,
-        ),
+        ("x'' + x^3 - x^4 + x^5 = 0", |x| x.powi(3) - x.powi(4) + x.powi(5), &[0.5, 2.0], 10),
+        ("x'' + x - 3*x^2 + 3*x^3 = 0", |x| x - 3.0 * x * x + 3.0 * x.powi(3), &[0.4, 1.5], 10),
     ];
     for (equation, force, amplitudes, order) in cases {
         let oscillator = Oscillator::parse(equation).unwrap();
@@ -770,19 +590,13 @@ fn harmonic_balance_follows_the_branch_from_rest() {
             let motion = found.motion.expect("a motion");
             // The odd harmonics together.
             let first = 0.5 * (motion.evaluate(0.0) - motion.evaluate(std::f64::consts::PI));
-            assert!(
-                first.abs() > 0.5 * amplitude,
-                "{equation} {amplitude}: {first}"
-            );
+            assert!(first.abs() > 0.5 * amplitude, "{equation} {amplitude}: {first}");
         }
     }
     let oscillator = Oscillator::parse("x'' + x + 5*x^2 + 10*x^3 = 0").unwrap();
     let solution = solve(
         &oscillator,
-        &Options {
-            method: Some(Method::HarmonicBalance),
-            ..Options::default()
-        },
+        &Options { method: Some(Method::HarmonicBalance), ..Options::default() },
     )
     .unwrap();
     let mut before = 1.0;
@@ -791,11 +605,7 @@ fn harmonic_balance_follows_the_branch_from_rest() {
         let law = lindstedt::method::numbers::evaluate(&oscillator, &solution, &at)
             .unwrap()
             .frequency_squared;
-        assert!(
-            (law.sqrt() - before).abs() < 0.06,
-            "{k}: {} {before}",
-            law.sqrt()
-        );
+        assert!((law.sqrt() - before).abs() < 0.06, "{k}: {} {before}", law.sqrt());
         before = law.sqrt();
         if k == 80 {
             assert!((before - 2.6597).abs() < 1e-3, "{before}");
@@ -811,15 +621,10 @@ fn a_pendulum_that_goes_over_the_top_is_said_not_to_come_back() {
     let oscillator = Oscillator::parse(equation).expect(equation);
     let solution = solve(&oscillator, &Options::default()).expect(equation);
     let at = |amplitude: &str| {
-        format!("gamma = 100, xc = 3/10, A = {amplitude}")
-            .parse()
-            .expect("values")
+        format!("gamma = 100, xc = 3/10, A = {amplitude}").parse().expect("values")
     };
     let refused = judge(&oscillator, &solution, &at("1"), 0.01).expect_err("it does not come back");
-    let escapes = matches!(
-        refused,
-        VerificationError::Period(PeriodError::Escapes { .. })
-    );
+    let escapes = matches!(refused, VerificationError::Period(PeriodError::Escapes { .. }));
     assert!(escapes, "{refused}");
     assert!(judge(&oscillator, &solution, &at("1/2"), 0.01).is_ok());
 }
@@ -832,37 +637,21 @@ fn a_law_that_is_off_near_rest_has_a_range_further_out() {
         let oscillator = Oscillator::parse(equation).expect(equation);
         let solution = solve(&oscillator, &Options::default()).expect(equation);
         let at = |amplitude: f64| {
-            judge(
-                &oscillator,
-                &solution,
-                &values(&[("A", &amplitude.to_string())]),
-                0.01,
-            )
-            .expect(equation)
+            judge(&oscillator, &solution, &values(&[("A", &amplitude.to_string())]), 0.01)
+                .expect(equation)
         };
         let asked = at(1.0);
-        let range = asked
-            .ranges
-            .iter()
-            .find(|range| range.text.starts_with("within"))
-            .expect("a range");
+        let range =
+            asked.ranges.iter().find(|range| range.text.starts_with("within")).expect("a range");
         let ends: Vec<f64> = range
             .text
             .split(" = ")
             .skip(1)
             .filter_map(|rest| rest.split([' ', ',']).next()?.parse().ok())
             .collect();
-        assert!(
-            asked.verdict == Verdict::Pass && !range.outside,
-            "{equation}: {}",
-            range.text
-        );
+        assert!(asked.verdict == Verdict::Pass && !range.outside, "{equation}: {}", range.text);
         let passes = |amplitude: f64| at(amplitude).verdict == Verdict::Pass;
-        assert!(
-            passes(1.01 * ends[0]) && !passes(0.99 * ends[0]),
-            "{equation}: {}",
-            range.text
-        );
+        assert!(passes(1.01 * ends[0]) && !passes(0.99 * ends[0]), "{equation}: {}", range.text);
         if !range.text.contains("looked at") {
             assert!(
                 passes(0.99 * ends[1]) && !passes(1.01 * ends[1]),
@@ -878,14 +667,8 @@ fn a_law_that_is_off_near_rest_has_a_range_further_out() {
 #[test]
 fn a_table_expands_in_the_amplitude_where_no_parameter_is_small() {
     for (equation, at) in [
-        (
-            "x'' + x + eps*x^3 + d*x^2 = 0",
-            vec![("A", "1/5"), ("eps", "1/10"), ("d", "1/5")],
-        ),
-        (
-            "x'' + x + eps*x^3 + x^5 = 0",
-            vec![("A", "1/5"), ("eps", "1/10")],
-        ),
+        ("x'' + x + eps*x^3 + d*x^2 = 0", vec![("A", "1/5"), ("eps", "1/10"), ("d", "1/5")]),
+        ("x'' + x + eps*x^3 + x^5 = 0", vec![("A", "1/5"), ("eps", "1/10")]),
         ("x'' + eps*x + x^3 = 0", vec![("A", "1/5"), ("eps", "1")]),
     ] {
         let table = compared(equation, &at);
@@ -893,10 +676,7 @@ fn a_table_expands_in_the_amplitude_where_no_parameter_is_small() {
         let row = rows.find(|row| row.solution.method == Method::LindstedtPoincare);
         let row = row.unwrap_or_else(|| panic!("{equation}: {:?}", table.refused));
         assert_eq!(row.solution.small_parameter, Symbol::new("A"), "{equation}");
-        assert!(
-            row.relative_error.is_some_and(|error| error.abs() < 1e-4),
-            "{equation}"
-        );
+        assert!(row.relative_error.is_some_and(|error| error.abs() < 1e-4), "{equation}");
     }
 }
 
@@ -922,31 +702,16 @@ fn every_formula_of_a_table_has_its_definitions() {
 fn a_verdict_says_what_it_is_reached_on() {
     let words = |equation: &str, method: Method, at: &str| {
         let oscillator = Oscillator::parse(equation).expect(equation);
-        let options = Options {
-            method: Some(method),
-            order: Some(1),
-            ..Options::default()
-        };
+        let options = Options { method: Some(method), order: Some(1), ..Options::default() };
         let solution = solve(&oscillator, &options).expect(equation);
         let judged = judge(&oscillator, &solution, &at.parse().expect(at), 0.01).expect(equation);
         judged.verdict_in_words(0.01)
     };
     let balanced = words("x'' + x + x^3 = 0", Method::HarmonicBalance, "A = 1");
     assert_eq!(balanced, "pass: frequency within 1 %, motion off by 4.47 %");
-    let decays = words(
-        "x'' + 2*zeta*x' + sin(x) = 0",
-        Method::Averaging,
-        "zeta = 1/100, A = 3/2",
-    );
-    assert_eq!(
-        decays,
-        "fail: frequency within 1 %, amplitude off by 2.43 %"
-    );
-    let dry = words(
-        "x'' + x + alpha*sgn(x') = 0",
-        Method::Averaging,
-        "alpha = 1/100, A = 1",
-    );
+    let decays = words("x'' + 2*zeta*x' + sin(x) = 0", Method::Averaging, "zeta = 1/100, A = 3/2");
+    assert_eq!(decays, "fail: frequency within 1 %, amplitude off by 2.43 %");
+    let dry = words("x'' + x + alpha*sgn(x') = 0", Method::Averaging, "alpha = 1/100, A = 1");
     assert_eq!(dry, "pass: frequency within 1 %, amplitude within 1 %");
     let small = words("x'' + x + x^3 = 0", Method::HarmonicBalance, "A = 1/10");
     assert_eq!(small, "pass (|relative error| <= 1 %)");
@@ -963,40 +728,18 @@ fn an_amplitude_of_the_other_convention_is_converted() {
     let first = amplitude * std::f64::consts::TAU / (m.sqrt() * quarter) * q.sqrt() / (1.0 + q);
     let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0").expect("an equation");
     for (convention, given, wanted, expected) in [
-        (
-            AmplitudeConvention::FirstHarmonic,
-            ("A", amplitude),
-            "a",
-            first,
-        ),
+        (AmplitudeConvention::FirstHarmonic, ("A", amplitude), "a", first),
         (AmplitudeConvention::Initial, ("a", first), "A", amplitude),
     ] {
-        let options = Options {
-            amplitude: Some(convention),
-            ..Options::default()
-        };
+        let options = Options { amplitude: Some(convention), ..Options::default() };
         let solution = solve(&duffing, &options).expect("a law");
         let at = values(&[("eps", "1/2"), (given.0, &given.1.to_string())]);
         let judged = judge(&duffing, &solution, &at, 0.05).expect("a verdict");
-        let converted = judged
-            .at
-            .get(Symbol::new(wanted))
-            .expect("the amplitude of the formula");
-        assert!(
-            (converted / expected - 1.0).abs() < 1e-9,
-            "{wanted}: {converted}, {expected}"
-        );
+        let converted = judged.at.get(Symbol::new(wanted)).expect("the amplitude of the formula");
+        assert!((converted / expected - 1.0).abs() < 1e-9, "{wanted}: {converted}, {expected}");
         let truth = std::f64::consts::FRAC_PI_2 * (1.0 + eps * amplitude.powi(2)).sqrt() / quarter;
-        assert!(
-            (judged.true_frequency / truth - 1.0).abs() < 1e-9,
-            "{}",
-            judged.true_frequency
-        );
-        assert!(
-            texts(&judged).contains("has the first harmonic a = "),
-            "{}",
-            texts(&judged)
-        );
+        assert!((judged.true_frequency / truth - 1.0).abs() < 1e-9, "{}", judged.true_frequency);
+        assert!(texts(&judged).contains("has the first harmonic a = "), "{}", texts(&judged));
     }
 }
 
@@ -1012,22 +755,14 @@ fn latex_says_what_a_verdict_is_reached_on() {
         ("x'' + x^3 = 0", Method::HarmonicBalance, vec![("A", "1")]),
     ] {
         let oscillator = Oscillator::parse(equation).unwrap();
-        let options = Options {
-            method: Some(method),
-            order: Some(1),
-            ..Options::default()
-        };
+        let options = Options { method: Some(method), order: Some(1), ..Options::default() };
         let solution = solve(&oscillator, &options).unwrap();
         let found = judge(&oscillator, &solution, &values(&at), 0.03).unwrap();
         let words = found.verdict_in_words(0.03);
         let document = lindstedt::report::solution(&solution, Some(&found), 0.03);
         let latex = lindstedt::export::latex::document(&document);
         let both = found.verdict_on_both(0.03).is_some();
-        assert_eq!(
-            latex.contains(&format!("verdict {words}\n")),
-            both,
-            "{words}: {latex}"
-        );
+        assert_eq!(latex.contains(&format!("verdict {words}\n")), both, "{words}: {latex}");
         assert!(both || latex.contains("verdict pass\n"), "{latex}");
     }
 }

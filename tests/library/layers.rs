@@ -17,10 +17,8 @@ impl Layers {
     /// two empty lines together, and on top of them the program.
     fn of_crates() -> Self {
         let mut layers: Vec<Vec<String>> = Vec::new();
-        let libraries: Vec<String> = source_folders()
-            .iter()
-            .map(|folder| library(folder))
-            .collect();
+        let libraries: Vec<String> =
+            source_folders().iter().map(|folder| library(folder)).collect();
         for block in libraries.iter().flat_map(|library| library.split("\n\n")) {
             let names: Vec<String> = block.lines().filter_map(declared).collect();
             if !names.is_empty() {
@@ -32,30 +30,19 @@ impl Layers {
     }
 
     fn layer(&self, module: &str) -> Option<usize> {
-        self.0
-            .iter()
-            .position(|modules| modules.iter().any(|name| name == module))
+        self.0.iter().position(|modules| modules.iter().any(|name| name == module))
     }
 }
 
 /// The members of the workspace by the way of the data, lowest first; the package of the program
 /// stands above them all.
-const CRATES: [&str; 7] = [
-    "numeric",
-    "expr",
-    "series",
-    "dynamics",
-    "oscillator",
-    "verify",
-    "impact",
-];
+const CRATES: [&str; 7] =
+    ["numeric", "expr", "series", "dynamics", "oscillator", "verify", "impact"];
 
 /// The folders of sources, lowest crate first.
 fn source_folders() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let members = CRATES
-        .iter()
-        .map(|name| root.join("crates").join(name).join("src"));
+    let members = CRATES.iter().map(|name| root.join("crates").join(name).join("src"));
     members.chain([root.join("src")]).collect()
 }
 
@@ -70,10 +57,7 @@ fn sources() -> Vec<(PathBuf, PathBuf)> {
     let mut sources = Vec::new();
     for folder in source_folders() {
         for file in source_files(&folder) {
-            let inside = file
-                .strip_prefix(&folder)
-                .expect("a file in src")
-                .to_path_buf();
+            let inside = file.strip_prefix(&folder).expect("a file in src").to_path_buf();
             sources.push((file, inside));
         }
     }
@@ -82,10 +66,7 @@ fn sources() -> Vec<(PathBuf, PathBuf)> {
 
 /// The names that the crates hand on from their modules.
 fn all_handed_on() -> Vec<(String, String)> {
-    source_folders()
-        .iter()
-        .flat_map(|folder| handed_on(&library(folder)))
-        .collect()
+    source_folders().iter().flat_map(|folder| handed_on(&library(folder))).collect()
 }
 
 /// The module that a line declares, public or not.
@@ -107,11 +88,7 @@ type Use = (usize, String);
 /// Every module of the crate that a text names by a path from the root.
 fn uses(source: &Source, handed_on: &[(String, String)]) -> Vec<Use> {
     let code = without_comments(without_unit_tests(source.text));
-    let roots = [
-        "crate::".to_owned(),
-        "lindstedt::".to_owned(),
-        "super::".repeat(source.depth),
-    ];
+    let roots = ["crate::".to_owned(), "lindstedt::".to_owned(), "super::".repeat(source.depth)];
     let mut found = Vec::new();
     for root in &roots {
         for (place, _) in code.match_indices(root.as_str()) {
@@ -123,9 +100,7 @@ fn uses(source: &Source, handed_on: &[(String, String)]) -> Vec<Use> {
             }
             let line = code[..place].matches('\n').count() + 1;
             found.extend(
-                first_names(&code[place + root.len()..])
-                    .into_iter()
-                    .map(|name| (line, name)),
+                first_names(&code[place + root.len()..]).into_iter().map(|name| (line, name)),
             );
         }
     }
@@ -135,10 +110,7 @@ fn uses(source: &Source, handed_on: &[(String, String)]) -> Vec<Use> {
         let handed = handed_on.iter().find(|entry| entry.0 == name);
         handed.map_or(name, |entry| entry.1.clone())
     };
-    found
-        .into_iter()
-        .map(|(line, name)| (line, module(name)))
-        .collect()
+    found.into_iter().map(|(line, name)| (line, module(name))).collect()
 }
 
 /// `a` of `a::b`, or `a` and `c` of `{a::b, c::{d, e}}`.
@@ -164,9 +136,7 @@ fn first_names(path: &str) -> Vec<String> {
 }
 
 fn leading_name(path: &str) -> String {
-    path.chars()
-        .take_while(|&letter| letter.is_alphanumeric() || letter == '_')
-        .collect()
+    path.chars().take_while(|&letter| letter.is_alphanumeric() || letter == '_').collect()
 }
 
 fn without_unit_tests(text: &str) -> &str {
@@ -184,10 +154,7 @@ fn offences(source: &Source, handed_on: &[(String, String)], layers: &Layers) ->
     let own = source.module;
     let allowed = |used: &str| {
         used == own
-            || layers
-                .layer(used)
-                .zip(layers.layer(own))
-                .is_some_and(|(used, own)| used < own)
+            || layers.layer(used).zip(layers.layer(own)).is_some_and(|(used, own)| used < own)
     };
     uses(source, handed_on)
         .into_iter()
@@ -238,9 +205,7 @@ fn source_files(folder: &Path) -> Vec<PathBuf> {
 /// folder.
 fn module_path(inside: &Path) -> Vec<String> {
     let names = inside.with_extension("");
-    let names = names
-        .components()
-        .map(|part| part.as_os_str().to_string_lossy().into_owned());
+    let names = names.components().map(|part| part.as_os_str().to_string_lossy().into_owned());
     names.filter(|name| name != "mod").collect()
 }
 
@@ -248,10 +213,7 @@ fn module_path(inside: &Path) -> Vec<String> {
 fn lower_layers_never_use_upper_ones() {
     let handed_on = all_handed_on();
     for name in ["Oscillator", "Motion", "Method", "judge"] {
-        assert!(
-            handed_on.iter().any(|entry| entry.0 == name),
-            "{name}: {handed_on:?}"
-        );
+        assert!(handed_on.iter().any(|entry| entry.0 == name), "{name}: {handed_on:?}");
     }
     let layers = Layers::of_crates();
     let (mut wrong, mut seen, mut uses_seen) = (Vec::new(), Vec::new(), 0);
@@ -262,11 +224,7 @@ fn lower_layers_never_use_upper_ones() {
             continue;
         }
         let text = std::fs::read_to_string(&file).expect("a source file");
-        let source = Source {
-            module,
-            depth: names.len(),
-            text: &text,
-        };
+        let source = Source { module, depth: names.len(), text: &text };
         uses_seen += uses(&source, &handed_on).len();
         if layers.layer(module).is_none() {
             wrong.push(format!(
@@ -275,23 +233,11 @@ fn lower_layers_never_use_upper_ones() {
             ));
         }
         let offences = offences(&source, &handed_on, &layers);
-        wrong.extend(
-            offences
-                .iter()
-                .map(|offence| format!("{}:{offence}", file.display())),
-        );
+        wrong.extend(offences.iter().map(|offence| format!("{}:{offence}", file.display())));
         seen.push(module.to_owned());
     }
-    assert!(
-        wrong.is_empty(),
-        "the layers are broken:\n{}",
-        wrong.join("\n")
-    );
-    assert!(
-        seen.len() > 30 && uses_seen > 100,
-        "only {} files with {uses_seen} uses",
-        seen.len()
-    );
+    assert!(wrong.is_empty(), "the layers are broken:\n{}", wrong.join("\n"));
+    assert!(seen.len() > 30 && uses_seen > 100, "only {} files with {uses_seen} uses", seen.len());
     // A layer without a file would protect nothing.
     let modules = layers.0.iter().flatten();
     let empty: Vec<_> = modules.filter(|name| !seen.contains(name)).collect();
@@ -305,13 +251,7 @@ fn crates_use_only_those_before_them() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let folders = std::fs::read_dir(root.join("crates")).expect("crates");
     let mut folders: Vec<String> = folders
-        .map(|entry| {
-            entry
-                .expect("an entry")
-                .file_name()
-                .to_string_lossy()
-                .into_owned()
-        })
+        .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
         .collect();
     folders.sort();
     let mut named = CRATES.to_vec();
@@ -320,10 +260,7 @@ fn crates_use_only_those_before_them() {
     for (place, name) in CRATES.iter().enumerate() {
         let manifest = std::fs::read_to_string(root.join("crates").join(name).join("Cargo.toml"))
             .expect("a manifest");
-        let used = manifest
-            .split("[dependencies]")
-            .nth(1)
-            .expect("dependencies");
+        let used = manifest.split("[dependencies]").nth(1).expect("dependencies");
         let used = used.split("[dev-dependencies]").next().unwrap_or(used);
         for line in used.lines() {
             let Some(used) = line.strip_prefix("lindstedt-") else {
@@ -351,10 +288,7 @@ fn one_order_is_told_everywhere() {
         let names = path.split_once("::")?.1.trim_matches(['{', '}']);
         Some(names.split(", ").map(str::to_owned).collect::<Vec<_>>())
     });
-    let own = facade
-        .lines()
-        .filter(|line| line.starts_with("pub mod "))
-        .filter_map(declared);
+    let own = facade.lines().filter(|line| line.starts_with("pub mod ")).filter_map(declared);
     let mut public: Vec<String> = handed.flatten().chain(own).collect();
     documented.sort();
     public.sort();
@@ -366,14 +300,9 @@ fn one_order_is_told_everywhere() {
         let modules: Vec<String> = text.lines().filter_map(declared).collect();
         let told = |line: &&str| {
             let words: Vec<&str> = line.split_whitespace().collect();
-            modules
-                .iter()
-                .all(|module| words.contains(&module.as_str()))
+            modules.iter().all(|module| words.contains(&module.as_str()))
         };
-        assert!(
-            page.lines().any(|line| told(&line)),
-            "no line of ARCHITECTURE.md has {modules:?}"
-        );
+        assert!(page.lines().any(|line| told(&line)), "no line of ARCHITECTURE.md has {modules:?}");
     }
 }
 
@@ -386,10 +315,7 @@ fn motions_in_numbers_stand_on_runge_kutta_alone() {
         let names = |name: &&str| {
             text.contains(&format!("{name}::")) || text.contains(&format!("numeric::{name};"))
         };
-        ["ode", "period", "return_map"]
-            .into_iter()
-            .filter(names)
-            .collect::<Vec<_>>()
+        ["ode", "period", "return_map"].into_iter().filter(names).collect::<Vec<_>>()
     };
     assert_eq!(used("use crate::numeric::return_map;"), ["return_map"]);
     for file in source_files(&folder) {
@@ -408,17 +334,13 @@ fn motions_in_numbers_stand_on_runge_kutta_alone() {
 fn the_engine_holds_no_publication() {
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("crates");
     let mut held = Vec::new();
-    for (file, _) in sources()
-        .into_iter()
-        .filter(|(file, _)| file.starts_with(&crates))
-    {
+    for (file, _) in sources().into_iter().filter(|(file, _)| file.starts_with(&crates)) {
         let text = std::fs::read_to_string(&file).expect("a source file");
         let numbered = |(place, name): (usize, &str)| {
             text[place + name.len()..].starts_with(|digit: char| digit.is_ascii_digit())
         };
-        let of_a_table = ["Table ", "TABLE_"]
-            .iter()
-            .any(|name| text.match_indices(name).any(numbered));
+        let of_a_table =
+            ["Table ", "TABLE_"].iter().any(|name| text.match_indices(name).any(numbered));
         if of_a_table || text.contains("PRINTED_") {
             held.push(file);
         }
@@ -432,14 +354,9 @@ fn the_engine_holds_no_publication() {
 fn long_integers_come_from_one_place() {
     let named = |(file, _): &(PathBuf, PathBuf)| {
         let text = std::fs::read_to_string(file).expect("a source file");
-        ["dashu_int", "num_rational"]
-            .iter()
-            .any(|name| text.contains(name))
+        ["dashu_int", "num_rational"].iter().any(|name| text.contains(name))
     };
-    let files = sources()
-        .into_iter()
-        .filter(named)
-        .map(|(_, inside)| inside);
+    let files = sources().into_iter().filter(named).map(|(_, inside)| inside);
     let (inside, outside): (Vec<_>, Vec<_>) = files.partition(|file| file.starts_with("exact"));
     assert!(!inside.is_empty());
     assert_eq!(outside, Vec::<PathBuf>::new());
@@ -472,11 +389,8 @@ const TRUE_MODULES: [&str; 3] = ["period", "periodic", "return_map"];
 /// source in `src/`.
 fn over_the_wall(file: &str, text: &str, handed_on: &[(String, String)]) -> Vec<String> {
     let names = module_path(Path::new(file));
-    let source = Source {
-        module: names.first().map_or("", String::as_str),
-        depth: names.len(),
-        text,
-    };
+    let source =
+        Source { module: names.first().map_or("", String::as_str), depth: names.len(), text };
     let makes_truth = TRUTH.contains(&file);
     let code = without_comments(without_unit_tests(text));
     // The names behind every `root`, with their lines.
@@ -536,11 +450,7 @@ fn the_judge_and_the_methods_share_no_truth() {
         let crossed = over_the_wall(&file, &text, &handed_on);
         wrong.extend(crossed.iter().map(|message| format!("{file}:{message}")));
     }
-    assert!(
-        wrong.is_empty(),
-        "the wall is broken:\n{}",
-        wrong.join("\n")
-    );
+    assert!(wrong.is_empty(), "the wall is broken:\n{}", wrong.join("\n"));
     assert_eq!(truths, TRUTH.len(), "a file of the truth is gone");
 }
 
@@ -549,21 +459,9 @@ fn a_hole_in_the_wall_is_seen() {
     let handed_on =
         handed_on("pub use method::{Options, solve};\npub use solution::{Method, Solution};\n");
     for (file, text, expected) in [
-        (
-            "numeric/period.rs",
-            "use crate::method::numbers;",
-            "1: uses `method`",
-        ),
-        (
-            "numeric/return_map.rs",
-            "\nlet law = crate::solve(&x);",
-            "2: uses `method`",
-        ),
-        (
-            "verify/orbit.rs",
-            "use super::super::method::one_term;",
-            "1: uses `method`",
-        ),
+        ("numeric/period.rs", "use crate::method::numbers;", "1: uses `method`"),
+        ("numeric/return_map.rs", "\nlet law = crate::solve(&x);", "2: uses `method`"),
+        ("verify/orbit.rs", "use super::super::method::one_term;", "1: uses `method`"),
         (
             "verify/orbit.rs",
             "use super::{VerificationError, formula_frequency};",
@@ -574,21 +472,9 @@ fn a_hole_in_the_wall_is_seen() {
             "use crate::solution::{AmplitudeConvention, Law};",
             "1: uses `crate::solution::Law`",
         ),
-        (
-            "verify/backbone.rs",
-            "use crate::verify::judge;",
-            "1: uses `crate::verify::judge`",
-        ),
-        (
-            "verify/backbone.rs",
-            "use crate::Solution;",
-            "1: uses `solution`",
-        ),
-        (
-            "verify/free_motion.rs",
-            "use crate::{solution::Law, symbol};",
-            "1: uses `solution`",
-        ),
+        ("verify/backbone.rs", "use crate::verify::judge;", "1: uses `crate::verify::judge`"),
+        ("verify/backbone.rs", "use crate::Solution;", "1: uses `solution`"),
+        ("verify/free_motion.rs", "use crate::{solution::Law, symbol};", "1: uses `solution`"),
         (
             "method/exact.rs",
             "use crate::numeric::period::conservative_period;",
@@ -606,10 +492,7 @@ fn a_hole_in_the_wall_is_seen() {
         ),
     ] {
         let found = over_the_wall(file, text, &handed_on);
-        assert!(
-            found.iter().any(|message| message == expected),
-            "{file}: {text}: {found:?}"
-        );
+        assert!(found.iter().any(|message| message == expected), "{file}: {text}: {found:?}");
     }
     for (file, text) in [
         (
@@ -633,11 +516,7 @@ fn a_hole_in_the_wall_is_seen() {
             "use crate::numeric::ode::root;\n#[cfg(test)]\nmod tests {\n    use crate::method::solve;\n}\n",
         ),
     ] {
-        assert_eq!(
-            over_the_wall(file, text, &handed_on),
-            Vec::<String>::new(),
-            "{file}: {text}"
-        );
+        assert_eq!(over_the_wall(file, text, &handed_on), Vec::<String>::new(), "{file}: {text}");
     }
 }
 
@@ -647,25 +526,11 @@ fn an_upward_use_is_seen() {
         handed_on("pub use oscillator::Oscillator;\npub mod numeric;\npub use symbol::Symbol;\n");
     let layers = Layers::of_crates();
     let found = |module: &str, depth: usize, text: &str| {
-        offences(
-            &Source {
-                module,
-                depth,
-                text,
-            },
-            &handed_on,
-            &layers,
-        )
+        offences(&Source { module, depth, text }, &handed_on, &layers)
     };
     for (module, depth, text, line, used) in [
         ("series", 2, "use crate::method::solve;", 1, "method"),
-        (
-            "numeric",
-            3,
-            "\nlet x = crate::expr::Expr::zero();",
-            2,
-            "expr",
-        ),
+        ("numeric", 3, "\nlet x = crate::expr::Expr::zero();", 2, "expr"),
         ("numeric", 1, "use crate::exact::Rational;", 1, "exact"),
         (
             "exact",
@@ -675,13 +540,7 @@ fn an_upward_use_is_seen() {
             "verify",
         ),
         ("expr", 1, "use crate::Oscillator;", 1, "oscillator"),
-        (
-            "expr",
-            3,
-            "use super::super::super::series::taylor;",
-            1,
-            "series",
-        ),
+        ("expr", 3, "use super::super::super::series::taylor;", 1, "series"),
         ("symbol", 1, "use super::exact::Ring;", 1, "exact"),
         ("export", 2, "crate::cli::run()", 1, "cli"),
         (
@@ -698,27 +557,11 @@ fn an_upward_use_is_seen() {
         assert!(offences[0].starts_with(&expected), "{text}: {offences:?}");
     }
     for (module, depth, text) in [
-        (
-            "method",
-            2,
-            "use crate::series::taylor::taylor; // crate::verify",
-        ),
-        (
-            "method",
-            2,
-            "use super::secular::expand;\nuse crate::{Symbol, expr::Expr};",
-        ),
+        ("method", 2, "use crate::series::taylor::taylor; // crate::verify"),
+        ("method", 2, "use super::secular::expand;\nuse crate::{Symbol, expr::Expr};"),
         ("expr", 2, "use crate::expr::Node;\nuse super::number;"),
-        (
-            "cli",
-            2,
-            "use lindstedt::export::{json, text};\nuse super::Common;",
-        ),
-        (
-            "exact",
-            2,
-            "let x = 1;\n#[cfg(test)]\nmod tests {\n    use crate::method::solve;\n}\n",
-        ),
+        ("cli", 2, "use lindstedt::export::{json, text};\nuse super::Common;"),
+        ("exact", 2, "let x = 1;\n#[cfg(test)]\nmod tests {\n    use crate::method::solve;\n}\n"),
     ] {
         assert_eq!(found(module, depth, text), Vec::<String>::new(), "{text}");
     }
@@ -743,25 +586,13 @@ fn files_below(folder: &Path, found: &mut Vec<String>) {
 fn every_file_can_be_checked_out_on_every_system() {
     const DEVICES: [&str; 6] = ["con", "prn", "aux", "nul", "conin$", "conout$"];
     let mut files = Vec::new();
-    for folder in [
-        "src",
-        "crates",
-        "tests",
-        "examples",
-        "docs",
-        "snapshots",
-        "benches",
-    ] {
+    for folder in ["src", "crates", "tests", "examples", "docs", "snapshots", "benches"] {
         files_below(Path::new(folder), &mut files);
     }
     assert!(files.len() > 1000, "{}", files.len());
     let mut lower = std::collections::BTreeSet::new();
     for file in &files {
-        let name = file
-            .rsplit(['/', '\\'])
-            .next()
-            .unwrap_or(file)
-            .to_lowercase();
+        let name = file.rsplit(['/', '\\']).next().unwrap_or(file).to_lowercase();
         let stem = name.split('.').next().unwrap_or(&name);
         let is_port = |stem: &str| {
             let number = stem.strip_prefix("com").or(stem.strip_prefix("lpt"));
@@ -769,19 +600,10 @@ fn every_file_can_be_checked_out_on_every_system() {
                 number.len() == 1 && number.chars().all(|digit| digit.is_ascii_digit())
             })
         };
-        assert!(
-            !DEVICES.contains(&stem) && !is_port(stem),
-            "{file} is a device"
-        );
+        assert!(!DEVICES.contains(&stem) && !is_port(stem), "{file} is a device");
         let is_allowed =
             |letter: char| (' '..='~').contains(&letter) && !r#"<>:"|?*"#.contains(letter);
-        assert!(
-            name.chars().all(is_allowed) && !name.ends_with(['.', ' ']),
-            "{file}"
-        );
-        assert!(
-            lower.insert(file.to_lowercase()),
-            "{file} differs by case alone"
-        );
+        assert!(name.chars().all(is_allowed) && !name.ends_with(['.', ' ']), "{file}");
+        assert!(lower.insert(file.to_lowercase()), "{file} differs by case alone");
     }
 }

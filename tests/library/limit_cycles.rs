@@ -26,9 +26,7 @@ fn polynomial(text: &str) -> Polynomial {
 fn judged((oscillator, solution): &(Oscillator, Solution), at: &[(&str, &str)]) -> Verification {
     let mut values = Values::default();
     for (name, value) in at {
-        values
-            .insert((*name).into(), parse_expression(value).unwrap())
-            .unwrap();
+        values.insert((*name).into(), parse_expression(value).unwrap()).unwrap();
     }
     judge(oscillator, solution, &values, 0.01)
         .unwrap_or_else(|error| panic!("{}: {error}", solution.equation))
@@ -39,26 +37,11 @@ fn judged((oscillator, solution): &(Oscillator, Solution), at: &[(&str, &str)]) 
 #[test]
 fn a_letter_beside_a_number_is_expanded_at_its_own_size() {
     for (equation, small, at) in [
-        (
-            "x'' - 0.1*(1 - x^2)*x' + x + b*x^3 = 0",
-            None,
-            ("b", "0.05"),
-        ),
-        (
-            "x'' - 0.02*(1 - x^2)*x' + x + b*x^3 = 0",
-            None,
-            ("b", "-0.03"),
-        ),
-        (
-            "x'' - 0.1*(1 - x^2)*x' + x + eps*x^3 = 0",
-            Some("eps"),
-            ("eps", "0.05"),
-        ),
+        ("x'' - 0.1*(1 - x^2)*x' + x + b*x^3 = 0", None, ("b", "0.05")),
+        ("x'' - 0.02*(1 - x^2)*x' + x + b*x^3 = 0", None, ("b", "-0.03")),
+        ("x'' - 0.1*(1 - x^2)*x' + x + eps*x^3 = 0", Some("eps"), ("eps", "0.05")),
     ] {
-        let options = Options {
-            small: small.map(str::to_owned),
-            ..Options::default()
-        };
+        let options = Options { small: small.map(str::to_owned), ..Options::default() };
         // To second order omega = 1 + 3 b/2 + ..., from a truth that is no expansion.
         let verification = judged(&derive(equation, &options), &[at]);
         let error = verification.relative_error.expect("a frequency");
@@ -97,18 +80,13 @@ fn the_unit_of_time_does_not_matter() {
     };
     for mu in ["1/2", "-3", "8"] {
         let reference = cycle("1", "1", &[("mu", mu)]);
-        for (square, rate, size) in [
-            ("1e18", "1e9", 1e9),
-            ("1e-18", "1e-9", 1e-9),
-            ("1e8", "1e4", 1e4),
-        ] {
+        for (square, rate, size) in
+            [("1e18", "1e9", 1e9), ("1e-18", "1e-9", 1e-9), ("1e8", "1e4", 1e4)]
+        {
             let found = cycle(square, rate, &[("mu", mu)]);
             let ratio = found.true_frequency / size / reference.true_frequency;
             assert!((ratio - 1.0).abs() < 1e-8, "mu = {mu}, {rate}: {ratio}");
-            assert_eq!(
-                found.relative_error.is_some(),
-                reference.relative_error.is_some()
-            );
+            assert_eq!(found.relative_error.is_some(), reference.relative_error.is_some());
             assert_eq!(found.ranges, reference.ranges);
         }
     }
@@ -132,37 +110,12 @@ fn work(damping: &dyn Fn(f64, f64) -> f64, a: f64, omega: f64) -> f64 {
 fn all_cycles_balance_and_attract_as_said() {
     type Damping = fn(f64, f64) -> f64;
     let cases: [(&str, Damping, f64, usize); 12] = [
-        (
-            "x'' - mu*(1 - x^2)*x' + x",
-            |x, v| (x * x - 1.0) * v,
-            1.0,
-            1,
-        ),
-        (
-            "x'' + mu*(1 - x^2)*x' + x",
-            |x, v| (1.0 - x * x) * v,
-            1.0,
-            1,
-        ),
-        (
-            "x'' - mu*(1 - x^4)*x' + x",
-            |x, v| (x.powi(4) - 1.0) * v,
-            1.0,
-            1,
-        ),
-        (
-            "x'' - mu*(1 - x^6)*x' + 4*x",
-            |x, v| (x.powi(6) - 1.0) * v,
-            2.0,
-            1,
-        ),
+        ("x'' - mu*(1 - x^2)*x' + x", |x, v| (x * x - 1.0) * v, 1.0, 1),
+        ("x'' + mu*(1 - x^2)*x' + x", |x, v| (1.0 - x * x) * v, 1.0, 1),
+        ("x'' - mu*(1 - x^4)*x' + x", |x, v| (x.powi(4) - 1.0) * v, 1.0, 1),
+        ("x'' - mu*(1 - x^6)*x' + 4*x", |x, v| (x.powi(6) - 1.0) * v, 2.0, 1),
         ("x'' - mu*(x' - x'^5) + x", |_, v| v.powi(5) - v, 1.0, 1),
-        (
-            "x'' - mu*(1 - x^2 - x'^2)*x' + 2*x",
-            |x, v| (x * x + v * v - 1.0) * v,
-            2f64.sqrt(),
-            1,
-        ),
+        ("x'' - mu*(1 - x^2 - x'^2)*x' + 2*x", |x, v| (x * x + v * v - 1.0) * v, 2f64.sqrt(), 1),
         (
             "x'' + mu*(x' - 3*x^2*x' + x^4*x') + x",
             |x, v| (1.0 - 3.0 * x * x + x.powi(4)) * v,
@@ -175,40 +128,22 @@ fn all_cycles_balance_and_attract_as_said() {
             1.0,
             2,
         ),
-        (
-            "x'' - mu*(1 - x^2 + x^4/12)*x' + x",
-            |x, v| (x * x - 1.0 - x.powi(4) / 12.0) * v,
-            1.0,
-            2,
-        ),
+        ("x'' - mu*(1 - x^2 + x^4/12)*x' + x", |x, v| (x * x - 1.0 - x.powi(4) / 12.0) * v, 1.0, 2),
         (
             "x'' - mu*(1 - x^2 + x^4/10 - x^6/700)*x' + x",
             |x, v| (x * x - 1.0 - x.powi(4) / 10.0 + x.powi(6) / 700.0) * v,
             1.0,
             3,
         ),
-        (
-            "x'' - mu*(x^2 - x^4)*x' + x",
-            |x, v| (x.powi(4) - x * x) * v,
-            1.0,
-            1,
-        ),
-        (
-            "x'' - mu*(1 - x^2/2)*x' + x + mu*x^2",
-            |x, v| (0.5 * x * x - 1.0) * v,
-            1.0,
-            1,
-        ),
+        ("x'' - mu*(x^2 - x^4)*x' + x", |x, v| (x.powi(4) - x * x) * v, 1.0, 1),
+        ("x'' - mu*(1 - x^2/2)*x' + x + mu*x^2", |x, v| (0.5 * x * x - 1.0) * v, 1.0, 1),
     ];
     for (equation, damping, omega, count) in cases {
         let (_, solution) = derive(equation, &Options::default());
         let cycle = solution.limit_cycle.as_ref().expect(equation);
         assert_eq!(cycle.cycles.len(), count, "{equation}: {:?}", cycle.cycles);
         for leading in &cycle.cycles {
-            let a = leading
-                .amplitude
-                .evaluate(&Default::default())
-                .expect(equation);
+            let a = leading.amplitude.evaluate(&Default::default()).expect(equation);
             let [inside, here, outside] =
                 [0.99, 1.0, 1.01].map(|part| work(&damping, part * a, omega));
             assert!(
@@ -216,19 +151,9 @@ fn all_cycles_balance_and_attract_as_said() {
                 "{equation} at {a}: {here}"
             );
             let condition = leading.attracts_where.as_ref().expect(equation);
-            let positive = condition
-                .evaluate(&[("mu".into(), 1.0)].into())
-                .expect(equation)
-                > 0.0;
-            assert_eq!(
-                positive,
-                inside < 0.0 && outside > 0.0,
-                "{equation} at {a}: {condition}"
-            );
-            assert!(
-                positive || (inside > 0.0 && outside < 0.0),
-                "{equation} at {a}"
-            );
+            let positive = condition.evaluate(&[("mu".into(), 1.0)].into()).expect(equation) > 0.0;
+            assert_eq!(positive, inside < 0.0 && outside > 0.0, "{equation} at {a}: {condition}");
+            assert!(positive || (inside > 0.0 && outside < 0.0), "{equation} at {a}");
         }
     }
 }
@@ -248,43 +173,29 @@ fn every_cycle_is_expanded_right() {
         ("x'' - mu*(x^2 - x^4)*x' + x", 1, "1/5"),
     ] {
         for number in 1..=count {
-            let options = Options {
-                cycle: Some(number),
-                ..Options::default()
-            };
+            let options = Options { cycle: Some(number), ..Options::default() };
             let problem = derive(equation, &options);
             let cycle = problem.1.limit_cycle.as_ref().expect(equation);
             assert_eq!(cycle.number, number as usize);
             // Backward in the parameter the cycle is the same, and repels where it attracted.
             for sign in ["", "-"] {
                 let verification = judged(&problem, &[("mu", &format!("{sign}{mu}"))]);
-                assert_eq!(
-                    verification.verdict,
-                    Verdict::Pass,
-                    "{equation}, cycle {number}"
-                );
+                assert_eq!(verification.verdict, Verdict::Pass, "{equation}, cycle {number}");
                 // The slope is measured where the error stands well above that of Runge-Kutta,
                 // 1e-8.
                 let error = verification.relative_error.expect(equation).abs();
                 let slope = verification.slope.filter(|_| error > 1e-6);
-                assert!(
-                    slope.is_some() || error < 1e-6,
-                    "{equation}, cycle {number}: {error}"
-                );
+                assert!(slope.is_some() || error < 1e-6, "{equation}, cycle {number}: {error}");
                 assert!(
                     slope.is_none_or(|slope| (slope - 4.0).abs() < 0.25),
                     "{equation}, cycle {number}: {slope:?}"
                 );
                 measured += usize::from(slope.is_some());
                 let attracts = verification.ranges[0].text.ends_with("attracts");
-                let condition = cycle.cycles[number as usize - 1]
-                    .attracts_where
-                    .as_ref()
-                    .expect(equation);
-                let positive = condition
-                    .evaluate(&[("mu".into(), 1.0)].into())
-                    .expect(equation)
-                    > 0.0;
+                let condition =
+                    cycle.cycles[number as usize - 1].attracts_where.as_ref().expect(equation);
+                let positive =
+                    condition.evaluate(&[("mu".into(), 1.0)].into()).expect(equation) > 0.0;
                 assert_eq!(
                     attracts,
                     positive == sign.is_empty(),
@@ -293,10 +204,7 @@ fn every_cycle_is_expanded_right() {
                 );
             }
         }
-        let beyond = Options {
-            cycle: Some(count + 1),
-            ..Options::default()
-        };
+        let beyond = Options { cycle: Some(count + 1), ..Options::default() };
         let refusal = solve(&Oscillator::parse(equation).unwrap(), &beyond).expect_err(equation);
         assert!(matches!(refusal, Refusal::NoSuchCycle { .. }), "{refusal}");
     }
@@ -309,11 +217,7 @@ fn every_cycle_is_expanded_right() {
 #[test]
 fn an_irrational_amplitude_is_a_matter_of_units() {
     let derived = |equation: &str, order, number| {
-        let options = Options {
-            order: Some(order),
-            cycle: Some(number),
-            ..Options::default()
-        };
+        let options = Options { order: Some(order), cycle: Some(number), ..Options::default() };
         derive(equation, &options).1
     };
     // x = sqrt(2) y: 1 - 3 x^2 + x^4 = 1 - 6 y^2 + 4 y^4.
@@ -336,70 +240,35 @@ fn an_irrational_amplitude_is_a_matter_of_units() {
 /// Parameters of different terms that are small together, and numbers in place of a letter.
 #[test]
 fn what_is_small_together() {
-    let both = derive(
-        "x'' - mu*(1 - x^2)*x' + x + eps*x^3 = 0",
-        &Options::default(),
-    );
+    let both = derive("x'' - mu*(1 - x^2)*x' + x + eps*x^3 = 0", &Options::default());
     let law = both.1.law.frequency_squared().cloned().expect("a law");
     // eps = 0 leaves van der Pol; first order in eps is Duffing at the amplitude 2.
     let text = law.to_string();
     assert_eq!(law, polynomial("1 + 3*eps - 9*eps^2/8 - mu^2/8"), "{text}");
-    assert!(
-        both.1.title().ends_with("to order 2 in eps and mu"),
-        "{}",
-        both.1.title()
-    );
+    assert!(both.1.title().ends_with("to order 2 in eps and mu"), "{}", both.1.title());
     let verification = judged(&both, &[("mu", "1/5"), ("eps", "1/10")]);
     assert_eq!(verification.verdict, Verdict::Pass);
-    assert!(
-        (verification.slope.expect("a slope") - 3.0).abs() < 0.2,
-        "{:?}",
-        verification.slope
-    );
+    assert!((verification.slope.expect("a slope") - 3.0).abs() < 0.2, "{:?}", verification.slope);
     // The same with kappa = eps/mu in one parameter, which needs no joint expansion.
     let single = derive(
         "x'' - mu*(1 - x^2)*x' + x + kappa*mu*x^3 = 0",
-        &Options {
-            small: Some("mu".into()),
-            ..Options::default()
-        },
+        &Options { small: Some("mu".into()), ..Options::default() },
     );
     let eps = polynomial("kappa*mu");
-    assert_eq!(
-        law.substitute("eps".into(), &eps).as_ref(),
-        single.1.law.frequency_squared()
-    );
-    assert_eq!(
-        single
-            .1
-            .limit_cycle
-            .as_ref()
-            .map(|cycle| cycle.amplitude.clone()),
-        {
-            let amplitude = both
-                .1
-                .limit_cycle
-                .as_ref()
-                .map(|cycle| cycle.amplitude.clone());
-            amplitude.and_then(|amplitude| amplitude.substitute("eps".into(), &eps))
-        }
-    );
+    assert_eq!(law.substitute("eps".into(), &eps).as_ref(), single.1.law.frequency_squared());
+    assert_eq!(single.1.limit_cycle.as_ref().map(|cycle| cycle.amplitude.clone()), {
+        let amplitude = both.1.limit_cycle.as_ref().map(|cycle| cycle.amplitude.clone());
+        amplitude.and_then(|amplitude| amplitude.substitute("eps".into(), &eps))
+    });
     // Asked for the other way round, and with letters of one's own.
     for (equation, small) in [
         ("x'' - mu*(1 - x^2)*x' + x + eps*x^3 = 0", Some("mu")),
         ("x'' - b*(1 - x^2)*x' + x + c*x^3 = 0", None),
         ("x'' - b*x' + c*x^2*x' + x = 0", None),
     ] {
-        let options = Options {
-            small: small.map(str::to_owned),
-            ..Options::default()
-        };
+        let options = Options { small: small.map(str::to_owned), ..Options::default() };
         let (_, solution) = derive(equation, &options);
-        assert_eq!(
-            solution.limit_cycle.map(|cycle| cycle.small_with.len()),
-            Some(1),
-            "{equation}"
-        );
+        assert_eq!(solution.limit_cycle.map(|cycle| cycle.small_with.len()), Some(1), "{equation}");
     }
 }
 
@@ -447,34 +316,18 @@ fn a_number_in_place_of_the_small_parameter() {
 /// Damping alone is still refused, and so is what is fed at every amplitude.
 #[test]
 fn without_a_balance_there_is_no_cycle() {
-    let options = Options {
-        method: Some(Method::LindstedtPoincare),
-        ..Options::default()
-    };
+    let options = Options { method: Some(Method::LindstedtPoincare), ..Options::default() };
     let refused = |equation: &str| {
         solve(&Oscillator::parse(equation).unwrap(), &options).expect_err(equation)
     };
-    for equation in [
-        "x'' + 0.1*x' + x + x^3",
-        "x'' - mu*x' + x",
-        "x'' + 2*zeta*x' + x + eps*x^3",
-    ] {
+    for equation in ["x'' + 0.1*x' + x + x^3", "x'' - mu*x' + x", "x'' + 2*zeta*x' + x + eps*x^3"] {
         assert!(
-            matches!(
-                refused(equation),
-                Refusal::Unsuited {
-                    reason: Unsuited::Damping { .. },
-                    ..
-                }
-            ),
+            matches!(refused(equation), Refusal::Unsuited { reason: Unsuited::Damping { .. }, .. }),
             "{equation}: {}",
             refused(equation)
         );
     }
-    for equation in [
-        "x'' - mu*(1 - x^2/4 + x^4/80)*x' + x",
-        "x'' + 0.1*x' + 0.2*x'^3 + x",
-    ] {
+    for equation in ["x'' - mu*(1 - x^2/4 + x^4/80)*x' + x", "x'' + 0.1*x' + 0.2*x'^3 + x"] {
         assert!(
             matches!(refused(equation), Refusal::NoLimitCycle { .. }),
             "{equation}: {}",
@@ -522,23 +375,12 @@ fn relaxation_oscillations_are_judged_however_stiff() {
         let period =
             slow * value + 3.0 * 2.338_107 / f64::cbrt(value) - 2.0 / 3.0 * f64::ln(value) / value;
         let found = TAU / verification.true_frequency;
-        assert!(
-            (found / period - 1.0).abs() < 2e-6,
-            "{mu}: {found} {period}"
-        );
+        assert!((found / period - 1.0).abs() < 2e-6, "{mu}: {found} {period}");
         assert_eq!(verification.verdict, Verdict::Fail);
-        assert!(
-            verification
-                .ranges
-                .iter()
-                .any(|range| range.text.contains("and attracts"))
-        );
+        assert!(verification.ranges.iter().any(|range| range.text.contains("and attracts")));
     }
     // Lengths of 1e-6 and times of 1e-3: x = 1e-6 X, t = 1e-3 T turns mu into 1e3 mu.
-    let scaled = derive(
-        "x'' - mu*(1 - 1e12*x^2)*x' + 1e6*x = 0",
-        &Options::default(),
-    );
+    let scaled = derive("x'' - mu*(1 - 1e12*x^2)*x' + 1e6*x = 0", &Options::default());
     let found = TAU / judged(&scaled, &[("mu", "1e6")]).true_frequency;
     let plain = TAU / judged(&van_der_pol, &[("mu", "1e3")]).true_frequency;
     assert!((found * 1e3 / plain - 1.0).abs() < 1e-8, "{found} {plain}");
@@ -550,21 +392,13 @@ fn high_powers_end() {
     let (_, solution) = derive("x'' - mu*(1 - x^40)*x' + x = 0", &Options::default());
     // <x'^2 (1 - x^40)> = 0: a^40/4^20 C(40, 20)/21 = 1.
     let binomial = (1..=20).fold(1.0, |product, k| product * f64::from(20 + k) / f64::from(k));
-    let amplitude = solution.limit_cycle.expect("a cycle").cycles[0]
-        .amplitude
-        .evaluate(&[].into());
+    let amplitude = solution.limit_cycle.expect("a cycle").cycles[0].amplitude.evaluate(&[].into());
     let expected = 2.0 * (21.0 / binomial).powf(1.0 / 40.0);
     assert!((amplitude.expect("a number") / expected - 1.0).abs() < 1e-14);
-    for equation in [
-        "x'' - mu*(1 - x^1000)*x' + x = 0",
-        "x'' + x + eps*x^999 = 0",
-    ] {
+    for equation in ["x'' - mu*(1 - x^1000)*x' + x = 0", "x'' + x + eps*x^999 = 0"] {
         let refusal =
             solve(&Oscillator::parse(equation).unwrap(), &Options::default()).expect_err(equation);
-        assert!(
-            refusal.to_string().contains("harmonics at this order"),
-            "{refusal}"
-        );
+        assert!(refusal.to_string().contains("harmonics at this order"), "{refusal}");
     }
 }
 
@@ -601,30 +435,10 @@ fn damping_that_jumps_with_the_position_has_its_limit_cycle() {
     type Case<'a> = (&'a str, &'a [(&'a str, &'a str)], Share, f64);
     let jump: Share = |x| if x.abs() < 1.0 { 1.0 } else { -1.0 };
     let cases: [Case; 5] = [
-        (
-            "x'' - mu*sgn(1 - x^2)*x' + x = 0",
-            &[("mu", "1/10")],
-            jump,
-            1.0,
-        ),
-        (
-            "x'' - mu*sgn(1 - abs(x))*x' + x = 0",
-            &[("mu", "1/10")],
-            jump,
-            1.0,
-        ),
-        (
-            "x'' - mu*(1 - 2*H(x^2 - 1))*x' + x = 0",
-            &[("mu", "1/10")],
-            jump,
-            1.0,
-        ),
-        (
-            "x'' - mu*sgn(d^2 - x^2)*x' + x = 0",
-            &[("mu", "1/10"), ("d", "-2")],
-            jump,
-            2.0,
-        ),
+        ("x'' - mu*sgn(1 - x^2)*x' + x = 0", &[("mu", "1/10")], jump, 1.0),
+        ("x'' - mu*sgn(1 - abs(x))*x' + x = 0", &[("mu", "1/10")], jump, 1.0),
+        ("x'' - mu*(1 - 2*H(x^2 - 1))*x' + x = 0", &[("mu", "1/10")], jump, 1.0),
+        ("x'' - mu*sgn(d^2 - x^2)*x' + x = 0", &[("mu", "1/10"), ("d", "-2")], jump, 2.0),
         (
             "x'' - mu*(1 - 3*H(x - 1))*x' + x = 0",
             &[("mu", "1/10")],
@@ -639,9 +453,7 @@ fn damping_that_jumps_with_the_position_has_its_limit_cycle() {
         assert_eq!(solution.method, Method::Averaging, "{equation}");
         let mut values = lindstedt::Values::default();
         for (name, value) in at {
-            values
-                .insert((*name).into(), value.parse().expect("a number"))
-                .expect("a value");
+            values.insert((*name).into(), value.parse().expect("a number")).expect("a value");
         }
         let verification = judge(&oscillator, &solution, &values, 0.01)
             .unwrap_or_else(|error| panic!("{equation}: {error}"));
@@ -651,26 +463,14 @@ fn damping_that_jumps_with_the_position_has_its_limit_cycle() {
             .find(|(name, _)| name.name() == "a")
             .expect("an amplitude")
             .1;
-        assert!(
-            (found / expected - 1.0).abs() < 1e-9,
-            "{equation}: {found} {expected}"
-        );
+        assert!((found / expected - 1.0).abs() < 1e-9, "{equation}: {found} {expected}");
         let slow = solution.modulation.as_ref().expect("slow equations");
         assert_eq!(slow.steady.len(), 1, "{equation}");
         assert_eq!(
-            slow.steady[0]
-                .attracts_where
-                .as_ref()
-                .map(ToString::to_string)
-                .as_deref(),
+            slow.steady[0].attracts_where.as_ref().map(ToString::to_string).as_deref(),
             Some("mu"),
             "{equation}"
         );
-        assert!(
-            verification
-                .max_deviation
-                .is_some_and(|deviation| deviation < 0.1),
-            "{equation}"
-        );
+        assert!(verification.max_deviation.is_some_and(|deviation| deviation < 0.1), "{equation}");
     }
 }

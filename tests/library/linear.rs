@@ -28,19 +28,13 @@ fn motion(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> [Expr; 3] {
         (None, None) => panic!("no motion"),
     };
     let mut numbers = numbers.clone();
-    let defined = solution
-        .defined_values(&|name| numbers.get(&name).copied())
-        .expect("definitions");
+    let defined =
+        solution.defined_values(&|name| numbers.get(&name).copied()).expect("definitions");
     numbers.extend(defined);
     let exact = |(name, value): (&Symbol, &f64)| {
-        (
-            *name,
-            format!("{value:.17}").parse::<Expr>().expect("a number"),
-        )
+        (*name, format!("{value:.17}").parse::<Expr>().expect("a number"))
     };
-    let place = place
-        .substitute_all(&numbers.iter().map(exact).collect())
-        .expect("numbers");
+    let place = place.substitute_all(&numbers.iter().map(exact).collect()).expect("numbers");
     let speed = place.differentiate(t).expect("a rate");
     let rate = speed.differentiate(t).expect("a rate");
     [place, speed, rate]
@@ -59,18 +53,12 @@ fn exact_motions_satisfy_their_equations() {
         ("x'' + x = cos(t)", "A = 1/2"),
         ("x'' + 4*x = 3*sin(2*t + 1)", "A = 1"),
         ("x'' + x/4 + x'/20 = cos(t) + sin(3*t)", "A = 1"),
-        (
-            "x'' + 2*zeta*x' + x = F*cos(Omega*t)",
-            "zeta = 1/20, F = 1/3, Omega = 9/10, A = 1",
-        ),
+        ("x'' + 2*zeta*x' + x = F*cos(Omega*t)", "zeta = 1/20, F = 1/3, Omega = 9/10, A = 1"),
         (
             "x'' + 2*zeta*x' + x = F*sin(Omega*t + phi)",
             "zeta = 1/20, F = 1/3, Omega = 9/10, phi = 1, A = 1",
         ),
-        (
-            "x'' + w^2*x = F*cos(W*t) + G*cos(V*t)",
-            "w = 2, F = 1, G = 1/2, W = 3/2, V = 7/3, A = 1",
-        ),
+        ("x'' + w^2*x = F*cos(W*t) + G*cos(V*t)", "w = 2, F = 1, G = 1/2, W = 3/2, V = 7/3, A = 1"),
         ("x'' + 5*x' + 4*x = cos(t)", "A = 1"),
         ("x'' + 2*x' + x = cos(t)", "A = 1"),
     ] {
@@ -84,11 +72,7 @@ fn exact_motions_satisfy_their_equations() {
             let [x, v, b] =
                 [&place, &speed, &rate].map(|part| part.evaluate(&time).expect("a number"));
             let mut point = numbers.clone();
-            point.extend([
-                ("t".into(), t),
-                ("x".into(), x),
-                (Symbol::new("x").derivative(), v),
-            ]);
+            point.extend([("t".into(), t), ("x".into(), x), (Symbol::new("x").derivative(), v)]);
             let force = oscillator.force.evaluate(&point).expect("a force");
             assert!(
                 (b + force).abs() < 1e-10 * (1.0 + force.abs()),
@@ -96,10 +80,7 @@ fn exact_motions_satisfy_their_equations() {
             );
             if k == 0 {
                 let start = numbers[&Symbol::new("A")];
-                assert!(
-                    (x - start).abs() < 1e-12 && v.abs() < 1e-12,
-                    "{equation}: {x} {v}"
-                );
+                assert!((x - start).abs() < 1e-12 && v.abs() < 1e-12, "{equation}: {x} {v}");
             }
         }
         let judged = judge(&oscillator, &solution, &values, 1e-6).expect(equation);
@@ -113,14 +94,9 @@ fn the_damped_frequency_is_that_of_textbooks() {
     let (_, solution) = answered("x'' + 2*zeta*x' + x = 0");
     let slow = solution.modulation.as_ref().expect("slow equations");
     assert_eq!(slow.amplitude_rate.to_string(), "-zeta*a");
-    let frequency = solution
-        .definitions
-        .iter()
-        .find(|known| Expr::from(known.symbol) == slow.phase_rate);
-    assert_eq!(
-        frequency.expect("omega_d").meaning.to_string(),
-        "sqrt(1 - zeta^2)"
-    );
+    let frequency =
+        solution.definitions.iter().find(|known| Expr::from(known.symbol) == slow.phase_rate);
+    assert_eq!(frequency.expect("omega_d").meaning.to_string(), "sqrt(1 - zeta^2)");
     let transient = slow.transient.as_ref().expect("a closed form");
     assert_eq!(transient.amplitude.to_string(), "a0*exp(-zeta*t)");
 }
@@ -135,35 +111,22 @@ fn resonance_of_an_undamped_oscillator_is_named() {
     assert!(growing.expand().expect("short").is_zero(), "{growing}");
     let notes: Vec<String> = solution.validity.iter().map(ToString::to_string).collect();
     assert!(
-        notes
-            .iter()
-            .any(|note| note.contains("resonance") && note.contains("cos(t)")),
+        notes.iter().any(|note| note.contains("resonance") && note.contains("cos(t)")),
         "{notes:?}"
     );
     let (_, solution) = answered("x'' + w^2*x = F*cos(W*t)");
     let notes: Vec<String> = solution.validity.iter().map(ToString::to_string).collect();
-    assert!(
-        notes
-            .iter()
-            .any(|note| note.contains("only where W^2 is not w^2")),
-        "{notes:?}"
-    );
+    assert!(notes.iter().any(|note| note.contains("only where W^2 is not w^2")), "{notes:?}");
 }
 
 /// An order, a resonance or a method that is asked for is the expansion that it was.
 #[test]
 fn an_expansion_that_is_asked_for_stays_one() {
     let damped = Oscillator::parse("x'' + 2*zeta*x' + x = 0").expect("an oscillator");
-    for (method, order) in [
-        (None, Some(1)),
-        (Some(Method::Averaging), None),
-        (Some(Method::MultipleScales), Some(2)),
-    ] {
-        let options = Options {
-            method,
-            order,
-            ..Options::default()
-        };
+    for (method, order) in
+        [(None, Some(1)), (Some(Method::Averaging), None), (Some(Method::MultipleScales), Some(2))]
+    {
+        let options = Options { method, order, ..Options::default() };
         let found = solve(&damped, &options).expect("slow equations");
         assert_ne!(found.method, Method::Exact);
     }
@@ -182,11 +145,7 @@ fn free_linear_equations_are_answered_exactly() {
         let (_, solution) = answered(equation);
         assert_eq!(solution.formula(), law, "{equation}");
         assert_eq!(
-            solution
-                .closed_motion
-                .as_ref()
-                .expect("a motion")
-                .to_string(),
+            solution.closed_motion.as_ref().expect("a motion").to_string(),
             motion,
             "{equation}"
         );

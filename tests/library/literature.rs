@@ -26,23 +26,13 @@ use num_traits::{One, Pow, Zero};
 
 fn derive(equation: &str, order: u32, amplitude: Option<AmplitudeConvention>) -> Solution {
     let oscillator = Oscillator::parse(equation).expect("an oscillator");
-    solve(
-        &oscillator,
-        &Options {
-            order: Some(order),
-            amplitude,
-            ..Options::default()
-        },
-    )
-    .expect("a solution")
+    solve(&oscillator, &Options { order: Some(order), amplitude, ..Options::default() })
+        .expect("a solution")
 }
 
 fn polynomial(text: &str) -> Polynomial {
     let expression = parse_expression(text).expect("an expression");
-    expression
-        .to_polynomial(&mut |_| None)
-        .expect("short")
-        .expect("a polynomial")
+    expression.to_polynomial(&mut |_| None).expect("short").expect("a polynomial")
 }
 
 fn law(solution: &Solution) -> &Polynomial {
@@ -70,10 +60,7 @@ fn duffing_to_order_eight() {
     let solution = derive("x'' + x + eps*x^3 = 0", 8, None);
     let expected = "1 + 3/8*s - 21/256*s^2 + 81/2048*s^3 - 6549/262144*s^4 + 37737/2097152*s^5 - 936183/67108864*s^6 \
                     + 6077907/536870912*s^7 - 2604833685/274877906944*s^8";
-    assert_eq!(
-        *law(&solution),
-        polynomial(&expected.replace('s', "(eps*A^2)"))
-    );
+    assert_eq!(*law(&solution), polynomial(&expected.replace('s', "(eps*A^2)")));
     let expected = "1 + 3/4*s - 3/128*s^2 + 9/512*s^3 - 1779/131072*s^4 + 5643/524288*s^5 - 146661/16777216*s^6 \
                     + 486603/67108864*s^7";
     let eps = Symbol::new("eps");
@@ -92,29 +79,14 @@ fn duffing_motion_to_order_five() {
         (32, &[(3, 1), (1, -1)]),
         (1024, &[(5, 1), (3, -24), (1, 23)]),
         (32_768, &[(7, 1), (5, -48), (3, 594), (1, -547)]),
-        (
-            1_048_576,
-            &[(9, 1), (7, -72), (5, 1766), (3, -15_121), (1, 13_426)],
-        ),
-        (
-            33_554_432,
-            &[
-                (11, 1),
-                (9, -96),
-                (7, 3514),
-                (5, -58_944),
-                (3, 394_701),
-                (1, -339_176),
-            ],
-        ),
+        (1_048_576, &[(9, 1), (7, -72), (5, 1766), (3, -15_121), (1, 13_426)]),
+        (33_554_432, &[(11, 1), (9, -96), (7, 3514), (5, -58_944), (3, 394_701), (1, -339_176)]),
     ];
     for (index, (denominator, coefficients)) in orders.iter().enumerate() {
         let order = index as i32 + 1;
         for k in 0..=13 {
-            let expected = coefficients
-                .iter()
-                .find(|entry| entry.0 == k)
-                .map_or(0, |entry| entry.1);
+            let expected =
+                coefficients.iter().find(|entry| entry.0 == k).map_or(0, |entry| entry.1);
             let monomial = polynomial(&format!("eps^{order}*A^{}", 2 * order + 1));
             let (monomial, _) = monomial.single_term().expect("one term");
             let expected = Rational::new(expected.into(), (*denominator).into());
@@ -143,9 +115,8 @@ fn both_amplitude_conventions_and_the_way_between_them() {
         first_harmonic,
         polynomial("A - eps*A^3/32 + 23*eps^2*A^5/1024 - 547*eps^3*A^7/32768")
     );
-    let converted = law(&by_first_harmonic)
-        .substitute(a, &first_harmonic)
-        .expect("positive powers");
+    let converted =
+        law(&by_first_harmonic).substitute(a, &first_harmonic).expect("positive powers");
     assert_eq!(converted.truncated(eps, 3), *law(&initial));
 }
 
@@ -153,46 +124,28 @@ fn both_amplitude_conventions_and_the_way_between_them() {
 fn pendulum_to_the_tenth_power() {
     let solution = derive("x'' + sin(x) = 0", 10, None);
     let expected = "1 - A^2/16 + A^4/3072 - 23*A^6/737280 - 2519*A^8/1321205760";
-    assert_eq!(
-        law(&solution).truncated("A".into(), 8),
-        polynomial(expected)
-    );
+    assert_eq!(law(&solution).truncated("A".into(), 8), polynomial(expected));
     let expected = "1 - A^2/8 + 7*A^4/1536 - 19*A^6/184320 + 127*A^8/660602880";
-    assert_eq!(
-        law_squared(&solution).truncated("A".into(), 8),
-        polynomial(expected)
-    );
+    assert_eq!(law_squared(&solution).truncated("A".into(), 8), polynomial(expected));
     // T/(2 pi) times omega is one, to A^10.
     let period = "1 + A^2/16 + 11*A^4/3072 + 173*A^6/737280 + 22931*A^8/1321205760 + 1319183*A^10/951268147200";
     let product =
         parse_expression(&format!("({period})*({})", law(&solution))).expect("an expression");
-    let product = product
-        .to_polynomial(&mut |_| None)
-        .expect("short")
-        .expect("a polynomial");
+    let product = product.to_polynomial(&mut |_| None).expect("short").expect("a polynomial");
     assert_eq!(product.truncated("A".into(), 10), polynomial("1"));
 }
 
 #[test]
 fn cubic_pendulum_is_the_papers_model() {
     let solution = derive("x'' + x - x^3/6 = 0", 6, None);
-    assert_eq!(
-        law_squared(&solution).truncated("A".into(), 4),
-        polynomial("1 - A^2/8 - A^4/1536")
-    );
-    assert_eq!(
-        *law(&solution),
-        polynomial("1 - A^2/16 - 7*A^4/3072 - 3*A^6/16384")
-    );
+    assert_eq!(law_squared(&solution).truncated("A".into(), 4), polynomial("1 - A^2/8 - A^4/1536"));
+    assert_eq!(*law(&solution), polynomial("1 - A^2/16 - 7*A^4/3072 - 3*A^6/16384"));
 }
 
 #[test]
 fn quadratic_force_by_either_convention() {
     let initial = derive("x'' + x + eps*x^2 = 0", 3, INITIAL);
-    assert_eq!(
-        *law(&initial),
-        polynomial("1 - 5*eps^2*A^2/12 - 5*eps^3*A^3/18")
-    );
+    assert_eq!(*law(&initial), polynomial("1 - 5*eps^2*A^2/12 - 5*eps^3*A^3/18"));
     // The odd power is the convention's alone.
     let first_harmonic = derive("x'' + x + eps*x^2 = 0", 3, FIRST_HARMONIC);
     assert_eq!(*law(&first_harmonic), polynomial("1 - 5*eps^2*a^2/12"));
@@ -203,11 +156,7 @@ fn van_der_pol_to_order_eight() {
     let solution = derive("x'' - mu*(1 - x^2)*x' + x = 0", 8, INITIAL);
     let expected = "1 - mu^2/16 + 17*mu^4/3072 + 35*mu^6/884736 - 678899*mu^8/5096079360";
     assert_eq!(*law(&solution), polynomial(expected));
-    let amplitude = &solution
-        .limit_cycle
-        .as_ref()
-        .expect("a limit cycle")
-        .amplitude;
+    let amplitude = &solution.limit_cycle.as_ref().expect("a limit cycle").amplitude;
     let expected = "2 + mu^2/96 - 1033*mu^4/552960 + 1019689*mu^6/55738368000 + 9835512276689*mu^8/157315969843200000";
     assert_eq!(*amplitude, polynomial(expected));
     // x_1 = (3 sin tau - sin 3 tau)/4, x_2 = (-12 cos tau + 18 cos 3 tau - 5 cos 5 tau)/96.
@@ -225,11 +174,7 @@ fn rayleigh_has_the_frequency_of_van_der_pol() {
     // agree exactly.
     let van_der_pol = derive("x'' - mu*(1 - x^2)*x' + x = 0", 8, None);
     for rayleigh in ["x'' + x = mu*(1 - x'^2/3)*x'", "x'' + x = mu*(1 - x'^2)*x'"] {
-        assert_eq!(
-            law(&derive(rayleigh, 8, None)),
-            law(&van_der_pol),
-            "{rayleigh}"
-        );
+        assert_eq!(law(&derive(rayleigh, 8, None)), law(&van_der_pol), "{rayleigh}");
     }
     let scaled = derive("x'' + x = mu*(1 - x'^2)*x'", 2, None);
     let root = scaled
@@ -237,10 +182,7 @@ fn rayleigh_has_the_frequency_of_van_der_pol() {
         .iter()
         .find(|definition| definition.symbol.name() == "a0")
         .expect("an irrational root");
-    assert_eq!(
-        root.meaning,
-        parse_expression("sqrt(4/3)").expect("an expression")
-    );
+    assert_eq!(root.meaning, parse_expression("sqrt(4/3)").expect("an expression"));
 }
 
 #[test]
@@ -258,10 +200,7 @@ fn mathews_and_lakshmanan_exactly() {
     // (1 + x^2) x'' - x x'^2 + x = 0 is solved by A cos(omega t), omega^2 = 1/(1 + A^2): P. M.
     // Mathews and M. Lakshmanan, Quart. Appl. Math. 32 (1974) 215.
     let solution = derive("(1 + x^2)*x'' - x*x'^2 + x = 0", 8, None);
-    assert_eq!(
-        *law_squared(&solution),
-        polynomial("1 - A^2 + A^4 - A^6 + A^8")
-    );
+    assert_eq!(*law_squared(&solution), polynomial("1 - A^2 + A^4 - A^6 + A^8"));
     assert_eq!(solution.displacement.harmonics().len(), 1);
 }
 
@@ -304,10 +243,8 @@ fn one_convention_converts_into_the_other() {
         ("x'' + sin(x) = 0", "A", 10),
         ("(1 + x^2)*x'' + x*x'^2 + x = 0", "A", 8),
     ] {
-        let (initial, other) = (
-            derive(equation, order, INITIAL),
-            derive(equation, order, FIRST_HARMONIC),
-        );
+        let (initial, other) =
+            (derive(equation, order, INITIAL), derive(equation, order, FIRST_HARMONIC));
         // The motion is A times a series to the order kept: one power of A more than the law.
         let (power, leading) = (order as i32, i32::from(small == "A"));
         let first_harmonic = cosine(&initial, 1);
@@ -317,25 +254,18 @@ fn one_convention_converts_into_the_other() {
             let mut sum = Polynomial::zero();
             let (_, degree) = series.exponent_range("a".into()).unwrap_or((0, 0));
             for exponent in 0..=degree {
-                for (monomial, coefficient) in series
-                    .terms()
-                    .filter(|(m, _)| m.exponent("a".into()) == exponent)
+                for (monomial, coefficient) in
+                    series.terms().filter(|(m, _)| m.exponent("a".into()) == exponent)
                 {
                     let rest = Polynomial::term(monomial.without("a".into()), coefficient.clone());
                     sum = sum + rest.product(&power);
                 }
-                power = power
-                    .product(&first_harmonic)
-                    .truncated(small.into(), highest);
+                power = power.product(&first_harmonic).truncated(small.into(), highest);
             }
             sum.truncated(small.into(), highest)
         };
         assert_eq!(converted(law(&other), power), *law(&initial), "{equation}");
-        assert_eq!(
-            converted(law_squared(&other), power),
-            *law_squared(&initial),
-            "{equation}"
-        );
+        assert_eq!(converted(law_squared(&other), power), *law_squared(&initial), "{equation}");
         assert_eq!(cosine(&other, 1), polynomial("a"), "{equation}");
         let highest = initial.displacement.highest_harmonic();
         assert_eq!(other.displacement.highest_harmonic(), highest, "{equation}");
@@ -347,15 +277,8 @@ fn one_convention_converts_into_the_other() {
                 "{equation}, cos {k} theta"
             );
         }
-        assert_eq!(
-            initial.displacement.at_zero().mean().0,
-            polynomial("A"),
-            "{equation}"
-        );
-        assert!(
-            initial.displacement.is_even() && other.displacement.is_even(),
-            "{equation}"
-        );
+        assert_eq!(initial.displacement.at_zero().mean().0, polynomial("A"), "{equation}");
+        assert!(initial.displacement.is_even() && other.displacement.is_even(), "{equation}");
     }
 }
 
@@ -363,10 +286,7 @@ fn one_convention_converts_into_the_other() {
 fn rayleigh_swings_with_the_amplitudes_known() {
     // First harmonic: 2 and sqrt(4/3) to first order, J. W. Strutt, Phil. Mag. 15 (1883) 229-235.
     let normal = derive("x'' + x = mu*(1 - x'^2/3)*x'", 1, FIRST_HARMONIC);
-    assert_eq!(
-        normal.limit_cycle.as_ref().map(|cycle| &cycle.amplitude),
-        Some(&polynomial("2"))
-    );
+    assert_eq!(normal.limit_cycle.as_ref().map(|cycle| &cycle.amplitude), Some(&polynomial("2")));
     let bare = derive("x'' + x = mu*(1 - x'^2)*x'", 1, FIRST_HARMONIC);
     let amplitude = &bare.limit_cycle.as_ref().expect("a limit cycle").amplitude;
     let value = bare.evaluate(amplitude, &|_| None).expect("a number");
@@ -377,13 +297,10 @@ fn rayleigh_swings_with_the_amplitudes_known() {
         derive("x'' + x = mu*(1 - x'^2)*x'", 6, None),
     );
     for k in 0..=normal.displacement.highest_harmonic() {
-        for (left, right) in [
-            (cosine(&normal, k), cosine(&bare, k)),
-            (sine(&normal, k), sine(&bare, k)),
-        ] {
-            let unit = right
-                .substitute("a0".into(), &polynomial("2"))
-                .expect("a positive power");
+        for (left, right) in
+            [(cosine(&normal, k), cosine(&bare, k)), (sine(&normal, k), sine(&bare, k))]
+        {
+            let unit = right.substitute("a0".into(), &polynomial("2")).expect("a positive power");
             assert_eq!(left, unit, "harmonic {k}");
         }
     }
@@ -458,18 +375,12 @@ fn assert_inverse_of_period(equation: &str, order: u32, unit: &str, period: &[Ra
     let coefficient = |n: usize| law(&solution).coefficient(&monomial.power(n as i32));
     let frequency: Vec<Rational> = (0..period.len()).map(coefficient).collect();
     // Nothing else occurs in the law.
-    let terms = frequency
-        .iter()
-        .filter(|coefficient| !coefficient.is_zero())
-        .count();
+    let terms = frequency.iter().filter(|coefficient| !coefficient.is_zero()).count();
     assert_eq!(law(&solution).terms().len(), terms, "{equation}");
     let found = product(&frequency, period);
     for (n, coefficient) in found.iter().enumerate() {
         let expected = if n == 0 { ratio(1, 1) } else { ratio(0, 1) };
-        assert_eq!(
-            *coefficient, expected,
-            "{equation}: term {n} of frequency times period"
-        );
+        assert_eq!(*coefficient, expected, "{equation}: term {n} of frequency times period");
     }
 }
 
@@ -492,21 +403,12 @@ fn periods_by_elliptic_integrals_to_any_order() {
 
     // Duffing: T/(2 pi) = (2/pi) K(m) / sqrt(1 + s), m = (s/2)/(1 + s), s = eps A^2.
     let sign = |k: usize| 1 - 2 * (k % 2) as i64;
-    let modulus: Vec<Rational> = (0..TERMS)
-        .map(|k| {
-            if k == 0 {
-                Rational::zero()
-            } else {
-                ratio(-sign(k), 2)
-            }
-        })
-        .collect();
+    let modulus: Vec<Rational> =
+        (0..TERMS).map(|k| if k == 0 { Rational::zero() } else { ratio(-sign(k), 2) }).collect();
     // Binomial series of (1 + s)^(-1/2): its coefficients are +-c_k.
     let binomial = |k: usize| {
-        let (top, bottom) = (
-            factorial(2 * k as u32),
-            Integer::from(2).pow(k as u32) * factorial(k as u32),
-        );
+        let (top, bottom) =
+            (factorial(2 * k as u32), Integer::from(2).pow(k as u32) * factorial(k as u32));
         Rational::new(top * Integer::from(sign(k)), bottom.pow(2_u32))
     };
     let root: Vec<Rational> = (0..TERMS).map(binomial).collect();
@@ -520,12 +422,7 @@ fn periods_by_elliptic_integrals_to_any_order() {
     let bead = |n: usize| elliptic_coefficient(n) * ratio(sign(n), 1 - 2 * n as i64);
     let period: Vec<Rational> = (0..TERMS).map(bead).collect();
     assert_eq!(period[..3], [ratio(1, 1), ratio(1, 4), ratio(-3, 64)]);
-    assert_inverse_of_period(
-        "(1 + x^2)*x'' + x*x'^2 + x = 0",
-        2 * highest,
-        "A^2",
-        &period,
-    );
+    assert_inverse_of_period("(1 + x^2)*x'' + x*x'^2 + x = 0", 2 * highest, "A^2", &period);
 }
 
 fn judged(equation: &str, solution: &Solution, at: &[(&str, &str)]) -> Verification {
@@ -533,10 +430,7 @@ fn judged(equation: &str, solution: &Solution, at: &[(&str, &str)]) -> Verificat
     let mut values = Values::default();
     for (name, value) in at {
         values
-            .insert(
-                (*name).into(),
-                parse_expression(value).expect("an expression"),
-            )
+            .insert((*name).into(), parse_expression(value).expect("an expression"))
             .expect("a number");
     }
     verify::judge(&oscillator, solution, &values, verify::DEFAULT_TOLERANCE).expect("a verdict")
@@ -548,12 +442,7 @@ fn elliptic_k(m: f64) -> f64 {
 
 /// Equation, value of eps, exact frequency at an amplitude, and pairs of an order and the exponent
 /// of its error.
-type Row = (
-    &'static str,
-    &'static str,
-    fn(f64) -> f64,
-    &'static [(u32, f64)],
-);
+type Row = (&'static str, &'static str, fn(f64) -> f64, &'static [(u32, f64)]);
 
 /// The frequency of the true motion comes out of the judge as the elliptic integral has it, and the
 /// error of the series vanishes with the exponent of its first missing term.
@@ -568,36 +457,11 @@ fn the_judge_measures_the_first_missing_term() {
         |a| PI / (2.0 * ellip::ellipe(-a * a).expect("an elliptic integral"));
     let rows: [Row; 5] = [
         // An order of eps and the exponent in eps; odd orders in A add nothing.
-        (
-            "x'' + x + eps*x^3 = 0",
-            "1",
-            duffing,
-            &[(1, 2.0), (2, 3.0), (3, 4.0), (4, 5.0)],
-        ),
-        (
-            "x'' + x + x^3 = 0",
-            "",
-            duffing,
-            &[(2, 4.0), (3, 4.0), (4, 6.0)],
-        ),
-        (
-            "x'' + x + eps*x^3 = 0",
-            "-1",
-            softening,
-            &[(1, 2.0), (3, 4.0)],
-        ),
-        (
-            "x'' + sin(x) = 0",
-            "",
-            pendulum,
-            &[(2, 4.0), (4, 6.0), (5, 6.0)],
-        ),
-        (
-            "(1 + x^2)*x'' + x*x'^2 + x = 0",
-            "",
-            bead,
-            &[(2, 4.0), (4, 6.0)],
-        ),
+        ("x'' + x + eps*x^3 = 0", "1", duffing, &[(1, 2.0), (2, 3.0), (3, 4.0), (4, 5.0)]),
+        ("x'' + x + x^3 = 0", "", duffing, &[(2, 4.0), (3, 4.0), (4, 6.0)]),
+        ("x'' + x + eps*x^3 = 0", "-1", softening, &[(1, 2.0), (3, 4.0)]),
+        ("x'' + sin(x) = 0", "", pendulum, &[(2, 4.0), (4, 6.0), (5, 6.0)]),
+        ("(1 + x^2)*x'' + x*x'^2 + x = 0", "", bead, &[(2, 4.0), (4, 6.0)]),
     ];
     for (equation, eps, exact, orders) in rows {
         for &(order, exponent) in orders {
@@ -621,11 +485,7 @@ fn the_judge_measures_the_first_missing_term() {
                 );
             }
             // Halving A is halving sqrt(eps): the same error falls with twice the exponent there.
-            let per_halving = if eps.is_empty() {
-                exponent
-            } else {
-                2.0 * exponent
-            };
+            let per_halving = if eps.is_empty() { exponent } else { 2.0 * exponent };
             let error =
                 |verdict: &Verification| verdict.relative_error.expect("a real frequency").abs();
             let measured = (error(&whole) / error(&half)).log2();
@@ -634,10 +494,7 @@ fn the_judge_measures_the_first_missing_term() {
                 "{equation}, order {order}: exponent {measured}"
             );
             let slope = whole.slope.expect("an error above rounding");
-            assert!(
-                (slope - exponent).abs() < 0.1,
-                "{equation}, order {order}: slope {slope}"
-            );
+            assert!((slope - exponent).abs() < 0.1, "{equation}, order {order}: slope {slope}");
         }
     }
 }
@@ -655,20 +512,10 @@ fn verdicts_at_finite_amplitude() {
     ] {
         let equation = "x'' + sin(x) = 0";
         let verdict = judged(equation, &derive(equation, 2, INITIAL), &[("A", amplitude)]);
-        assert!(
-            (verdict.true_frequency / frequency - 1.0).abs() < 1e-12,
-            "A = {amplitude}"
-        );
+        assert!((verdict.true_frequency / frequency - 1.0).abs() < 1e-12, "A = {amplitude}");
         let found = 100.0 * verdict.relative_error.expect("a real frequency");
-        assert!(
-            (found - percent).abs() <= digit,
-            "A = {amplitude}: {found} %"
-        );
-        assert_eq!(
-            verdict.verdict == verify::Verdict::Pass,
-            percent > -1.0,
-            "A = {amplitude}"
-        );
+        assert!((found - percent).abs() <= digit, "A = {amplitude}: {found} %");
+        assert_eq!(verdict.verdict == verify::Verdict::Pass, percent > -1.0, "A = {amplitude}");
     }
     // Duffing at s = 2: the series for omega alternates about the truth and comes no closer.
     let equation = "x'' + x + eps*x^3 = 0";
@@ -681,19 +528,14 @@ fn verdicts_at_finite_amplitude() {
         let found = 100.0 * (series / verdict.true_frequency - 1.0);
         assert!((found - percent).abs() <= 0.05, "order {order}: {found} %");
         // The verdict is on the root of omega^2.
-        let squared = solution
-            .evaluate(law_squared(&solution), &value)
-            .expect("a number");
+        let squared = solution.evaluate(law_squared(&solution), &value).expect("a number");
         let frequency = verdict.frequency.expect("a real frequency");
         assert!((frequency / squared.sqrt() - 1.0).abs() < 1e-15);
     }
     // Beyond sqrt 8 the formula has no frequency left, and that is a failure.
     let cubic = derive("x'' + sin(x) = 0", 2, INITIAL);
     let verdict = judged("x'' + sin(x) = 0", &cubic, &[("A", "2.9")]);
-    assert_eq!(
-        (verdict.frequency, verdict.verdict),
-        (None, verify::Verdict::Fail)
-    );
+    assert_eq!((verdict.frequency, verdict.verdict), (None, verify::Verdict::Fail));
 }
 
 /// Limit cycles against Runge-Kutta: the error vanishes with the next even power of mu.
@@ -709,10 +551,7 @@ fn limit_cycles_against_runge_kutta() {
             let verdict = judged(equation, &solution, &[("mu", "1/2")]);
             assert_eq!(verdict.verdict, verify::Verdict::Pass, "{equation}");
             let slope = verdict.slope.expect("an error above rounding");
-            assert!(
-                (slope - exponent).abs() < 0.2,
-                "{equation}, order {order}: slope {slope}"
-            );
+            assert!((slope - exponent).abs() < 0.2, "{equation}, order {order}: slope {slope}");
             let deviation = verdict.max_deviation.expect("a motion");
             assert!(
                 deviation < 2.0 * 0.5_f64.powi(order as i32 + 1),
@@ -744,13 +583,7 @@ fn what_does_not_apply_is_refused_by_name() {
     ] {
         let refusal = refused(equation, &default);
         assert!(
-            matches!(
-                refusal,
-                Refusal::Unsuited {
-                    reason: Unsuited::Damping { .. },
-                    ..
-                }
-            ),
+            matches!(refusal, Refusal::Unsuited { reason: Unsuited::Damping { .. }, .. }),
             "{equation}: {refusal:?}"
         );
         assert!(refusal.to_string().contains(name), "{equation}: {refusal}");
@@ -763,13 +596,7 @@ fn what_does_not_apply_is_refused_by_name() {
     ] {
         let refusal = refused(equation, &default);
         assert!(
-            matches!(
-                refusal,
-                Refusal::Unsuited {
-                    reason: Unsuited::Forcing { .. },
-                    ..
-                }
-            ),
+            matches!(refusal, Refusal::Unsuited { reason: Unsuited::Forcing { .. }, .. }),
             "{equation}: {refusal:?}"
         );
         assert!(refusal.to_string().contains(name), "{equation}: {refusal}");
@@ -793,14 +620,9 @@ fn what_does_not_apply_is_refused_by_name() {
         let refusal = refused(equation, &default);
         let expected = OscillatorError::AmbiguousSmallParameter(names.map(Symbol::new).to_vec());
         assert_eq!(refusal, Refusal::Oscillator(expected), "{equation}");
+        assert!(names.iter().all(|name| refusal.to_string().contains(name)), "{refusal}");
         assert!(
-            names.iter().all(|name| refusal.to_string().contains(name)),
-            "{refusal}"
-        );
-        assert!(
-            refusal
-                .help()
-                .is_some_and(|help| help.to_string().contains(names[0])),
+            refusal.help().is_some_and(|help| help.to_string().contains(names[0])),
             "{equation}"
         );
         // Naming one resolves it.
@@ -827,10 +649,7 @@ fn what_does_not_apply_is_refused_by_name() {
         for equation in ["x'' + x + eps*x^3 = 0", "x'' + sin(x) = 0"] {
             let refusal = refused(equation, &options(Some(asked), None));
             assert_eq!(refusal, Refusal::Order { asked, limit: 400 }, "{equation}");
-            assert!(
-                refusal.to_string().contains(&asked.to_string()),
-                "{refusal}"
-            );
+            assert!(refusal.to_string().contains(&asked.to_string()), "{refusal}");
         }
     }
     let refusal = refused("x'' + x + eps*x^3 = 0", &options(None, Some("delta")));
@@ -838,16 +657,10 @@ fn what_does_not_apply_is_refused_by_name() {
     let refusal = refused("x'' + x + x^3 + eps*x^5 = 0", &default);
     assert!(refusal.to_string().contains("`x^3`"), "{refusal}");
     let refusal = refused("x'' + x = (1 - x^2)*x'", &options(None, Some("A")));
-    assert!(
-        matches!(refusal, Refusal::AmplitudeNotFree { .. }),
-        "{refusal:?}"
-    );
+    assert!(matches!(refusal, Refusal::AmplitudeNotFree { .. }), "{refusal:?}");
     let refusal = refused("x'' + x^3 = 0", &default);
     assert!(
-        matches!(
-            refusal,
-            Refusal::Oscillator(OscillatorError::NoRestoringForce(_))
-        ),
+        matches!(refusal, Refusal::Oscillator(OscillatorError::NoRestoringForce(_))),
         "{refusal:?}"
     );
 }
@@ -879,11 +692,7 @@ fn terms_that_are_powers_of_the_linear_frequency_are_written_so() {
             "omega0^2 - 2*omega0^2*p^2*A^2 + 9*omega0^2*p^4*A^4/2",
         ),
     ] {
-        let options = Options {
-            order: Some(4),
-            small: Some("A".to_owned()),
-            ..Options::default()
-        };
+        let options = Options { order: Some(4), small: Some("A".to_owned()), ..Options::default() };
         let solution =
             solve(&Oscillator::parse(equation).expect(equation), &options).expect(equation);
         assert_eq!(*law_squared(&solution), polynomial(expected), "{equation}");
@@ -895,16 +704,10 @@ fn terms_that_are_powers_of_the_linear_frequency_are_written_so() {
         let value_of = |name: Symbol| match name.name() {
             "A" => Some(0.3),
             "omega0" => Some(0.5),
-            name => values
-                .iter()
-                .find(|(own, _)| *own == name)
-                .map(|(_, value)| *value),
+            name => values.iter().find(|(own, _)| *own == name).map(|(_, value)| *value),
         };
         let [found, plain] =
             [&solution, &plain].map(|own| law_squared(own).evaluate(value_of).expect("a number"));
-        assert!(
-            (found / plain - 1.0).abs() < 1e-14,
-            "{equation}: {found} {plain}"
-        );
+        assert!((found / plain - 1.0).abs() < 1e-14, "{equation}: {found} {plain}");
     }
 }

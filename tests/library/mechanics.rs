@@ -19,14 +19,8 @@ fn expression(text: &str) -> Expr {
 }
 
 fn example(name: &str) -> Problem {
-    let path = format!(
-        "{}/examples/lagrange/{name}.toml",
-        env!("CARGO_MANIFEST_DIR")
-    );
-    std::fs::read_to_string(path)
-        .expect("an example")
-        .parse()
-        .expect("a problem")
+    let path = format!("{}/examples/lagrange/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(path).expect("an example").parse().expect("a problem")
 }
 
 /// Numbers that are like no others, the same on every run.
@@ -34,10 +28,8 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         0.2 + (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
@@ -45,21 +37,15 @@ impl Random {
 /// Both sides at random points, all symbols between 0.2 and 1.2: a difference is a difference of
 /// the formulas.
 fn assert_same(derived: &Expr, by_hand: &Expr) {
-    let names: Vec<Symbol> = (derived - by_hand)
-        .symbols()
-        .into_iter()
-        .chain(derived.symbols())
-        .collect();
+    let names: Vec<Symbol> =
+        (derived - by_hand).symbols().into_iter().chain(derived.symbols()).collect();
     let [one, two] =
         [derived, by_hand].map(|side| CompiledFunction::new(side, &names).expect("a function"));
     let mut random = Random(7);
     for _ in 0..200 {
         let point: Vec<f64> = {
             let mut values: BTreeMap<Symbol, f64> = BTreeMap::new();
-            names
-                .iter()
-                .map(|name| *values.entry(*name).or_insert_with(|| random.next()))
-                .collect()
+            names.iter().map(|name| *values.entry(*name).or_insert_with(|| random.next())).collect()
         };
         let (one, two) = (one.call(&point), two.call(&point));
         assert!(
@@ -83,10 +69,7 @@ fn equations_are_those_derived_by_hand() {
         ),
         (
             "spring-pendulum",
-            &[
-                "m*r'' - m*r*x'^2 - m*g*cos(x) + k*(r - L)",
-                "r^2*x'' + 2*r*r'*x' + g*r*sin(x)",
-            ],
+            &["m*r'' - m*r*x'^2 - m*g*cos(x) + k*(r - L)", "r^2*x'' + 2*r*r'*x' + g*r*sin(x)"],
         ),
         (
             "cart-pendulum",
@@ -95,14 +78,8 @@ fn equations_are_those_derived_by_hand() {
                 "m*L^2*x'' + m*L*s''*cos(x) + m*g*L*sin(x) + b*x'",
             ],
         ),
-        (
-            "rotating-pendulum",
-            &["x'' + g/L*sin(x) - Omega^2*sin(x)*cos(x)"],
-        ),
-        (
-            "bead-on-a-hoop",
-            &["u'' + c/m*u' + g/R*sin(u) - Omega^2*cos(u)*(e/R + sin(u))"],
-        ),
+        ("rotating-pendulum", &["x'' + g/L*sin(x) - Omega^2*sin(x)*cos(x)"]),
+        ("bead-on-a-hoop", &["u'' + c/m*u' + g/R*sin(u) - Omega^2*cos(u)*(e/R + sin(u))"]),
     ];
     for (name, by_hand) in cases {
         let equations = example(name)
@@ -134,9 +111,7 @@ fn energy_is_kept_by_what_is_derived() {
         course.duration = 20.0;
         for part in start.split(',') {
             let (name, value) = part.split_once('=').expect("a start");
-            course
-                .begin(Symbol::new(name), value.parse().expect("a number"))
-                .expect("a state");
+            course.begin(Symbol::new(name), value.parse().expect("a number")).expect("a state");
         }
         let motion = course.clone().follow().expect("a motion");
         assert!(motion.is_complete());
@@ -146,11 +121,7 @@ fn energy_is_kept_by_what_is_derived() {
             ["double-pendulum", "spring-pendulum", "rotating-pendulum"].contains(&name);
         assert_eq!(balance.work == 0.0, conservative, "{name}: {balance:?}");
         let judge = course.follow_by(Integrator::RungeKutta).expect("a motion");
-        assert!(
-            motion.difference(&judge) < 1e-6,
-            "{name}: {}",
-            motion.difference(&judge)
-        );
+        assert!(motion.difference(&judge) < 1e-6, "{name}: {}", motion.difference(&judge));
     }
 }
 
@@ -159,40 +130,20 @@ fn energy_is_kept_by_what_is_derived() {
 #[test]
 fn modes_are_those_of_the_textbooks() {
     let modes = |name: &str, values: &[(&str, f64)]| {
-        let equations = example(name)
-            .mechanism()
-            .unwrap()
-            .mechanism
-            .equations()
-            .unwrap();
+        let equations = example(name).mechanism().unwrap().mechanism.equations().unwrap();
         let rest = &equilibria(&equations).unwrap()[0];
-        let values = values
-            .iter()
-            .map(|(name, value)| (Symbol::new(name), *value))
-            .collect();
-        Modes::at(&equations, rest)
-            .unwrap()
-            .numbers(&values)
-            .unwrap()
+        let values = values.iter().map(|(name, value)| (Symbol::new(name), *value)).collect();
+        Modes::at(&equations, rest).unwrap().numbers(&values).unwrap()
     };
     let links = modes(
         "double-pendulum",
-        &[
-            ("m1", 2.0),
-            ("m2", 2.0),
-            ("l1", 0.5),
-            ("l2", 0.5),
-            ("g", 9.81),
-        ],
+        &[("m1", 2.0), ("m2", 2.0), ("l1", 0.5), ("l2", 0.5), ("g", 9.81)],
     );
     for (mode, sign) in links.iter().zip([-1.0, 1.0]) {
         let square = (2.0 + sign * 2.0_f64.sqrt()) * 9.81 / 0.5;
         assert!((mode.frequency.powi(2) / square - 1.0).abs() < 1e-13 && mode.growth == 0.0);
         let shape = mode.shape.as_ref().expect("a shape");
-        assert!(
-            (shape[1] / shape[0] + sign * 2.0_f64.sqrt()).abs() < 1e-12,
-            "{shape:?}"
-        );
+        assert!((shape[1] / shape[0] + sign * 2.0_f64.sqrt()).abs() < 1e-12, "{shape:?}");
     }
     let masses = modes("driven-masses", &[("m", 0.5), ("k", 8.0), ("c", 0.0)]);
     assert!(
@@ -211,14 +162,7 @@ fn modes_are_those_of_the_textbooks() {
     // A cart that rolls freely, a pendulum on it: omega^2 = (1 + m/M) g/L without friction.
     let cart = modes(
         "cart-pendulum",
-        &[
-            ("m", 1.0),
-            ("M", 2.0),
-            ("L", 0.3),
-            ("g", 9.81),
-            ("c", 0.0),
-            ("b", 0.0),
-        ],
+        &[("m", 1.0), ("M", 2.0), ("L", 0.3), ("g", 9.81), ("c", 0.0), ("b", 0.0)],
     );
     assert_eq!((cart[0].frequency, cart[0].growth), (0.0, 0.0));
     assert!((cart[1].frequency.powi(2) / (1.5 * 9.81 / 0.3) - 1.0).abs() < 1e-13);
@@ -246,10 +190,7 @@ fn places_of_rest_are_exact() {
                 state.insert(coordinate.derivative(), 0.0);
             }
             for force in &equations.rest {
-                assert!(
-                    force.evaluate(&state).unwrap().abs() < 1e-13,
-                    "{name}: {rest:?} {force}"
-                );
+                assert!(force.evaluate(&state).unwrap().abs() < 1e-13, "{name}: {rest:?} {force}");
             }
         }
         found
@@ -279,11 +220,8 @@ fn groups_leave_the_motion_as_it_is() {
         let equations = mechanism.equations().unwrap();
         let groups = Groups::of(&mechanism, &equations, &units).unwrap();
         let mut random = Random(11);
-        let parameters: BTreeMap<Symbol, f64> = equations
-            .parameters()
-            .into_iter()
-            .map(|name| (name, random.next()))
-            .collect();
+        let parameters: BTreeMap<Symbol, f64> =
+            equations.parameters().into_iter().map(|name| (name, random.next())).collect();
         let time = groups.time.evaluate(&parameters).unwrap();
         for group in &groups.groups {
             assert!(group.dimension.is_none(), "{name}: {group:?}");
@@ -296,13 +234,10 @@ fn groups_leave_the_motion_as_it_is() {
         let mut state = parameters.clone();
         for (coordinate, length) in equations.coordinates.iter().zip(&groups.lengths) {
             let length = length.evaluate(&parameters).unwrap();
-            for (derivatives, symbol) in [
-                *coordinate,
-                coordinate.derivative(),
-                coordinate.derivative().derivative(),
-            ]
-            .into_iter()
-            .enumerate()
+            for (derivatives, symbol) in
+                [*coordinate, coordinate.derivative(), coordinate.derivative().derivative()]
+                    .into_iter()
+                    .enumerate()
             {
                 let value = random.next();
                 scaled.insert(symbol, value);
@@ -326,10 +261,7 @@ fn groups_leave_the_motion_as_it_is() {
             (0..equations.left.len()).map(ratio).collect::<Vec<f64>>()
         };
         for (one, two) in other(1).iter().zip(other(2)) {
-            assert!(
-                (one / two - 1.0).abs() < 1e-11 && one.is_finite(),
-                "{name}: {one} {two}"
-            );
+            assert!((one / two - 1.0).abs() < 1e-11 && one.is_finite(), "{name}: {one} {two}");
         }
     }
 }
@@ -385,33 +317,19 @@ fn parameters_that_enter_in_one_sum_count_as_one() {
         let equations = mechanism.equations().unwrap();
         assert_eq!(equations.to_string(), equation);
         let rests = equilibria(&equations).unwrap();
-        let found = Modes::at(&equations, &rests[0])
-            .unwrap()
-            .square()
-            .unwrap()
-            .expect("omega^2");
+        let found = Modes::at(&equations, &rests[0]).unwrap().square().unwrap().expect("omega^2");
         assert_eq!(found.to_string(), square);
         let groups = Groups::of(&mechanism, &equations, &units(list)).unwrap();
-        let found: Vec<String> = groups
-            .combinations
-            .iter()
-            .map(|sum| sum.meaning.to_string())
-            .collect();
+        let found: Vec<String> =
+            groups.combinations.iter().map(|sum| sum.meaning.to_string()).collect();
         assert_eq!(found, sums);
-        assert!(
-            groups.groups.is_empty() && groups.parameters == groups.rank,
-            "{groups:?}"
-        );
+        assert!(groups.groups.is_empty() && groups.parameters == groups.rank, "{groups:?}");
         assert_eq!(groups.left[0].to_string(), form);
     }
-    for (kinetic, potential) in [
-        ("(m1 + m2)*x'^2/2", "k1*x^2/2 + m1*g*x"),
-        ("m1*x'^2/2", "(k1 + k2)*x^2/2 + k1*x^4/4"),
-    ] {
-        let equations = Mechanism::parse(&["x"], kinetic, potential)
-            .unwrap()
-            .equations()
-            .unwrap();
+    for (kinetic, potential) in
+        [("(m1 + m2)*x'^2/2", "k1*x^2/2 + m1*g*x"), ("m1*x'^2/2", "(k1 + k2)*x^2/2 + k1*x^4/4")]
+    {
+        let equations = Mechanism::parse(&["x"], kinetic, potential).unwrap().equations().unwrap();
         assert!(equations.combinations.is_empty(), "{equations}");
     }
 }
@@ -424,45 +342,25 @@ fn a_rest_without_a_linear_force_is_not_called_free() {
         let question = MechanismQuestion {
             mechanism: Mechanism::parse(&[coordinate], kinetic, potential).unwrap(),
             units: None,
-            values: values
-                .iter()
-                .map(|(name, value)| (Symbol::new(name), *value))
-                .collect(),
+            values: values.iter().map(|(name, value)| (Symbol::new(name), *value)).collect(),
         };
         let study = study(question).unwrap();
         let text = lindstedt::export::text::document(&lindstedt::report::mechanism(&study), 120);
-        (
-            study
-                .rests
-                .iter()
-                .map(|rest| rest.drive)
-                .collect::<Vec<_>>(),
-            text,
-        )
+        (study.rests.iter().map(|rest| rest.drive).collect::<Vec<_>>(), text)
     };
     let quartic = ("x", "m*x'^2/2", "k3*x^4/4");
     for values in [&[][..], &[("m", 1.0), ("k3", 2.0)]] {
         let (drive, text) = printed(quartic.0, quartic.1, quartic.2, values);
         assert_eq!(drive, [Drive::Absent]);
-        assert!(
-            !text.contains("freely") && text.contains("no linear force"),
-            "{text}"
-        );
+        assert!(!text.contains("freely") && text.contains("no linear force"), "{text}");
     }
     let (_, text) = printed("x", "m*x'^2/2", "0", &[("m", 1.0)]);
     assert!(text.contains("moves freely\n"), "{text}");
     // Held by what swings in time alone.
-    let (drive, text) = printed(
-        "x",
-        "m*x'^2/2",
-        "k*cos(W*t)*x^2/2",
-        &[("m", 1.0), ("k", 1.0), ("W", 2.0)],
-    );
+    let (drive, text) =
+        printed("x", "m*x'^2/2", "k*cos(W*t)*x^2/2", &[("m", 1.0), ("k", 1.0), ("W", 2.0)]);
     assert_eq!(drive, [Drive::Acts]);
-    assert!(
-        text.contains("freely where nothing that is left out acts"),
-        "{text}"
-    );
+    assert!(text.contains("freely where nothing that is left out acts"), "{text}");
     // Kapitza's pendulum rests upright and hanging; pushed sideways it does not.
     let upwards = "m*L^2*phi'^2/2 - m*L*a*W*sin(W*t)*sin(phi)*phi'";
     let (drive, text) = printed("phi", upwards, "-m*g*L*cos(phi)", &[]);
@@ -515,17 +413,8 @@ fn a_contact_is_followed_through_its_touches() {
     course.begin("x".into(), -1.5).unwrap();
     course.duration = 10.0;
     let motion = course.follow().unwrap();
-    assert!(
-        motion.is_complete(),
-        "{:?} at {}",
-        motion.reason(),
-        motion.end()
-    );
-    assert!(
-        motion.balance.as_ref().expect("an energy").residual < 1e-9,
-        "{:?}",
-        motion.balance
-    );
+    assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
+    assert!(motion.balance.as_ref().expect("an energy").residual < 1e-9, "{:?}", motion.balance);
 }
 
 #[test]
@@ -539,12 +428,7 @@ fn what_is_no_mechanism_is_refused() {
     for (coordinates, kinetic, potential, words) in [
         (&["x"][..], "m*y'^2/2", "0", "`y'`: no coordinate"),
         (&["x", "y"], "m*x'^2/2", "k*y^2/2", "does not contain `y'`"),
-        (
-            &["x"],
-            "m*x'^2/2",
-            "k*x'*x",
-            "a potential depends on coordinates alone",
-        ),
+        (&["x"], "m*x'^2/2", "k*x'*x", "a potential depends on coordinates alone"),
         (&["x"], "m*x''^2/2", "0", "`x''`"),
         (&["x", "x"], "m*x'^2/2", "0", "twice"),
         (&[], "0", "0", "1 to 8 coordinates"),
@@ -557,37 +441,19 @@ fn what_is_no_mechanism_is_refused() {
         let message = refused(coordinates, kinetic, potential);
         assert!(message.contains(words), "{kinetic}: {message}");
     }
-    assert!(matches!(
-        Mechanism::parse(&["x"], "m*(", "0"),
-        Err(MechanicsError::Parse { .. })
-    ));
+    assert!(matches!(Mechanism::parse(&["x"], "m*(", "0"), Err(MechanicsError::Parse { .. })));
     // A unit that is missing, and one that is not used.
     let pendulum = Mechanism::parse(&["x"], "m*L^2*x'^2/2", "-m*g*L*cos(x)").unwrap();
     let units = |names: &[(&str, &str)]| -> BTreeMap<Symbol, Dimension> {
-        names
-            .iter()
-            .map(|(name, unit)| (Symbol::new(name), unit.parse().unwrap()))
-            .collect()
+        names.iter().map(|(name, unit)| (Symbol::new(name), unit.parse().unwrap())).collect()
     };
     let message = pendulum
         .check_units(&units(&[("x", "1"), ("m", "kg"), ("L", "m")]))
         .unwrap_err()
         .to_string();
     assert_eq!(message, "`g` has no unit");
-    let all = [
-        ("x", "1"),
-        ("m", "kg"),
-        ("L", "m"),
-        ("g", "m/s^2"),
-        ("k", "N/m"),
-    ];
-    assert!(
-        pendulum
-            .check_units(&units(&all))
-            .unwrap_err()
-            .to_string()
-            .contains("`k`")
-    );
+    let all = [("x", "1"), ("m", "kg"), ("L", "m"), ("g", "m/s^2"), ("k", "N/m")];
+    assert!(pendulum.check_units(&units(&all)).unwrap_err().to_string().contains("`k`"));
     assert!(pendulum.check_units(&units(&all[..4])).is_ok());
 }
 
@@ -597,17 +463,11 @@ fn a_derived_equation_is_handed_on() {
     let problem = example("pendulum");
     let equation = problem.equation.clone().expect("an equation");
     assert_eq!(
-        Oscillator::parse(&equation)
-            .expect("an oscillator")
-            .force
-            .to_string(),
+        Oscillator::parse(&equation).expect("an oscillator").force.to_string(),
         "g*sin(x)/L"
     );
     let course = Course::of_equation(&Oscillator::parse(&equation).unwrap());
-    assert_eq!(
-        course.parameters(),
-        vec![Symbol::new("L"), Symbol::new("g")]
-    );
+    assert_eq!(course.parameters(), vec![Symbol::new("L"), Symbol::new("g")]);
 }
 
 /// Dry friction that sticks and lets go, held against the simulator of equation (7), which has its
@@ -616,33 +476,13 @@ fn a_derived_equation_is_handed_on() {
 fn a_driven_motion_sticks_and_lets_go() {
     use lindstedt::impact::{Integrator as Route, Model, Settings, Start, simulate};
     let equation = "x'' + alpha*sgn(x') + sin(x) - beta*sin(eta*t)*cos(x) = 0";
-    for (alpha, beta, eta) in [
-        (0.3, 0.5, 0.35),
-        (0.2, 0.25, 0.8),
-        (0.5, 0.9, 0.3),
-        (0.1, 0.05, 1.1),
-    ] {
-        let model = Model {
-            alpha,
-            beta,
-            frequency_ratio: eta,
-            right: None,
-            ..Model::default()
-        };
-        let settings = Settings {
-            duration: 80.0,
-            ..Settings::default()
-        };
-        let truth = simulate(
-            &model,
-            Start {
-                x: 0.6,
-                velocity: 0.0,
-            },
-            Route::Taylor,
-            &settings,
-        )
-        .expect("a motion");
+    for (alpha, beta, eta) in
+        [(0.3, 0.5, 0.35), (0.2, 0.25, 0.8), (0.5, 0.9, 0.3), (0.1, 0.05, 1.1)]
+    {
+        let model = Model { alpha, beta, frequency_ratio: eta, right: None, ..Model::default() };
+        let settings = Settings { duration: 80.0, ..Settings::default() };
+        let truth = simulate(&model, Start { x: 0.6, velocity: 0.0 }, Route::Taylor, &settings)
+            .expect("a motion");
         let mut course = Course::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
         course.values = [("alpha", alpha), ("beta", beta), ("eta", eta)]
             .map(|(name, value)| (Symbol::new(name), value))
@@ -650,20 +490,12 @@ fn a_driven_motion_sticks_and_lets_go() {
         course.begin("x".into(), 0.6).expect("a state");
         course.duration = 80.0;
         let motion = course.follow().expect("a motion");
-        assert!(
-            motion.is_complete(),
-            "{:?} at {}",
-            motion.reason(),
-            motion.end()
-        );
+        assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
         for index in 0..=800 {
             let t = 0.1 * f64::from(index);
             let (x, _) = truth.path.at(t).expect("a state");
             let own = motion.at(t).expect("a state")[0];
-            assert!(
-                (own - x).abs() < 1e-8,
-                "{alpha} {beta} {eta} at {t}: {own} {x}"
-            );
+            assert!((own - x).abs() < 1e-8, "{alpha} {beta} {eta} at {t}: {own} {x}");
         }
         assert!(
             motion.held().count() > 2 || beta < alpha,
@@ -681,10 +513,8 @@ fn mechanism(
 ) -> Course {
     let mut mechanism = Mechanism::parse(&["x", "y"], kinetic, potential).expect("a mechanism");
     mechanism.dissipation = expression(dissipation);
-    mechanism.forces = forces
-        .iter()
-        .map(|(name, force)| (Symbol::new(name), expression(force)))
-        .collect();
+    mechanism.forces =
+        forces.iter().map(|(name, force)| (Symbol::new(name), expression(force))).collect();
     let equations = mechanism.equations().expect("equations");
     let mut course = Course::of_mechanism(&mechanism, &equations).expect("a course");
     for (name, value) in start {
@@ -696,12 +526,7 @@ fn mechanism(
 
 fn followed(course: Course) -> lindstedt::trajectory::Trajectory {
     let motion = course.follow().expect("a motion");
-    assert!(
-        motion.is_complete(),
-        "{:?} at {}",
-        motion.reason(),
-        motion.end()
-    );
+    assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
     let residual = motion.balance.as_ref().expect("a balance").residual;
     assert!(residual < 1e-9, "{residual}");
     motion
@@ -712,21 +537,14 @@ fn followed(course: Course) -> lindstedt::trajectory::Trajectory {
 #[test]
 fn friction_holds_one_of_several_coordinates() {
     // The spring between them, 1/2 times y, is too weak for the friction of 2/5: y'' + 3/2 y = 0.
-    let blocks = [
-        "(x'^2 + y'^2)/2",
-        "(x^2 + y^2)/2 + (x - y)^2/4",
-        "2/5*abs(x')",
-    ];
+    let blocks = ["(x'^2 + y'^2)/2", "(x^2 + y^2)/2 + (x - y)^2/4", "2/5*abs(x')"];
     let motion = followed(mechanism(blocks, &[], &[("y", 0.79)], 40.0));
     assert_eq!(motion.held().collect::<Vec<_>>(), [[0.0, 40.0]]);
     for index in 0..=400 {
         let t = 0.1 * f64::from(index);
         let state = motion.at(t).expect("a state");
         assert_eq!((state[0], state[2]), (0.0, 0.0));
-        assert!(
-            (state[1] - 0.79 * (1.5_f64.sqrt() * t).cos()).abs() < 1e-12,
-            "{t}: {state:?}"
-        );
+        assert!((state[1] - 0.79 * (1.5_f64.sqrt() * t).cos()).abs() < 1e-12, "{t}: {state:?}");
     }
     // Only just too strong: let go where y/2 = 2/5.
     let motion = followed(mechanism(blocks, &[], &[("y", 0.7), ("y'", 0.7)], 40.0));
@@ -734,10 +552,7 @@ fn friction_holds_one_of_several_coordinates() {
     let phase = (0.7 / 1.5_f64.sqrt()).atan2(0.7);
     let let_go = (phase - (0.8 / size).acos()) / 1.5_f64.sqrt();
     let [from, until] = motion.held().next().expect("a hold");
-    assert!(
-        from == 0.0 && (until - let_go).abs() < 1e-12,
-        "{until} {let_go}"
-    );
+    assert!(from == 0.0 && (until - let_go).abs() < 1e-12, "{until} {let_go}");
     assert!(motion.at(until + 0.3).expect("a state")[0] > 1e-4);
     // Three quarters of the mass ride on the rest: 4 x'' + x = 0 while 3 |x''| <= 1/2.
     let riding = ["x'^2/2 + 3*y'^2/2", "x^2/2", "abs(x' - y')/2"];
@@ -754,10 +569,7 @@ fn friction_holds_one_of_several_coordinates() {
     // equally fast.
     let motion = followed(mechanism(riding, &[], &[("x", 1.2)], 30.0));
     assert!(
-        motion
-            .held()
-            .all(|[from, until]| from > 0.0 && until > from)
-            && motion.held().count() > 0
+        motion.held().all(|[from, until]| from > 0.0 && until > from) && motion.held().count() > 0
     );
     // On a belt it is carried until the spring is too strong, and then swings about where friction
     // alone would hold it: it comes back to the speed of the belt once a period, and touches it.
@@ -770,11 +582,7 @@ fn friction_holds_one_of_several_coordinates() {
     let motion = followed(course);
     for index in 0..=400 {
         let t = 0.1 * f64::from(index);
-        let carried = if t < 0.6 {
-            0.5 * t
-        } else {
-            0.3 + 0.5 * (t - 0.6).sin()
-        };
+        let carried = if t < 0.6 { 0.5 * t } else { 0.3 + 0.5 * (t - 0.6).sin() };
         let x = motion.at(t).expect("a state")[0];
         assert!((x - carried).abs() < 1e-7, "{t}: {x} {carried}");
     }
@@ -808,9 +616,8 @@ fn time_stepping(
         };
         for _ in 0..60 {
             let before = impulse;
-            for (contact, inertia) in [mass[0], mass[1], mass[0] * mass[1] / (mass[0] + mass[1])]
-                .into_iter()
-                .enumerate()
+            for (contact, inertia) in
+                [mass[0], mass[1], mass[0] * mass[1] / (mass[0] + mass[1])].into_iter().enumerate()
             {
                 let now = velocity(impulse);
                 let slip = [now[0] - belt, now[1], now[0] - now[1]][contact];
@@ -864,29 +671,20 @@ fn stick_and_slip_of_several_coordinates_is_that_of_time_stepping() {
         let motion = followed(course.clone());
         let force = |t: f64, [x, y]: [f64; 2], [u, v]: [f64; 2]| {
             let between = 0.5 * (x - y);
-            [
-                -x - between - 0.05 * u,
-                -y + between - 0.05 * v + drive * (eta * t).cos(),
-            ]
+            [-x - between - 0.05 * u, -y + between - 0.05 * v + drive * (eta * t).cos()]
         };
         let truth = time_stepping(mass, bounds, belt, force, ([0.4, -0.3], [0.0; 2]), 25.0);
         for (index, [x, y]) in truth.iter().enumerate() {
             let t = 0.01 * index as f64;
             let state = motion.at(t.min(25.0)).expect("a state");
             let apart = (state[0] - x).abs().max((state[1] - y).abs());
-            assert!(
-                apart < 5e-4,
-                "{mass:?} {bounds:?} {belt} at {t}: {state:?} {x} {y}"
-            );
+            assert!(apart < 5e-4, "{mass:?} {bounds:?} {belt} at {t}: {state:?} {x} {y}");
         }
         held += motion.held().count();
         // The other integrator finds the same.
         course.duration = 6.0;
         let other = course.follow_by(Integrator::RungeKutta).expect("a motion");
-        assert!(
-            motion.difference(&other) < 1e-7,
-            "{mass:?} {bounds:?} {belt}"
-        );
+        assert!(motion.difference(&other) < 1e-7, "{mass:?} {bounds:?} {belt}");
     }
     assert!(held > 8, "{held}");
 }
@@ -900,10 +698,7 @@ fn more_frictions_at_rest_than_velocities() {
     let bodies = ["x'^2/2 + y'^2/2", "0", dissipation];
     let motion = followed(mechanism(bodies, &[("x", "t/10")], &[], 25.0));
     let held: Vec<[f64; 2]> = motion.held().collect();
-    assert!(
-        matches!(held.as_slice(), [[0.0, apart]] if (apart - 19.0).abs() < 1e-6),
-        "{held:?}"
-    );
+    assert!(matches!(held.as_slice(), [[0.0, apart]] if (apart - 19.0).abs() < 1e-6), "{held:?}");
     for index in 0..=190 {
         let t = 0.1 * f64::from(index);
         let place = (t - 11.0).max(0.0).powi(3) / 120.0;
@@ -919,10 +714,7 @@ fn more_frictions_at_rest_than_velocities() {
     let own = |t: f64| t * t * t / 60.0 - 3.0 * t * t / 4.0;
     let from = 19.0 * 19.0 / 20.0 - 1.5 * 19.0;
     assert!((y - (at + 6.0 * speed + 0.2 * 36.0)).abs() < 1e-6, "{y}");
-    assert!(
-        (x - (at + 6.0 * (speed - from) + own(25.0) - own(19.0))).abs() < 1e-6,
-        "{x}"
-    );
+    assert!((x - (at + 6.0 * (speed - from) + own(25.0) - own(19.0))).abs() < 1e-6, "{x}");
 }
 
 /// Three balls in a row that touch each other to rounding: 3/10 + 4/10 is 7/10 for people, and more
@@ -942,20 +734,12 @@ fn balls_that_touch_to_rounding_cost_no_steps() {
         course.duration = until;
         course.step_limit = 500;
         let motion = course.follow().expect("a motion");
-        assert!(
-            motion.is_complete(),
-            "{:?} at {}",
-            motion.reason(),
-            motion.end()
-        );
+        assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
         motion.at(until).expect("a state")
     };
     let still = row([0.1, 0.4, 0.7], 2.0);
     assert!(
-        still
-            .iter()
-            .zip([0.1, 0.4, 0.7])
-            .all(|(now, then)| (now - then).abs() < 1e-14),
+        still.iter().zip([0.1, 0.4, 0.7]).all(|(now, then)| (now - then).abs() < 1e-14),
         "{still:?}"
     );
     // All three in contact: u'' = -100 (2 u - w), w'' = -100 (2 w - u) of both depths, modes 10 and
@@ -987,13 +771,7 @@ fn corners_of_mechanisms() {
     // Without a gate of its own a root has no value, and the motion ends there.
     assert!(!follow("x'' + 1 + sqrt(x)*H(1 - x) = 0", 0.5, 10.0).is_complete());
     let stop = Mechanism::parse(&["x"], "m*x'^2/2", "k*x^2/2 + c*(x - a)^2*H(x - a)/2").unwrap();
-    assert_eq!(
-        stop.equations().unwrap().left[0]
-            .to_string()
-            .matches("H(")
-            .count(),
-        2
-    );
+    assert_eq!(stop.equations().unwrap().left[0].to_string().matches("H(").count(), 2);
     let crossed = Mechanism::parse(&["x", "y"], "m*x'*y'", "k*x*y").unwrap();
     let accelerations = crossed.equations().unwrap().accelerations().unwrap();
     assert_same(&accelerations[0], &expression("-k*x/m"));
@@ -1007,34 +785,19 @@ fn corners_of_mechanisms() {
     chain.dissipation = expression("750*(x' - y')^2 + 100*(y' - z')^2");
     let equations = chain.equations().unwrap();
     let rest = &equilibria(&equations).unwrap()[0];
-    let modes = Modes::at(&equations, rest)
-        .unwrap()
-        .numbers(&BTreeMap::new())
-        .unwrap();
+    let modes = Modes::at(&equations, rest).unwrap().numbers(&BTreeMap::new()).unwrap();
     assert!(modes.iter().all(|mode| mode.growth <= 0.0), "{modes:?}");
     assert_eq!((modes[0].frequency, modes[0].growth), (0.0, 0.0));
     // Anywhere along a rod: the swing depends on where, and says so.
-    let rod = Mechanism::parse(
-        &["s", "x"],
-        "m*s'^2/2 + (I + m*s^2)*x'^2/2",
-        "-M*g*L*cos(x)",
-    )
-    .unwrap();
+    let rod =
+        Mechanism::parse(&["s", "x"], "m*s'^2/2 + (I + m*s^2)*x'^2/2", "-M*g*L*cos(x)").unwrap();
     let equations = rod.equations().unwrap();
     let rest = &equilibria(&equations).unwrap()[0];
-    assert_eq!(
-        Modes::at(&equations, rest).unwrap().taken_at_zero,
-        [Symbol::new("s")]
-    );
+    assert_eq!(Modes::at(&equations, rest).unwrap().taken_at_zero, [Symbol::new("s")]);
     // Duffing's spring rests at zero.
-    let duffing = Mechanism::parse(&["x"], "m*x'^2/2", "k*x^2/2 + b*x^4/4")
-        .unwrap()
-        .equations()
-        .unwrap();
-    assert_eq!(
-        equilibria(&duffing).unwrap()[0].places,
-        [Place::At(Expr::zero())]
-    );
+    let duffing =
+        Mechanism::parse(&["x"], "m*x'^2/2", "k*x^2/2 + b*x^4/4").unwrap().equations().unwrap();
+    assert_eq!(equilibria(&duffing).unwrap()[0].places, [Place::At(Expr::zero())]);
 }
 
 /// A mechanism that changes with the time other than by sines and cosines has no modes; what a
@@ -1042,16 +805,12 @@ fn corners_of_mechanisms() {
 #[test]
 fn a_mechanism_that_changes_with_the_time_has_no_modes() {
     let hanging = |kinetic: &str, potential: &str| {
-        let equations = Mechanism::parse(&["x"], kinetic, potential)
-            .unwrap()
-            .equations()
-            .unwrap();
+        let equations = Mechanism::parse(&["x"], kinetic, potential).unwrap().equations().unwrap();
         let rest = equilibria(&equations).unwrap().swap_remove(0);
         Modes::at(&equations, &rest).unwrap()
     };
-    let numbers: BTreeMap<Symbol, f64> = ["m", "L", "g", "v", "a", "k", "c", "W"]
-        .map(|name| (Symbol::new(name), 1.5))
-        .into();
+    let numbers: BTreeMap<Symbol, f64> =
+        ["m", "L", "g", "v", "a", "k", "c", "W"].map(|name| (Symbol::new(name), 1.5)).into();
     for (kinetic, potential) in [
         ("m*(L + v*t)^2*x'^2/2", "-m*g*(L + v*t)*cos(x)"),
         ("m*L^2*exp(c*t)*x'^2/2", "-m*g*L*exp(c*t)*cos(x)"),
@@ -1069,25 +828,14 @@ fn a_mechanism_that_changes_with_the_time_has_no_modes() {
     }
     // omega^2 of the mechanism with its drive at rest, whether that shakes the pivot or the length.
     for (kinetic, potential, square) in [
-        (
-            "m*(L + a*cos(W*t))^2*x'^2/2",
-            "-m*g*(L + a*cos(W*t))*cos(x)",
-            "g/L",
-        ),
-        (
-            "m*(L^2*x'^2 - 2*a*W*L*x'*sin(W*t)*sin(x))/2",
-            "-m*g*L*cos(x)",
-            "g/L",
-        ),
+        ("m*(L + a*cos(W*t))^2*x'^2/2", "-m*g*(L + a*cos(W*t))*cos(x)", "g/L"),
+        ("m*(L^2*x'^2 - 2*a*W*L*x'*sin(W*t)*sin(x))/2", "-m*g*L*cos(x)", "g/L"),
         ("m*x'^2/2", "k*(1 + a*sin(W*t)^2)*x^2/2", "k/m"),
         ("m*x'^2/2", "k*(x - a*sin(W*t))^2/2", "k/m"),
     ] {
         let modes = hanging(kinetic, potential);
         assert_eq!(modes.changing, None, "{kinetic}, {potential}");
-        assert_same(
-            &modes.square().unwrap().expect("one coordinate"),
-            &expression(square),
-        );
+        assert_same(&modes.square().unwrap().expect("one coordinate"), &expression(square));
     }
 }
 
@@ -1105,14 +853,8 @@ fn groups_need_no_length_among_the_parameters() {
         mechanism.check_units(&units).unwrap();
         Groups::of(&mechanism, &mechanism.equations().unwrap(), &units).unwrap()
     };
-    let linear = [
-        ("x", "m"),
-        ("m", "kg"),
-        ("k", "N/m"),
-        ("c", "N*s/m"),
-        ("b", "N/m^3"),
-        ("F", "N"),
-    ];
+    let linear =
+        [("x", "m"), ("m", "kg"), ("k", "N/m"), ("c", "N*s/m"), ("b", "N/m^3"), ("F", "N")];
     let found = groups("m*x'^2/2", "k*x^2/2", "c*x'^2/2", &linear[..4]);
     assert_same(&found.left[0], &expression("x'' + 2*zeta*x' + x"));
     assert_eq!(found.groups.len(), 1);
@@ -1120,32 +862,16 @@ fn groups_need_no_length_among_the_parameters() {
     assert_same(&found.time, &expression("sqrt(m/k)"));
     assert_eq!(found.sizes, [("x".into(), "x0".into())]);
     assert_eq!((found.parameters, found.rank), (3, 3));
-    let cubic = groups(
-        "m*x'^2/2",
-        "b*x^4/4",
-        "0",
-        &[linear[0], linear[1], linear[4]],
-    );
-    assert_eq!(
-        (cubic.left[0].to_string().as_str(), cubic.groups.len()),
-        ("x'' + x^3", 0)
-    );
+    let cubic = groups("m*x'^2/2", "b*x^4/4", "0", &[linear[0], linear[1], linear[4]]);
+    assert_eq!((cubic.left[0].to_string().as_str(), cubic.groups.len()), ("x'' + x^3", 0));
     assert_same(&cubic.time, &expression("sqrt(m/b)/x0"));
     // Where the parameters have a length, it is the unit as before.
-    let duffing = groups(
-        "m*x'^2/2",
-        "k*x^2/2 + b*x^4/4",
-        "0",
-        &[linear[0], linear[1], linear[2], linear[4]],
-    );
+    let duffing =
+        groups("m*x'^2/2", "k*x^2/2 + b*x^4/4", "0", &[linear[0], linear[1], linear[2], linear[4]]);
     assert!(duffing.sizes.is_empty() && duffing.groups.is_empty());
     // A dry force has one, too.
-    let dry = groups(
-        "m*x'^2/2",
-        "k*x^2/2",
-        "F*abs(x')",
-        &[linear[0], linear[1], linear[2], linear[5]],
-    );
+    let dry =
+        groups("m*x'^2/2", "k*x^2/2", "F*abs(x')", &[linear[0], linear[1], linear[2], linear[5]]);
     assert!(dry.sizes.is_empty());
 }
 
@@ -1155,23 +881,16 @@ fn groups_need_no_length_among_the_parameters() {
 fn energies_from_the_places_of_seven_links_join() {
     const LINKS: usize = 7;
     let sum = |last: usize, function: &str| {
-        let terms: Vec<String> = (1..=last)
-            .map(|i| format!("L{i}*q{i}'*{function}(q{i})"))
-            .collect();
+        let terms: Vec<String> =
+            (1..=last).map(|i| format!("L{i}*q{i}'*{function}(q{i})")).collect();
         terms.join(" + ")
     };
     let kinetic: Vec<String> = (1..=LINKS)
         .map(|k| format!("m{k}*(({})^2 + ({})^2)/2", sum(k, "cos"), sum(k, "sin")))
         .collect();
-    let height = |k: usize| {
-        (1..=k)
-            .map(|i| format!("L{i}*cos(q{i})"))
-            .collect::<Vec<_>>()
-            .join(" + ")
-    };
-    let potential: Vec<String> = (1..=LINKS)
-        .map(|k| format!("-m{k}*g*({})", height(k)))
-        .collect();
+    let height =
+        |k: usize| (1..=k).map(|i| format!("L{i}*cos(q{i})")).collect::<Vec<_>>().join(" + ");
+    let potential: Vec<String> = (1..=LINKS).map(|k| format!("-m{k}*g*({})", height(k))).collect();
     let names: Vec<String> = (1..=LINKS).map(|i| format!("q{i}")).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let mechanism = Mechanism::parse(&names, &kinetic.join(" + "), &potential.join(" + ")).unwrap();
@@ -1198,16 +917,10 @@ fn a_letter_that_cancels_has_no_value_for_the_equation() {
     // Where it is followed, the energy has a mass: given, it is the unit of the energy, without it
     // the motion is the same.
     let follow = |given: &str| {
-        let file: Problem = text
-            .replace("m = 3\n", given)
-            .replace("k = 1", "")
-            .parse()
-            .expect("a file");
+        let file: Problem =
+            text.replace("m = 3\n", given).replace("k = 1", "").parse().expect("a file");
         let mut course = file.course().expect("a course");
-        course.values = file
-            .values_with(&course.parameters())
-            .expect("values")
-            .numbers();
+        course.values = file.values_with(&course.parameters()).expect("values").numbers();
         course.begin("x".into(), 0.4).expect("a state");
         course.duration = 2.0;
         course.follow().expect("a motion")

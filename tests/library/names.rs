@@ -25,23 +25,15 @@ const EQUATIONS: [&str; 4] = [
 
 fn answer(equation: &str, name: &str, method: Method) -> Option<Solution> {
     let oscillator = Oscillator::parse(&equation.replace("NAME", name)).expect("an equation");
-    let options = Options {
-        method: Some(method),
-        small: Some("A".to_owned()),
-        ..Options::default()
-    };
+    let options =
+        Options { method: Some(method), small: Some("A".to_owned()), ..Options::default() };
     solve(&oscillator, &options).ok()
 }
 
 fn omega(equation: &str, name: &str, solution: &Solution) -> Option<f64> {
     let oscillator = Oscillator::parse(&equation.replace("NAME", name)).expect("an equation");
     let at = BTreeMap::from([(Symbol::new("A"), 0.5), (Symbol::new(name), 0.75)]);
-    Some(
-        evaluate(&oscillator, solution, &at)
-            .ok()?
-            .frequency_squared
-            .sqrt(),
-    )
+    Some(evaluate(&oscillator, solution, &at).ok()?.frequency_squared.sqrt())
 }
 
 #[test]
@@ -58,11 +50,7 @@ fn no_name_of_a_parameter_changes_a_number() {
                     (Some(Some(plain)), Some(Some(value))) => (value / plain - 1.0).abs() < 1e-12,
                     (plain, value) => plain == value,
                 };
-                assert!(
-                    same,
-                    "{equation} with {name} by {}: {plain:?}, {value:?}",
-                    method.name()
-                );
+                assert!(same, "{equation} with {name} by {}: {plain:?}, {value:?}", method.name());
             }
         }
     }
@@ -89,10 +77,7 @@ fn a_name_of_the_program_is_never_one_of_the_user() {
             for name in NAMES {
                 let solution = answer(equation, name, method).expect("as with kappa");
                 assert!(
-                    solution
-                        .definitions
-                        .iter()
-                        .all(|entry| entry.symbol.name() != name),
+                    solution.definitions.iter().all(|entry| entry.symbol.name() != name),
                     "{name}"
                 );
                 let report = report(&solution);
@@ -107,29 +92,18 @@ fn a_name_of_the_program_is_never_one_of_the_user() {
 fn latex_tells_all_names_of_an_answer_apart() {
     for (equation, pairs) in [
         ("x'' + k1*x + k_1*x^3 + k_*x^5 = 0", ["k1", "k_1", "k_"]),
-        (
-            "x'' + omega0^2*x + omega_0*x^3 + omega0_*x^5 = 0",
-            ["omega0", "omega_0", "omega0_"],
-        ),
-        (
-            "x'' + epsilon*x + eps*x^3 + eps_*x^5 = 0",
-            ["epsilon", "eps", "eps_"],
-        ),
+        ("x'' + omega0^2*x + omega_0*x^3 + omega0_*x^5 = 0", ["omega0", "omega_0", "omega0_"]),
+        ("x'' + epsilon*x + eps*x^3 + eps_*x^5 = 0", ["epsilon", "eps", "eps_"]),
     ] {
         let solution = solve(
             &Oscillator::parse(equation).unwrap(),
-            &Options {
-                small: Some("A".to_owned()),
-                ..Options::default()
-            },
+            &Options { small: Some("A".to_owned()), ..Options::default() },
         )
         .unwrap();
         let document = latex::solution(&solution, None);
         let spellings = pairs.map(|name| latex::symbol(Symbol::new(name)));
         assert!(
-            spellings
-                .iter()
-                .all(|spelling| document.contains(spelling.as_str())),
+            spellings.iter().all(|spelling| document.contains(spelling.as_str())),
             "{document}"
         );
         assert!(
@@ -151,26 +125,16 @@ fn linear_coefficients_that_are_no_fractions() {
         ("sqrt(NAME)", 0.75_f64.sqrt()),
         ("sqrt(2)*NAME", 0.75 * 2_f64.sqrt()),
         ("(sqrt(2) + NAME)", 0.75 + 2_f64.sqrt()),
-        (
-            "pi*sqrt(3)/NAME",
-            3_f64.sqrt() * std::f64::consts::PI / 0.75,
-        ),
+        ("pi*sqrt(3)/NAME", 3_f64.sqrt() * std::f64::consts::PI / 0.75),
     ] {
         let equation = format!("x'' + {linear}*x + x^3 = 0");
         for method in [Method::LindstedtPoincare, Method::Pade] {
             let solution = answer(&equation, "kappa", method).expect(linear);
             let found = omega(&equation, "kappa", &solution).expect("real");
             let rough = (value + 0.75 * 0.25).sqrt();
-            assert!(
-                (found / rough - 1.0).abs() < 2e-3,
-                "{linear}: {found} {rough}"
-            );
+            assert!((found / rough - 1.0).abs() < 2e-3, "{linear}: {found} {rough}");
             let line = solution.formula();
-            for symbol in solution
-                .law
-                .frequency_squared()
-                .into_iter()
-                .flat_map(|law| law.symbols())
+            for symbol in solution.law.frequency_squared().into_iter().flat_map(|law| law.symbols())
             {
                 let known =
                     symbol.name() == "A" || symbol.name() == "kappa" || symbol.name() == "pi";
@@ -193,9 +157,7 @@ fn negative_constants_are_no_stiffness() {
             solve(&Oscillator::parse(equation).unwrap(), &Options::default()).unwrap_err();
         let refused = ["linear restoring force", "unstable"];
         assert!(
-            refused
-                .iter()
-                .any(|words| refusal.to_string().contains(words)),
+            refused.iter().any(|words| refusal.to_string().contains(words)),
             "{equation}: {refusal}"
         );
     }
@@ -212,10 +174,7 @@ impl Report {
         let steps = text::steps(solution) + &text::solution(solution, None, 0.01);
         let formulas = latex::steps(solution) + &latex::solution(solution, None);
         // Comments and running text spell names as they are typed.
-        let formulas: Vec<&str> = formulas
-            .lines()
-            .filter(|line| !line.starts_with('%'))
-            .collect();
+        let formulas: Vec<&str> = formulas.lines().filter(|line| !line.starts_with('%')).collect();
         let mut formulas = formulas.join("\n");
         while let Some(start) = formulas.find("\\text{") {
             let mut depth = 0;
@@ -249,21 +208,18 @@ impl Report {
             })
             .collect();
         let spelt = latex::symbol(Symbol::new(name));
-        let alone = self
-            .formulas
-            .match_indices(spelt.as_str())
-            .filter(|(start, _)| {
-                let before = self.formulas[..*start].chars().next_back();
-                let after = self.formulas[start + spelt.len()..].chars().next();
-                let in_name = |letter: char| letter.is_ascii_alphabetic() || letter == '\\';
-                let goes_on = |letter: char| letter.is_ascii_alphabetic() || letter == '_';
-                // A command ends where a letter follows no letter; `\mathrm{K}` is no `K`.
-                let inside = self.formulas[..*start].ends_with("\\mathrm{")
-                    || self.formulas[..*start].ends_with("\\tilde{");
-                let longer = before.is_some_and(in_name) && !spelt.starts_with('\\')
-                    || after.is_some_and(goes_on);
-                !inside && !longer
-            });
+        let alone = self.formulas.match_indices(spelt.as_str()).filter(|(start, _)| {
+            let before = self.formulas[..*start].chars().next_back();
+            let after = self.formulas[start + spelt.len()..].chars().next();
+            let in_name = |letter: char| letter.is_ascii_alphabetic() || letter == '\\';
+            let goes_on = |letter: char| letter.is_ascii_alphabetic() || letter == '_';
+            // A command ends where a letter follows no letter; `\mathrm{K}` is no `K`.
+            let inside = self.formulas[..*start].ends_with("\\mathrm{")
+                || self.formulas[..*start].ends_with("\\tilde{");
+            let longer = before.is_some_and(in_name) && !spelt.starts_with('\\')
+                || after.is_some_and(goes_on);
+            !inside && !longer
+        });
         uses.push(alone.count());
         uses
     }
@@ -277,10 +233,7 @@ impl Report {
             "is", "it", "by", "or", "as", "no", "up", "an", "on", "H", "df", "The", "the", "and",
             "du", "dx",
         ];
-        let mut names: Vec<String> = words(&self.words[0])
-            .into_keys()
-            .map(str::to_owned)
-            .collect();
+        let mut names: Vec<String> = words(&self.words[0]).into_keys().map(str::to_owned).collect();
         let all = names.clone();
         names.retain(|name| {
             let letter = name.starts_with(|letter: char| letter.is_ascii_alphabetic());
@@ -367,12 +320,7 @@ fn every_name_of_every_method_may_be_taken() {
             }
         }
     }
-    assert!(
-        wrong.is_empty(),
-        "{} of {tried}:\n{}",
-        wrong.len(),
-        wrong.join("\n")
-    );
+    assert!(wrong.is_empty(), "{} of {tried}:\n{}", wrong.len(), wrong.join("\n"));
     assert!(tried > 400, "{tried}");
 }
 
@@ -388,10 +336,7 @@ fn functions_of_answers_are_no_parameters() {
         ("Gamma*Gamma(1/4)", "\\Gamma\\left", "\\mathit{\\Gamma} "),
     ] {
         let printed = latex::expression(&expression.parse().expect("an expression"));
-        assert!(
-            printed.contains(function) && printed.starts_with(parameter),
-            "{printed}"
-        );
+        assert!(printed.contains(function) && printed.starts_with(parameter), "{printed}");
     }
 }
 
@@ -400,20 +345,10 @@ fn functions_of_answers_are_no_parameters() {
 fn a_greek_coordinate_is_set_as_its_letter() {
     let oscillator = Oscillator::parse("phi'' + (g/L)*sin(phi) = 0").unwrap();
     let document = latex::solution(&solve(&oscillator, &Options::default()).unwrap(), None);
-    assert!(
-        document.contains("\\ddot{\\phi}") && document.contains("\n\\phi(t) &="),
-        "{document}"
-    );
+    assert!(document.contains("\\ddot{\\phi}") && document.contains("\n\\phi(t) &="), "{document}");
     // A comment is plain text.
-    let set: String = document
-        .lines()
-        .filter(|line| !line.starts_with('%'))
-        .collect();
-    assert_eq!(
-        set.replace("\\phi", "").matches("phi").count(),
-        0,
-        "{document}"
-    );
+    let set: String = document.lines().filter(|line| !line.starts_with('%')).collect();
+    assert_eq!(set.replace("\\phi", "").matches("phi").count(), 0, "{document}");
 }
 
 /// The phase of the answer gives way to a coordinate of the same name; nothing else changes.
@@ -422,16 +357,12 @@ fn a_coordinate_may_be_called_theta() {
     for method in Method::ALL {
         let derived = |equation: &str| {
             let oscillator = Oscillator::parse(equation).expect("an equation");
-            let options = Options {
-                method: Some(method),
-                ..Options::default()
-            };
+            let options = Options { method: Some(method), ..Options::default() };
             solve(&oscillator, &options).ok()
         };
-        let (Some(plain), Some(named)) = (
-            derived("x'' + k*sin(x) = 0"),
-            derived("theta'' + k*sin(theta) = 0"),
-        ) else {
+        let (Some(plain), Some(named)) =
+            (derived("x'' + k*sin(x) = 0"), derived("theta'' + k*sin(theta) = 0"))
+        else {
             assert!(
                 derived("x'' + k*sin(x) = 0").is_none()
                     && derived("theta'' + k*sin(theta) = 0").is_none()
@@ -474,47 +405,28 @@ fn letters_of_an_answer_give_way_to_names_of_the_equation() {
     for (own, plain) in [
         ("x'' + omega^2*x + A*x^3 = 0", "x'' + k^2*x + c*x^3 = 0"),
         ("A'' + omega^2*A + a*A^3 = 0", "x'' + k^2*x + c*x^3 = 0"),
-        (
-            "omega'' + A^2*omega + a*omega^3 = 0",
-            "x'' + k^2*x + c*x^3 = 0",
-        ),
+        ("omega'' + A^2*omega + a*omega^3 = 0", "x'' + k^2*x + c*x^3 = 0"),
     ] {
         let typed = Oscillator::parse(own).expect("an equation");
         assert!(solve(&typed, &Options::default()).is_err());
         let apart = typed.with_own_names_apart().expect("names of its own");
         let others = Oscillator::parse(plain).expect("an equation");
-        let by = |name: &str| {
-            apart
-                .parameters
-                .iter()
-                .copied()
-                .find(|own| own.name() == name)
-        };
+        let by = |name: &str| apart.parameters.iter().copied().find(|own| own.name() == name);
         let stiffness = by("omega").or(by("A")).expect("a parameter");
-        let nonlinear = apart
-            .parameters
-            .iter()
-            .copied()
-            .find(|own| *own != stiffness);
+        let nonlinear = apart.parameters.iter().copied().find(|own| *own != stiffness);
         let nonlinear = nonlinear.expect("another one");
         for method in Method::ALL {
-            let options = Options {
-                method: Some(method),
-                ..Options::default()
-            };
+            let options = Options { method: Some(method), ..Options::default() };
             let (Ok(found), Ok(expected)) = (solve(&apart, &options), solve(&others, &options))
             else {
                 panic!("{own} by {}", method.name());
             };
             let amplitude = found.amplitude.symbol();
             let at = BTreeMap::from([(amplitude, 0.5), (stiffness, 1.5), (nonlinear, 0.75)]);
-            let found_value = evaluate(&apart, &found, &at)
-                .expect("a value")
-                .frequency_squared;
+            let found_value = evaluate(&apart, &found, &at).expect("a value").frequency_squared;
             let at = BTreeMap::from([(amplitude, 0.5), ("k".into(), 1.5), ("c".into(), 0.75)]);
-            let expected_value = evaluate(&others, &expected, &at)
-                .expect("a value")
-                .frequency_squared;
+            let expected_value =
+                evaluate(&others, &expected, &at).expect("a value").frequency_squared;
             assert!(
                 (found_value / expected_value - 1.0).abs() < 1e-12,
                 "{own} by {}",
@@ -555,15 +467,9 @@ fn letters_stand_in_every_format() {
     let oscillator = Oscillator::parse("x'' + omega^2*x + A*x^3 = 0").expect("an equation");
     let apart = oscillator.with_own_names_apart().expect("names of its own");
     let solution = solve(&apart, &Options::default()).expect("a law");
-    assert_eq!(
-        solution.formula(),
-        "Omega^2 = omega^2 + 3*A*C^2/4 - 3*A^2*C^4/(128*omega^2)"
-    );
+    assert_eq!(solution.formula(), "Omega^2 = omega^2 + 3*A*C^2/4 - 3*A^2*C^4/(128*omega^2)");
     let article = latex::solution(&solution, None);
-    assert!(
-        article.contains(r"\Omega^{2} &= \omega^{2} + \frac{3 A C^{2}}{4}"),
-        "{article}"
-    );
+    assert!(article.contains(r"\Omega^{2} &= \omega^{2} + \frac{3 A C^{2}}{4}"), "{article}");
     let document = json::solution(&solution, None);
     assert_eq!(document.parameters, ["A", "omega"]);
     let at = [("C", "1"), ("A", "1/10"), ("omega", "2")]
@@ -574,17 +480,11 @@ fn letters_stand_in_every_format() {
     }
     let judged = lindstedt::judge(&apart, &solution, &values, 0.01).expect("a verdict");
     let report = text::solution(&solution, Some(&judged), 0.01);
-    assert!(
-        report.contains("at C = 1, A = 1/10, omega = 2\n  Omega  "),
-        "{report}"
-    );
+    assert!(report.contains("at C = 1, A = 1/10, omega = 2\n  Omega  "), "{report}");
     assert!(report.contains("within 1 % up to C = "), "{report}");
     let read = json::read_solution(&serde_json::to_value(&document).expect("a document"))
         .expect("a solution");
-    assert_eq!(
-        (read.law, read.displacement),
-        (solution.law, solution.displacement)
-    );
+    assert_eq!((read.law, read.displacement), (solution.law, solution.displacement));
 }
 
 /// Parameters called as the amplitude or the frequency of an answer are refused by the derivation,
@@ -594,24 +494,14 @@ fn parameters_with_names_of_answers_are_written_otherwise() {
     let typed = Oscillator::parse("x'' + omega^2*x + a*x^3 = 0").expect("an equation");
     assert!(solve(&typed, &Options::default()).is_err());
     let (free, renamed) = typed.with_names_of_answers_free().expect("other names");
-    assert_eq!(
-        renamed,
-        [("a".into(), "a1".into()), ("omega".into(), "omega0".into())]
-    );
+    assert_eq!(renamed, [("a".into(), "a1".into()), ("omega".into(), "omega0".into())]);
     let law = |oscillator: &Oscillator| {
         let solution = solve(oscillator, &Options::default()).expect("a law");
-        solution
-            .law
-            .frequency_squared()
-            .expect("a polynomial")
-            .to_string()
+        solution.law.frequency_squared().expect("a polynomial").to_string()
     };
     let plain = Oscillator::parse("x'' + omega0^2*x + a1*x^3 = 0").expect("an equation");
     assert_eq!(law(&free), law(&plain));
     let driven = Oscillator::parse("x'' + x = A*cos(omega*t)").expect("an equation");
     let (_, renamed) = driven.with_names_of_answers_free().expect("other names");
-    assert_eq!(
-        renamed,
-        [("A".into(), "A1".into()), ("omega".into(), "Omega".into())]
-    );
+    assert_eq!(renamed, [("A".into(), "A1".into()), ("omega".into(), "Omega".into())]);
 }

@@ -9,9 +9,7 @@ use lindstedt::{Oscillator, Symbol};
 
 /// By power series, and by Runge-Kutta where two are wanted.
 fn followed(equation: &str, start: [f64; 2], duration: f64, count: usize) -> Vec<Trajectory> {
-    let integrators = [Integrator::Taylor, Integrator::RungeKutta]
-        .into_iter()
-        .take(count);
+    let integrators = [Integrator::Taylor, Integrator::RungeKutta].into_iter().take(count);
     let motion = |integrator: Integrator| {
         let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
         course.begin(Symbol::new("x"), start[0]).expect("a state");
@@ -52,10 +50,7 @@ fn a_narrow_bump_in_place_gives_its_work() {
                 motion.integrator
             );
             // Back where it began: what it has gained it gives back.
-            assert!(
-                (motion.extremes()[0][1] - 1.0).abs() < 2.0 * allowed,
-                "{bell}"
-            );
+            assert!((motion.extremes()[0][1] - 1.0).abs() < 2.0 * allowed, "{bell}");
         }
     }
     for width in [1e-4_f64, 1e-8] {
@@ -84,21 +79,14 @@ fn a_steep_switch_is_taken_where_it_is() {
         let expected = 0.2 - (0.04 + 1.0_f64).sqrt();
         for motion in followed(&equation, [1.0, 0.0], 20.0, 2) {
             let found = least(&motion);
-            assert!(
-                (found - expected).abs() < 1e-9,
-                "{equation}: {found} {expected}"
-            );
+            assert!((found - expected).abs() < 1e-9, "{equation}: {found} {expected}");
         }
     }
     // Beyond the speed 1/2 the force is less by 1/2: w = x' obeys w' = 1 - H(w - 1/2)/2.
     for motion in followed("x'' = 3/4 - tanh(1e6*(x' - 1/2))/4", [0.0, 0.0], 2.0, 2) {
         let expected = 0.125 + 1.5 * 0.5 + 0.25 * 1.5 * 1.5;
         let found = motion.at(2.0).expect("a state")[0];
-        assert!(
-            (found - expected).abs() < 1e-6,
-            "{:?}: {found} {expected}",
-            motion.integrator
-        );
+        assert!((found - expected).abs() < 1e-6, "{:?}: {found} {expected}", motion.integrator);
     }
 }
 
@@ -112,10 +100,7 @@ fn a_pulse_that_meets_the_motion_on_its_way_counts() {
         for motion in followed(&equation, [0.0, -0.7], 10.0, 2) {
             let expected = 0.3 - (1.0 - 2.0 * work).sqrt();
             let found = motion.at(10.0).expect("a state")[1];
-            assert!(
-                (found - expected).abs() < 1e-9,
-                "{equation}: {found} {expected}"
-            );
+            assert!((found - expected).abs() < 1e-9, "{equation}: {found} {expected}");
         }
     }
 }

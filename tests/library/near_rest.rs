@@ -19,9 +19,8 @@ struct Case {
 
 fn cases() -> Vec<Case> {
     // x + 2.55 x^3 = 1.04 by Newton's iteration.
-    let load = (0..60).fold(0.5_f64, |x, _| {
-        x - (x + 2.55 * x.powi(3) - 1.04) / (1.0 + 7.65 * x * x)
-    });
+    let load =
+        (0..60).fold(0.5_f64, |x, _| x - (x + 2.55 * x.powi(3) - 1.04) / (1.0 + 7.65 * x * x));
     let dottie = (0..60).fold(0.7_f64, |x, _| x - (x - x.cos()) / (1.0 + x.sin()));
     // x + x |x| = 1/3.
     let root = 0.5 * ((7.0_f64 / 3.0).sqrt() - 1.0);
@@ -72,9 +71,7 @@ const POWERS: [i32; 8] = [3, 5, 7, 8, 9, 10, 12, 30];
 fn at(amplitude: f64) -> Values {
     let mut values = Values::default();
     let text = format!("{amplitude:e}");
-    values
-        .insert(Symbol::new("A"), text.parse().unwrap())
-        .unwrap();
+    values.insert(Symbol::new("A"), text.parse().unwrap()).unwrap();
     values
 }
 
@@ -82,16 +79,10 @@ fn at(amplitude: f64) -> Values {
 fn the_true_frequency_keeps_its_digits_at_every_amplitude() {
     for case in cases() {
         let oscillator = Oscillator::parse(case.equation).unwrap();
-        let options = Options {
-            method: Some(Method::Exact),
-            ..Options::default()
-        };
+        let options = Options { method: Some(Method::Exact), ..Options::default() };
         let solution = solve(&oscillator, &options).unwrap();
         let [linear, quadratic, cubic] = case.coefficients;
-        for power in POWERS
-            .into_iter()
-            .filter(|&power| case.equilibrium == 0.0 || power < 14)
-        {
+        for power in POWERS.into_iter().filter(|&power| case.equilibrium == 0.0 || power < 14) {
             for side in [1.0, -1.0] {
                 let amplitude = side * 10.0_f64.powi(-power);
                 let context = format!("{} at {amplitude:e}", case.equation);
@@ -113,21 +104,14 @@ fn the_true_frequency_keeps_its_digits_at_every_amplitude() {
                 let judged = judge(&oscillator, &solution, &at(amplitude), 0.01).unwrap();
                 let error = judged.true_frequency / expected - 1.0;
                 // By Runge-Kutta where there is no energy without an integrating factor.
-                let slack = if case.equation.starts_with('(') {
-                    slack + 1e-10
-                } else {
-                    slack
-                };
+                let slack = if case.equation.starts_with('(') { slack + 1e-10 } else { slack };
                 assert!(error.abs() < slack, "{context}: true {error:e}");
                 // The formula's own rounding of the equilibrium, beside the amplitude.
                 let rounding = 1e-8 + 4.0 * f64::EPSILON * case.equilibrium / amplitude.abs();
                 let deviation = judged.max_deviation.expect("a motion");
                 assert!(deviation < rounding, "{context}: deviation {deviation:e}");
                 let residual = judged.residual.expect("a motion");
-                assert!(
-                    residual < 100.0 * rounding,
-                    "{context}: residual {residual:e}"
-                );
+                assert!(residual < 100.0 * rounding, "{context}: residual {residual:e}");
             }
         }
     }
@@ -150,15 +134,8 @@ fn the_edge_of_the_well_does_not_depend_on_the_amplitude_asked_for() {
     let solution = solve(&oscillator, &Options::default()).unwrap();
     for power in [8, 16, 30, 100] {
         let judged = judge(&oscillator, &solution, &at(10.0_f64.powi(-power)), 0.01).unwrap();
-        let texts: Vec<&str> = judged
-            .ranges
-            .iter()
-            .map(|range| range.text.as_str())
-            .collect();
-        assert!(
-            texts.iter().all(|text| !text.contains("periodic for")),
-            "1e-{power}: {texts:?}"
-        );
+        let texts: Vec<&str> = judged.ranges.iter().map(|range| range.text.as_str()).collect();
+        assert!(texts.iter().all(|text| !text.contains("periodic for")), "1e-{power}: {texts:?}");
     }
 }
 
@@ -169,17 +146,12 @@ fn a_barrier_far_from_rest_stays_in_the_force() {
     for (length, stiffness) in [(378_000.0_f64, 566e18_f64), (0.378, 566e18), (1e-7, 1e9)] {
         let equation = format!("x'' + 241e13*x + {stiffness}*max(x - {length}, 0) = 0");
         let oscillator = Oscillator::parse(&equation).unwrap();
-        let options = Options {
-            method: Some(Method::Exact),
-            ..Options::default()
-        };
+        let options = Options { method: Some(Method::Exact), ..Options::default() };
         let solution = solve(&oscillator, &options).unwrap();
         let amplitude = -10.0 / 3.0 * length;
         let given = BTreeMap::from([(Symbol::new("A"), amplitude)]);
-        let found = numbers::evaluate(&oscillator, &solution, &given)
-            .unwrap()
-            .frequency_squared
-            .sqrt();
+        let found =
+            numbers::evaluate(&oscillator, &solution, &given).unwrap().frequency_squared.sqrt();
         // Behind the barrier: a linear motion about another centre, entered at the speed of the
         // first.
         let (outer, inner) = (241e13_f64.sqrt(), (241e13 + stiffness).sqrt());
@@ -188,9 +160,6 @@ fn a_barrier_far_from_rest_stays_in_the_force() {
         let behind = 2.0 * (speed / inner).atan2(length - centre) / inner;
         let before = 2.0 * (std::f64::consts::PI - (length / amplitude.abs()).acos()) / outer;
         let expected = std::f64::consts::TAU / (behind + before);
-        assert!(
-            (found / expected - 1.0).abs() < 1e-9,
-            "{equation}: {found} {expected}"
-        );
+        assert!((found / expected - 1.0).abs() < 1e-9, "{equation}: {found} {expected}");
     }
 }

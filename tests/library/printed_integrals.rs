@@ -22,13 +22,7 @@ fn value(formula: &Formula, numbers: &Numbers, context: &Context) -> Option<f64>
         Formula::OverRoot(numerator, inside) => {
             Some(numerator.evaluate(numbers).ok()? / value(inside, numbers, context)?.sqrt())
         }
-        Formula::Integral {
-            factor,
-            from,
-            to,
-            integrand,
-            variable,
-        } => {
+        Formula::Integral { factor, from, to, integrand, variable } => {
             // The double exponential rule (H. Takahasi, M. Mori, Publ. RIMS 9 (1974) 721), for
             // roots below the line at the ends.
             const STEP: f64 = 0.06;
@@ -80,33 +74,21 @@ fn equations_hold(lines: &[Line], numbers: &mut Numbers, context: &Context, name
             continue;
         }
         let indices: Vec<f64> = match line.words.strip_prefix("for k = ") {
-            Some(list) => list
-                .split(", ")
-                .map(|k| k.parse().expect("a harmonic"))
-                .collect(),
+            Some(list) => list.split(", ").map(|k| k.parse().expect("a harmonic")).collect(),
             None => vec![1.0],
         };
         for k in indices {
             numbers.insert("k".into(), k);
-            let values: Vec<f64> = line
-                .equal
-                .iter()
-                .filter_map(|part| value(part, numbers, context))
-                .collect();
+            let values: Vec<f64> =
+                line.equal.iter().filter_map(|part| value(part, numbers, context)).collect();
             if values.len() < 2
-                || !line
-                    .equal
-                    .iter()
-                    .any(|part| matches!(part, Formula::Integral { .. }))
+                || !line.equal.iter().any(|part| matches!(part, Formula::Integral { .. }))
             {
                 continue;
             }
             for other in &values[1..] {
                 let size = values[0].abs().max(other.abs()).max(0.1);
-                assert!(
-                    (values[0] - other).abs() < 5e-6 * size,
-                    "{name}: {line}: {values:?}"
-                );
+                assert!((values[0] - other).abs() < 5e-6 * size, "{name}: {line}: {values:?}");
             }
             count += 1;
         }
@@ -116,10 +98,7 @@ fn equations_hold(lines: &[Line], numbers: &mut Numbers, context: &Context, name
 
 fn derived(equation: &str, method: Method) -> Option<(Oscillator, Solution)> {
     let oscillator = Oscillator::parse(equation).expect("an equation");
-    let options = Options {
-        method: Some(method),
-        ..Options::default()
-    };
+    let options = Options { method: Some(method), ..Options::default() };
     let solution = solve(&oscillator, &options).ok()?;
     Some((oscillator, solution))
 }
@@ -137,16 +116,8 @@ fn every_printed_integral_is_the_number_given_with_it() {
         ("x'' + sin(x) - sin(x)*cos(x)/2 = 0", |_| 1.0, 2),
         ("x'' + x + x*x'^2 = 0", |x| (x * x).exp(), 3),
         // log M = 2 int g, g what stands before x'^2.
-        (
-            "(1 + x^4)*x'' + 2*x^3*x'^2 + sin(x) = 0",
-            |x| 1.0 + x.powi(4),
-            3,
-        ),
-        (
-            "(1 + x^4)*x'' + 2*x^3*x'^2 + x + x^2/5 = 0",
-            |x| 1.0 + x.powi(4),
-            2,
-        ),
+        ("(1 + x^4)*x'' + 2*x^3*x'^2 + sin(x) = 0", |x| 1.0 + x.powi(4), 3),
+        ("(1 + x^4)*x'' + 2*x^3*x'^2 + x + x^2/5 = 0", |x| 1.0 + x.powi(4), 2),
         (
             "(2 + cos(x)^2)*x'' - sin(x)*cos(x)*x'^2 + 2*sin(x) = 0",
             |x| (2.0 + x.cos().powi(2)) / 3.0,
@@ -202,20 +173,13 @@ fn every_printed_integral_is_the_number_given_with_it() {
             let held = equations_hold(lines, &mut numbers, &context, &name);
             assert!(held > 0, "{name}: nothing could be evaluated in {lines:?}");
             // The derivation may show more.
-            let more: Vec<Line> = solution
-                .derivation
-                .iter()
-                .filter(|line| !lines.contains(line))
-                .cloned()
-                .collect();
+            let more: Vec<Line> =
+                solution.derivation.iter().filter(|line| !lines.contains(line)).cloned().collect();
             equations_hold(&more, &mut numbers, &context, &name);
         }
         counts.push((equation, methods, expected));
     }
-    let others: Vec<_> = counts
-        .iter()
-        .filter(|(_, found, expected)| found != expected)
-        .collect();
+    let others: Vec<_> = counts.iter().filter(|(_, found, expected)| found != expected).collect();
     assert!(others.is_empty(), "{others:?}");
 }
 
@@ -227,16 +191,10 @@ fn the_period_of_a_negative_amplitude_is_printed_as_well() {
         ("x'' + x + x^2 = 0", (|_| 1.0) as fn(f64) -> f64),
         ("x'' + 2*x + x^2/(1 + x^4) = 0", |_| 1.0),
         ("x'' + x + x*abs(x)/2 + x^2/5 = 0", |_| 1.0),
-        ("(1 + x^4)*x'' + 2*x^3*x'^2 + x + x^2/5 = 0", |x| {
-            1.0 + x.powi(4)
-        }),
+        ("(1 + x^4)*x'' + 2*x^3*x'^2 + x + x^2/5 = 0", |x| 1.0 + x.powi(4)),
     ] {
         let (oscillator, solution) = derived(equation, Method::Exact).expect(equation);
-        let words: Vec<&str> = solution
-            .derivation
-            .iter()
-            .map(|line| line.words.as_str())
-            .collect();
+        let words: Vec<&str> = solution.derivation.iter().map(|line| line.words.as_str()).collect();
         let said = |text: &str| words.iter().any(|words| words.contains(text));
         assert!(
             said("x1, of the other sign than A") && said("for A < 0 from A to x1"),
@@ -338,19 +296,16 @@ fn balances_of_forces_with_corners_hold() {
 /// have ended.
 #[test]
 fn a_balance_is_found_at_every_amplitude() {
-    for equation in [
-        "x'' + x + sgn(x) = 0",
-        "x'' + x/10 + x*abs(x) = 0",
-        "x'' + sin(x) + 2*tanh(5*x) = 0",
-    ] {
+    for equation in
+        ["x'' + x + sgn(x) = 0", "x'' + x/10 + x*abs(x) = 0", "x'' + sin(x) + 2*tanh(5*x) = 0"]
+    {
         let (oscillator, solution) = derived(equation, Method::HarmonicBalance).expect("an answer");
         let mut last = f64::NAN;
         for k in 1..=80 {
             let numbers = Numbers::from([("A".into(), 0.03 * f64::from(k))]);
             let found = evaluate(&oscillator, &solution, &numbers);
-            let squared = found
-                .unwrap_or_else(|error| panic!("{equation}, {k}: {error}"))
-                .frequency_squared;
+            let squared =
+                found.unwrap_or_else(|error| panic!("{equation}, {k}: {error}")).frequency_squared;
             // One branch: it moves by less and less.
             assert!(
                 k == 1 || (squared / last).ln().abs() < 1.5 / f64::from(k),
@@ -366,26 +321,14 @@ fn a_balance_is_found_at_every_amplitude() {
 #[test]
 fn the_energy_is_written_out_where_it_can_be() {
     for (equation, expected) in [
-        (
-            "(1 + k*x^2)*x'' + k*x*x'^2 + x = 0",
-            "T = 4*int_0^A sqrt(1 + k*x^2)/sqrt(A^2 - x^2) dx",
-        ),
-        (
-            "x'' + x + x*x'^2 = 0",
-            "T = 4*int_0^A exp(x^2/2)/sqrt(exp(A^2) - exp(x^2)) dx",
-        ),
+        ("(1 + k*x^2)*x'' + k*x*x'^2 + x = 0", "T = 4*int_0^A sqrt(1 + k*x^2)/sqrt(A^2 - x^2) dx"),
+        ("x'' + x + x*x'^2 = 0", "T = 4*int_0^A exp(x^2/2)/sqrt(exp(A^2) - exp(x^2)) dx"),
         ("x'' + exp(x) - 1 = 0", "-x1 + exp(x1) = -A + exp(A)"),
-        (
-            "x'' + x - 1/x = 0",
-            "x1 + x1^2/2 - log(1 + x1) = A + A^2/2 - log(1 + A)",
-        ),
+        ("x'' + x - 1/x = 0", "x1 + x1^2/2 - log(1 + x1) = A + A^2/2 - log(1 + A)"),
     ] {
         let (_, solution) = derived(equation, Method::Exact).expect(equation);
         let lines = solution.law.quadrature().expect(equation);
         let text: Vec<String> = lines.iter().map(ToString::to_string).collect();
-        assert!(
-            text.iter().any(|line| line.contains(expected)),
-            "{equation}: {text:?}"
-        );
+        assert!(text.iter().any(|line| line.contains(expected)), "{equation}: {text:?}");
     }
 }

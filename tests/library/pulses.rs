@@ -43,14 +43,9 @@ fn a_short_pulse_rings() {
         for motion in followed(&equation, 0.0, 40.0) {
             assert!(place(&motion, 12.0).abs() < 1e-12, "{equation}");
             for time in [22.5, 25.0, 31.3, 40.0] {
-                let (found, expected) = (
-                    place(&motion, time),
-                    ringing(time - 20.0, height, 1.0 / rate),
-                );
-                assert!(
-                    (found - expected).abs() < 1e-9,
-                    "{equation}, {time}: {found} {expected}"
-                );
+                let (found, expected) =
+                    (place(&motion, time), ringing(time - 20.0, height, 1.0 / rate));
+                assert!((found - expected).abs() < 1e-9, "{equation}, {time}: {found} {expected}");
             }
         }
     }
@@ -71,15 +66,8 @@ fn the_work_of_a_steep_pulse_closes_the_account() {
             if integrator == Integrator::RungeKutta {
                 course.tolerance = 1e-12;
             }
-            let balance = course
-                .follow_by(integrator)
-                .expect(equation)
-                .balance
-                .expect("a balance");
-            assert!(
-                balance.residual < 1e-9,
-                "{equation} by {integrator:?}: {balance:?}"
-            );
+            let balance = course.follow_by(integrator).expect(equation).balance.expect("a balance");
+            assert!(balance.residual < 1e-9, "{equation} by {integrator:?}: {balance:?}");
         }
     }
 }
@@ -95,10 +83,7 @@ fn every_pulse_of_several_counts() {
             let expected = place(quiet, time) + ringing(time - 20.0, 50.0, 1e-2)
                 - ringing(time - 23.1, 30.0, 1e-3);
             let found = place(motion, time);
-            assert!(
-                (found - expected).abs() < 1e-9,
-                "{time}: {found} {expected}"
-            );
+            assert!((found - expected).abs() < 1e-9, "{time}: {found} {expected}");
         }
     }
 }
@@ -109,11 +94,7 @@ fn every_pulse_of_several_counts() {
 fn a_switch_and_a_pulse_with_tails() {
     for motion in followed("x'' + tanh((t - 7.3)*1e5) = 0", 0.0, 20.0) {
         let expected = 0.5 * 20.0_f64.powi(2) - 12.7_f64.powi(2);
-        assert!(
-            (place(&motion, 20.0) - expected).abs() < 1e-8,
-            "{}",
-            place(&motion, 20.0)
-        );
+        assert!((place(&motion, 20.0) - expected).abs() < 1e-8, "{}", place(&motion, 20.0));
     }
     // The integral of (T - t)/(1 + ((t - s)/w)^2).
     for motion in followed("x'' = 1e3/(1 + ((t - 7.3)*1e3)^2)", 0.0, 20.0) {
@@ -148,8 +129,7 @@ fn a_short_pulse_frees_what_friction_holds() {
     for motion in followed("x'' + x + 0.5*sgn(x') = 50*exp(-((t-20)*100)^2)", 0.1, 40.0) {
         let held: Vec<[f64; 2]> = motion.held().collect();
         assert!(
-            held.first()
-                .is_some_and(|[from, until]| *from < 1.0 && (until - 20.0).abs() < 0.05),
+            held.first().is_some_and(|[from, until]| *from < 1.0 && (until - 20.0).abs() < 0.05),
             "{held:?}"
         );
         assert!(place(&motion, 21.0) > 0.3);
@@ -178,10 +158,7 @@ fn what_ends_at_the_edge_of_what_friction_holds_is_held() {
                 panic!("{start}: {held:?}");
             };
             let rests = std::f64::consts::PI * f64::from(half_periods);
-            assert!(
-                (from - rests).abs() < 1e-6 && *until == 60.0,
-                "{start}: {held:?}"
-            );
+            assert!((from - rests).abs() < 1e-6 && *until == 60.0, "{start}: {held:?}");
             assert!((place(&motion, 50.0) - rests_at).abs() < 1e-9);
         }
     }

@@ -16,25 +16,15 @@ use lindstedt::{Oscillator, Symbol};
 fn judged_by(oscillator: &Oscillator, options: &Options, at: &[(&str, &str)]) -> Verification {
     let mut values = Values::default();
     for (name, value) in at {
-        values
-            .insert(Symbol::new(name), value.parse().unwrap())
-            .unwrap();
+        values.insert(Symbol::new(name), value.parse().unwrap()).unwrap();
     }
     let solution = solve(oscillator, options).unwrap();
     judge(oscillator, &solution, &values, 0.01).unwrap()
 }
 
 fn judged(equation: &str, method: Method, order: Option<u32>, amplitude: &str) -> Verification {
-    let options = Options {
-        method: Some(method),
-        order,
-        ..Options::default()
-    };
-    judged_by(
-        &Oscillator::parse(equation).unwrap(),
-        &options,
-        &[("A", amplitude)],
-    )
+    let options = Options { method: Some(method), order, ..Options::default() };
+    judged_by(&Oscillator::parse(equation).unwrap(), &options, &[("A", amplitude)])
 }
 
 /// A sine waves more and more often along a large motion; the balance of two harmonics is followed
@@ -42,11 +32,8 @@ fn judged(equation: &str, method: Method, order: Option<u32>, amplitude: &str) -
 #[test]
 fn a_balance_is_followed_through_the_waves_of_its_force() {
     let oscillator = Oscillator::parse("x'' + x + sin(x) = 0").unwrap();
-    let options = Options {
-        method: Some(Method::HarmonicBalance),
-        order: Some(2),
-        ..Options::default()
-    };
+    let options =
+        Options { method: Some(Method::HarmonicBalance), order: Some(2), ..Options::default() };
     let solution = solve(&oscillator, &options).unwrap();
     for amplitude in [20.0, 100.0, 131.0, 179.0, 250.0, 400.0] {
         let square =
@@ -54,10 +41,7 @@ fn a_balance_is_followed_through_the_waves_of_its_force() {
                 .unwrap();
         let force = |x: f64| x + x.sin();
         let waves = |from: f64, to: f64| {
-            (-400..400)
-                .map(f64::from)
-                .filter(|place| from < *place && *place < to)
-                .collect()
+            (-400..400).map(f64::from).filter(|place| from < *place && *place < to).collect()
         };
         let truth =
             TAU / conservative_period(&Force::with_cuts(&force, &waves), 0.0, amplitude).unwrap();
@@ -72,10 +56,7 @@ fn a_balance_is_followed_through_the_waves_of_its_force() {
 
 /// The range whose text has these words.
 fn range<'a>(verification: &'a Verification, words: &str) -> Option<&'a Range> {
-    verification
-        .ranges
-        .iter()
-        .find(|range| range.text.contains(words))
+    verification.ranges.iter().find(|range| range.text.contains(words))
 }
 
 /// The number behind the words in the text of a range.
@@ -83,10 +64,7 @@ fn number_behind(verification: &Verification, words: &str) -> f64 {
     let found = range(verification, words)
         .unwrap_or_else(|| panic!("no `{words}` in {:?}", verification.ranges));
     let (_, rest) = found.text.split_once(words).expect("the words");
-    let number: String = rest
-        .chars()
-        .take_while(|letter| !": ;<".contains(*letter))
-        .collect();
+    let number: String = rest.chars().take_while(|letter| !": ;<".contains(*letter)).collect();
     number.parse().unwrap_or_else(|_| panic!("{}", found.text))
 }
 
@@ -126,10 +104,7 @@ fn a_law_that_reaches_zero_says_where() {
         for (amplitude, side) in [("1/2", 1.0), ("-1/2", -1.0)] {
             let found = judged(equation, Method::LindstedtPoincare, Some(4), amplitude);
             let place = number_behind(&found, WORDS);
-            assert!(
-                (place / (side * root(sign)) - 1.0).abs() < 1e-5,
-                "{equation}: {place}"
-            );
+            assert!((place / (side * root(sign)) - 1.0).abs() < 1e-5, "{equation}: {place}");
             assert!(!range(&found, WORDS).unwrap().outside);
         }
     }
@@ -161,12 +136,8 @@ fn a_pole_of_a_law_is_no_zero() {
         ("4", "1", "1", false),
         ("1/1000", "1/1000000", "10", false),
     ] {
-        let number = |text: &str| {
-            parse_expression(text)
-                .unwrap()
-                .evaluate(&Default::default())
-                .unwrap()
-        };
+        let number =
+            |text: &str| parse_expression(text).unwrap().evaluate(&Default::default()).unwrap();
         let (c1, quintic_term) = (0.75 * number(cubic), 0.625 * number(quintic));
         let c2 = quintic_term - 3.0 / 128.0 * number(cubic).powi(2);
         let equation = format!("x'' + x + {cubic}*x^3 + {quintic}*x^5 = 0");
@@ -175,27 +146,13 @@ fn a_pole_of_a_law_is_no_zero() {
             degrees: Some(Degrees::Quotient(1, 1)),
             ..Options::default()
         };
-        let found = judged_by(
-            &Oscillator::parse(&equation).unwrap(),
-            &options,
-            &[("A", amplitude)],
-        );
+        let found =
+            judged_by(&Oscillator::parse(&equation).unwrap(), &options, &[("A", amplitude)]);
         let expected = (c1 / c2).sqrt().copysign(number(amplitude));
         let place = number_behind(&found, WORDS);
-        assert!(
-            (place / expected - 1.0).abs() < 1e-5,
-            "{equation}: {place} {expected}"
-        );
-        assert_eq!(
-            range(&found, WORDS).unwrap().outside,
-            outside,
-            "{equation} at {amplitude}"
-        );
-        assert!(
-            range(&found, "reaches zero").is_none(),
-            "{:?}",
-            found.ranges
-        );
+        assert!((place / expected - 1.0).abs() < 1e-5, "{equation}: {place} {expected}");
+        assert_eq!(range(&found, WORDS).unwrap().outside, outside, "{equation} at {amplitude}");
+        assert!(range(&found, "reaches zero").is_none(), "{:?}", found.ranges);
     }
 }
 
@@ -210,18 +167,13 @@ fn what_lies_beyond_one_well_may_be_several() {
         "periodic for -1 < A < 0.414214: the separatrix passes the unstable equilibrium x = 0";
     for inside in ["1/4", "-3/4"] {
         let found = found(inside);
-        assert_eq!(
-            range(&found, "periodic").map(|range| range.text.as_str()),
-            Some(words)
-        );
+        assert_eq!(range(&found, "periodic").map(|range| range.text.as_str()), Some(words));
     }
     for beyond in ["1/2", "1", "-3"] {
         let found = found(beyond);
         let range = range(&found, words).unwrap_or_else(|| panic!("{:?}", found.ranges));
         assert!(
-            range
-                .text
-                .ends_with("the motion runs over several wells, and does so here")
+            range.text.ends_with("the motion runs over several wells, and does so here")
                 && !range.outside,
             "{range:?}"
         );
@@ -242,18 +194,10 @@ fn a_force_without_end_has_no_well() {
         ("x'' + x/(1 + x^2)^2 = 0", "1"),
     ] {
         let found = judged(equation, Method::Exact, None, amplitude);
-        assert!(
-            range(&found, "periodic").is_none(),
-            "{equation}: {:?}",
-            found.ranges
-        );
+        assert!(range(&found, "periodic").is_none(), "{equation}: {:?}", found.ranges);
     }
     for (equation, amplitude, words) in [
-        (
-            "x'' + x/(1 - x^2) = 0",
-            "1/2",
-            "periodic for |A| < 1: the force ends at x = 1",
-        ),
+        ("x'' + x/(1 - x^2) = 0", "1/2", "periodic for |A| < 1: the force ends at x = 1"),
         (
             "x'' + tan(3*x) = 0",
             "1/10",
@@ -264,11 +208,7 @@ fn a_force_without_end_has_no_well() {
             "1/2",
             "periodic for -1 < A < 2: the force ends at x = -1, the force ends at x = 2",
         ),
-        (
-            "x'' + log(1 + x) = 0",
-            "-1/2",
-            "periodic for -1 < A < 1.71828: the force ends at x = -1",
-        ),
+        ("x'' + log(1 + x) = 0", "-1/2", "periodic for -1 < A < 1.71828: the force ends at x = -1"),
         (
             "x'' + x*(2 - x)*(x + 3) = 0",
             "1",
@@ -292,24 +232,14 @@ fn singularities_have_their_place_and_an_amplitude_beyond_is_outside() {
         ("x'' + 2*x + x^3 = 0", 2.0_f64.sqrt()),
         ("x'' + 9*x + 4*x^3 = 0", 1.5),
     ] {
-        for (amplitude, outside) in [
-            ("1/2", false),
-            ("-1/2", false),
-            ("9/10", false),
-            ("8/5", true),
-            ("-8/5", true),
-        ] {
+        for (amplitude, outside) in
+            [("1/2", false), ("-1/2", false), ("9/10", false), ("8/5", true), ("-8/5", true)]
+        {
             let found = judged(equation, Method::LindstedtPoincare, None, amplitude);
             let place = number_behind(&found, "singularity is at A^2 = ");
-            assert!(
-                (place / -radius.powi(2) - 1.0).abs() < 5e-3,
-                "{equation}: {place}"
-            );
+            assert!((place / -radius.powi(2) - 1.0).abs() < 5e-3, "{equation}: {place}");
             let estimate = number_behind(&found, "|A| < about ");
-            assert!(
-                (estimate / radius - 1.0).abs() < 5e-3,
-                "{equation}: {estimate}"
-            );
+            assert!((estimate / radius - 1.0).abs() < 5e-3, "{equation}: {estimate}");
             let range = range(&found, "the series converges").unwrap();
             assert_eq!(range.outside, outside, "{equation} at {amplitude}");
         }
@@ -344,31 +274,18 @@ fn a_formula_fails_first_where_the_far_turning_point_meets_a_narrow_place() {
 #[test]
 fn a_range_that_ends_before_the_first_amplitude_looked_at() {
     const WORDS: &str = "within 1 % up to A = ";
-    let good = |amplitude| {
-        judged(
-            "x'' + x + x^3 = 0",
-            Method::LindstedtPoincare,
-            Some(2),
-            amplitude,
-        )
-    };
+    let good =
+        |amplitude| judged("x'' + x + x^3 = 0", Method::LindstedtPoincare, Some(2), amplitude);
     // omega^2 = 1 + 3 A^2/4 against the exact frequency.
     let end = number_behind(&good("1/2"), WORDS);
     for amplitude in ["1000", "-1000", "20"] {
         let found = good(amplitude);
-        assert!(
-            (number_behind(&found, WORDS).abs() / end - 1.0).abs() < 2e-3,
-            "{amplitude}"
-        );
+        assert!((number_behind(&found, WORDS).abs() / end - 1.0).abs() < 2e-3, "{amplitude}");
         assert!(range(&found, WORDS).unwrap().outside);
     }
     // Off by 2.2 % at every amplitude, however small.
     let nowhere = judged("x'' + x^3 = 0", Method::EnergyBalance, None, "1");
-    assert!(
-        range(&nowhere, "within 1 % at no amplitude")
-            .unwrap()
-            .outside
-    );
+    assert!(range(&nowhere, "within 1 % at no amplitude").unwrap().outside);
 }
 
 #[test]
@@ -376,11 +293,7 @@ fn a_mirrored_force_has_the_mirrored_ranges() {
     let words = |equation: &str, amplitude: &str| {
         let found = judged(equation, Method::LindstedtPoincare, None, amplitude);
         let place = number_behind(&found, "singularity is at A = ");
-        let ends = [
-            "|A| < about ",
-            "reaches zero at A = ",
-            "within 1 % up to A = ",
-        ];
+        let ends = ["|A| < about ", "reaches zero at A = ", "within 1 % up to A = "];
         let [radius, zero, end] = ends.map(|words| number_behind(&found, words));
         (radius, [place, zero, end])
     };
@@ -411,10 +324,7 @@ fn an_expansion_ends_at_the_first_corner() {
         (Method::HarmonicBalance, false),
         (Method::MaxMin, false),
     ] {
-        let options = Options {
-            method: Some(method),
-            ..Options::default()
-        };
+        let options = Options { method: Some(method), ..Options::default() };
         let said = |oscillator: &Oscillator| {
             let solution = solve(oscillator, &options).unwrap();
             solution.validity.contains(&Note::Corners)
@@ -426,17 +336,9 @@ fn an_expansion_ends_at_the_first_corner() {
 
 #[test]
 fn an_integral_by_quadrature_says_how_good_it_is() {
-    let found = judged(
-        "x'' + x + x^3/(1 + x^4) = 0",
-        Method::Hamiltonian,
-        None,
-        "1",
-    );
+    let found = judged("x'' + x + x^3/(1 + x^4) = 0", Method::Hamiltonian, None, "1");
     let range = range(&found, "the integral of the law is good to").unwrap();
-    assert!(
-        range.text.ends_with("good to 1e-15") && !range.outside,
-        "{range:?}"
-    );
+    assert!(range.text.ends_with("good to 1e-15") && !range.outside, "{range:?}");
 }
 
 #[test]
@@ -449,27 +351,17 @@ fn what_is_left_over_and_how_far_the_motion_strays() {
         let left = a.powi(3) / 4.0;
         let expected = left / (a + 3.0 * left).hypot(left);
         let residual = exact.residual.unwrap();
-        assert!(
-            (residual / expected - 1.0).abs() < 1e-9,
-            "{residual} {expected}"
-        );
+        assert!((residual / expected - 1.0).abs() < 1e-9, "{residual} {expected}");
         // The same law, so the same motion and the same numbers.
         assert!((found.residual.unwrap() / expected - 1.0).abs() < 1e-9);
     }
     // Over the amplitude: in units a thousand times larger it is the same.
     let deviation = |equation, amplitude| {
-        judged(equation, Method::Hamiltonian, None, amplitude)
-            .max_deviation
-            .unwrap()
+        judged(equation, Method::Hamiltonian, None, amplitude).max_deviation.unwrap()
     };
-    let (one, other) = (
-        deviation("x'' + x + x^3 = 0", "2"),
-        deviation("x'' + x + x^3/1000000 = 0", "2000"),
-    );
-    assert!(
-        (one / other - 1.0).abs() < 1e-6 && one > 0.01,
-        "{one} {other}"
-    );
+    let (one, other) =
+        (deviation("x'' + x + x^3 = 0", "2"), deviation("x'' + x + x^3/1000000 = 0", "2000"));
+    assert!((one / other - 1.0).abs() < 1e-6 && one > 0.01, "{one} {other}");
 }
 
 /// Released beyond the pole so far out that its energy is lost in rounding: the motion ends at the
@@ -480,9 +372,7 @@ fn a_pole_that_rounding_hides_ends_the_motion() {
     let solution = solve(&oscillator, &Options::default()).unwrap();
     for amplitude in ["7.26", "72600", "7260000", "1e9"] {
         let at = format!("A = {amplitude}").parse().unwrap();
-        let error = judge(&oscillator, &solution, &at, 0.01)
-            .unwrap_err()
-            .to_string();
+        let error = judge(&oscillator, &solution, &at, 0.01).unwrap_err().to_string();
         assert_eq!(
             error, "the motion runs into x = 1.07, where the force has no finite value",
             "A = {amplitude}"
@@ -523,11 +413,7 @@ fn a_bump_whose_tail_vanishes_at_rest_is_no_tail_alone() {
     };
     let period = TAU / f64::from(POINTS) * angles().map(time).sum::<f64>();
     let exact = judged(equation, Method::Exact, None, "3.52");
-    assert!(
-        (exact.true_frequency * period / TAU - 1.0).abs() < 1e-9,
-        "{}",
-        exact.true_frequency
-    );
+    assert!((exact.true_frequency * period / TAU - 1.0).abs() < 1e-9, "{}", exact.true_frequency);
     let force = |x: f64| 6.16 * x + 2330.0 * (x - 1.41) * bell(x);
     let projection = |angle: f64| force(amplitude * angle.cos()) * angle.cos();
     let squared = 2.0 / (amplitude * f64::from(POINTS)) * angles().map(projection).sum::<f64>();
@@ -542,10 +428,7 @@ fn a_bump_whose_tail_vanishes_at_rest_is_no_tail_alone() {
 fn a_closed_form_is_not_given_up_for_a_worse_quadrature() {
     const POINTS: u32 = 100_000;
     let oscillator = Oscillator::parse("x'' + 3.2*sin(1.01*x) = 0").unwrap();
-    let options = Options {
-        method: Some(Method::Hamiltonian),
-        ..Options::default()
-    };
+    let options = Options { method: Some(Method::Hamiltonian), ..Options::default() };
     let solution = solve(&oscillator, &options).unwrap();
     let amplitude = 23_100.0;
     let square =
@@ -555,10 +438,7 @@ fn a_closed_form_is_not_given_up_for_a_worse_quadrature() {
         .map(|angle| 3.2 * (1.01 * amplitude * angle.cos()).sin() * angle.cos())
         .sum();
     let expected = 2.0 / (amplitude * f64::from(POINTS)) * sum;
-    assert!(
-        (square / expected - 1.0).abs() < 1e-8,
-        "{square} {expected}"
-    );
+    assert!((square / expected - 1.0).abs() < 1e-8, "{square} {expected}");
 }
 
 /// The range of a formula begins at rest, however far out the motion is that was asked for.
@@ -577,10 +457,7 @@ fn a_range_ends_where_it_ends_for_a_smaller_motion() {
     let near = end("-2");
     for amplitude in ["-10", "-606", "-100000"] {
         let far = end(amplitude);
-        assert!(
-            (far / near - 1.0).abs() < 2e-3,
-            "A = {amplitude}: {far} {near}"
-        );
+        assert!((far / near - 1.0).abs() < 2e-3, "A = {amplitude}: {far} {near}");
     }
 }
 
@@ -589,9 +466,7 @@ fn refused(equation: &str, amplitude: &str) -> String {
     let oscillator = Oscillator::parse(equation).unwrap();
     let solution = solve(&oscillator, &Options::default()).unwrap();
     let mut values = Values::default();
-    values
-        .insert(Symbol::new("A"), amplitude.parse().unwrap())
-        .unwrap();
+    values.insert(Symbol::new("A"), amplitude.parse().unwrap()).unwrap();
     match judge(&oscillator, &solution, &values, 0.01) {
         Ok(_) => panic!("{equation}: a motion from {amplitude}"),
         Err(error) => error.to_string(),
@@ -605,10 +480,7 @@ fn is_periodic_until([equation, inside, outside, end]: [&str; 4]) -> String {
     let text = range(&found, "periodic").map(|range| range.text.clone());
     assert_eq!(text, Some(format!("periodic for {end}")), "{equation}");
     let words = refused(equation, outside);
-    assert!(
-        words.ends_with(&format!("motions are periodic for {end}")),
-        "{equation}: {words}"
-    );
+    assert!(words.ends_with(&format!("motions are periodic for {end}")), "{equation}: {words}");
     words
 }
 
@@ -663,17 +535,9 @@ fn a_motion_must_turn_back_on_the_other_side_too() {
         is_periodic_until([equation, inside, outside, end]);
     }
     // log(r) + 1/r grows without end, and so does sqrt(1 + x^2).
-    let found = judged(
-        "x'' + 1/(1 + x) - 1/(1 + x)^2 = 0",
-        Method::Exact,
-        None,
-        "-0.9",
-    );
+    let found = judged("x'' + 1/(1 + x) - 1/(1 + x)^2 = 0", Method::Exact, None, "-0.9");
     let text = range(&found, "periodic").map(|range| range.text.clone());
-    assert_eq!(
-        text.as_deref(),
-        Some("periodic for A > -1: the force ends at x = -1")
-    );
+    assert_eq!(text.as_deref(), Some("periodic for A > -1: the force ends at x = -1"));
     let found = judged("x'' + x/sqrt(1 + x^2) = 0", Method::Exact, None, "30");
     assert!(range(&found, "periodic").is_none(), "{:?}", found.ranges);
 }
@@ -705,12 +569,7 @@ fn inertia_that_depends_on_the_position_has_its_wells() {
             "A > -1: beyond it the motion escapes to x = infinity",
         ),
         // M = 1 - x^2 is zero where the force is infinite, and U = x^2/2.
-        (
-            "(1 - x^2)*x'' - x*x'^2 + x = 0",
-            "0.9",
-            "1.1",
-            "|A| < 1: the force ends at x = 1",
-        ),
+        ("(1 - x^2)*x'' - x*x'^2 + x = 0", "0.9", "1.1", "|A| < 1: the force ends at x = 1"),
         // About x = 1: M = exp(2 x), U' = exp(2 x)(x^2 - 1), U = exp(2 x)(2 x^2 - 2 x - 1)/4, at x
         // = -1 3 exp(-2)/4.
         (
@@ -721,22 +580,13 @@ fn inertia_that_depends_on_the_position_has_its_wells() {
         ),
     ] {
         let words = is_periodic_until([equation, inside, outside, end]);
-        assert!(
-            !words.contains("no finite value") && words.len() < 250,
-            "{equation}: {words}"
-        );
+        assert!(!words.contains("no finite value") && words.len() < 250, "{equation}: {words}");
     }
     let on_the_hilltop = refused("(1 + x^2)*x'' + x*x'^2 + x*(1 - x^2) = 0", "1");
-    assert!(
-        on_the_hilltop.contains("it is on the separatrix"),
-        "{on_the_hilltop}"
-    );
+    assert!(on_the_hilltop.contains("it is on the separatrix"), "{on_the_hilltop}");
     // What velocities add that has no energy is followed, and what becomes of the motion is said.
     let runs_away = refused("x'' + x + x'^2 = 0", "0.6");
-    assert!(
-        runs_away.contains("its speed grows beyond all bounds"),
-        "{runs_away}"
-    );
+    assert!(runs_away.contains("its speed grows beyond all bounds"), "{runs_away}");
 }
 
 /// Averaged to second order, `x'' + x + x'^2 = 0` has `omega = 1 - A^2/6`: it is omega that is
@@ -750,27 +600,17 @@ fn a_negative_frequency_is_said_of_omega() {
     let reason = |method: Method, order: u32| {
         let mut rows = table.rows.iter();
         let row = rows.find(|row| row.solution.method == method && row.solution.order == order);
-        row.and_then(|row| row.reason.as_ref())
-            .map(ToString::to_string)
+        row.and_then(|row| row.reason.as_ref()).map(ToString::to_string)
     };
-    assert_eq!(
-        reason(Method::Averaging, 2).as_deref(),
-        Some("not positive: omega <= 0")
-    );
+    assert_eq!(reason(Method::Averaging, 2).as_deref(), Some("not positive: omega <= 0"));
     let solution = &table
         .rows
         .iter()
         .find(|row| row.solution.method == Method::Averaging && row.solution.order == 2);
-    let motion = solution
-        .unwrap()
-        .solution
-        .motion_at(&"A = -3".parse().unwrap());
+    let motion = solution.unwrap().solution.motion_at(&"A = -3".parse().unwrap());
     assert_eq!(motion.unwrap_err().to_string(), "not positive: omega <= 0");
     // omega^2 = 1 - A^2/3 - 4 A^3/9 - 43 A^4/72.
-    assert_eq!(
-        reason(Method::LindstedtPoincare, 4).as_deref(),
-        Some("not real: omega^2 <= 0")
-    );
+    assert_eq!(reason(Method::LindstedtPoincare, 4).as_deref(), Some("not real: omega^2 <= 0"));
 }
 
 /// Motions that are known in closed form are judged as they are written, against Runge-Kutta; of a
@@ -780,16 +620,8 @@ fn exact_motions_in_closed_form_are_the_true_ones() {
     for (equation, amplitudes, written) in [
         ("x'' + 4*x = 0", ["2", "-1"], "A*cos(2*t)"),
         ("x'' + x^3 = 0", ["2", "-1/10"], "A*cn(A*t, 1/2)"),
-        (
-            "x'' + x + x^3 = 0",
-            ["20", "-1/2"],
-            "A*cn(t*sqrt(1 + A^2), A^2/(2*(1 + A^2)))",
-        ),
-        (
-            "x'' + x - x^3 = 0",
-            ["99/100", "-1/2"],
-            "A*cn(t*sqrt(1 - A^2), -A^2/(2*(1 - A^2)))",
-        ),
+        ("x'' + x + x^3 = 0", ["20", "-1/2"], "A*cn(t*sqrt(1 + A^2), A^2/(2*(1 + A^2)))"),
+        ("x'' + x - x^3 = 0", ["99/100", "-1/2"], "A*cn(t*sqrt(1 - A^2), -A^2/(2*(1 - A^2)))"),
         ("x'' + 2*sin(3*x) = 0", ["1", "-1/2"], "sn("),
         (
             "x'' + 2*sinh(3*x) = 0",
@@ -803,29 +635,15 @@ fn exact_motions_in_closed_form_are_the_true_ones() {
         for amplitude in amplitudes {
             let found = judged(equation, Method::Exact, None, amplitude);
             let deviation = found.max_deviation.expect("a motion");
-            assert!(
-                deviation < 1e-8,
-                "{equation} from {amplitude}: {deviation:e}"
-            );
+            assert!(deviation < 1e-8, "{equation} from {amplitude}: {deviation:e}");
         }
         let oscillator = Oscillator::parse(equation).unwrap();
-        let options = Options {
-            method: Some(Method::Exact),
-            ..Options::default()
-        };
+        let options = Options { method: Some(Method::Exact), ..Options::default() };
         let solution = solve(&oscillator, &options).unwrap();
-        let motion = solution
-            .closed_motion
-            .as_ref()
-            .expect("a motion")
-            .to_string();
+        let motion = solution.closed_motion.as_ref().expect("a motion").to_string();
         assert!(motion.contains(written), "{equation}: {motion}");
         // What is exported reads back.
         let document = lindstedt::export::json::solution(&solution, None);
-        assert_eq!(
-            document.read().unwrap().closed_motion,
-            solution.closed_motion,
-            "{equation}"
-        );
+        assert_eq!(document.read().unwrap().closed_motion, solution.closed_motion, "{equation}");
     }
 }

@@ -24,10 +24,7 @@ fn duffing() -> Response {
 }
 
 fn places(response: &Response, kind: BifurcationKind) -> Vec<Bifurcation> {
-    let of_kind = response
-        .bifurcations
-        .iter()
-        .filter(|found| found.kind == kind);
+    let of_kind = response.bifurcations.iter().filter(|found| found.kind == kind);
     of_kind.copied().collect()
 }
 
@@ -62,10 +59,7 @@ fn simulated(
 ) -> ([f64; 2], f64, f64) {
     let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
     let end = f64::from(periods) * period;
-    course.values = numbers
-        .iter()
-        .map(|(name, value)| (Symbol::new(name), *value))
-        .collect();
+    course.values = numbers.iter().map(|(name, value)| (Symbol::new(name), *value)).collect();
     course.begin("x".into(), start[0]).expect("a state");
     course.begin("x'".into(), start[1]).expect("a state");
     (course.duration, course.tolerance) = (end, 1e-12);
@@ -73,42 +67,26 @@ fn simulated(
     assert!(path.is_complete(), "{equation}");
     const SAMPLES: u32 = 512;
     let sample = |index: u32| end - period + period * f64::from(index) / f64::from(SAMPLES);
-    let positions: Vec<f64> = (0..SAMPLES)
-        .map(|index| path.at(sample(index)).expect("a state")[0])
-        .collect();
+    let positions: Vec<f64> =
+        (0..SAMPLES).map(|index| path.at(sample(index)).expect("a state")[0]).collect();
     let sum = |wave: fn(f64) -> f64| {
         let phase = |index: usize| std::f64::consts::TAU * index as f64 / f64::from(SAMPLES);
-        let terms = positions
-            .iter()
-            .enumerate()
-            .map(|(index, x)| x * wave(phase(index)));
+        let terms = positions.iter().enumerate().map(|(index, x)| x * wave(phase(index)));
         terms.sum::<f64>() * 2.0 / f64::from(SAMPLES)
     };
     let highest = positions.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = positions.iter().copied().fold(f64::INFINITY, f64::min);
     let state = path.at(end).expect("a state");
-    (
-        [state[0], state[1]],
-        sum(f64::cos).hypot(sum(f64::sin)),
-        0.5 * (highest - lowest),
-    )
+    ([state[0], state[1]], sum(f64::cos).hypot(sum(f64::sin)), 0.5 * (highest - lowest))
 }
 
 #[test]
 fn a_linear_oscillator_is_exact() {
     let (c, force) = (0.2, 0.7);
-    let found = response(
-        "x'' + c*x' + x - F*sin(Omega*t) = 0",
-        "Omega",
-        [0.3, 2.0],
-        "c = 1/5, F = 7/10",
-    );
+    let found =
+        response("x'' + c*x' + x - F*sin(Omega*t) = 0", "Omega", [0.3, 2.0], "c = 1/5, F = 7/10");
     assert_eq!(
-        (
-            found.branches.len(),
-            found.bifurcations.len(),
-            found.verdict
-        ),
+        (found.branches.len(), found.bifurcations.len(), found.verdict),
         (1, 0, Verdict::Pass)
     );
     for point in &found.branches[0].points {
@@ -117,25 +95,15 @@ fn a_linear_oscillator_is_exact() {
         let amplitude = force / stiffness.hypot(c * omega);
         let phase = (c * omega).atan2(stiffness) + std::f64::consts::FRAC_PI_2;
         let turned = (point.phase - phase).sin();
-        assert!(
-            (point.amplitude / amplitude - 1.0).abs() < 1e-9,
-            "{point:?}"
-        );
-        assert!(
-            turned.abs() < 1e-9 && (point.phase - phase).cos() > 0.0,
-            "{point:?}"
-        );
+        assert!((point.amplitude / amplitude - 1.0).abs() < 1e-9, "{point:?}");
+        assert!(turned.abs() < 1e-9 && (point.phase - phase).cos() > 0.0, "{point:?}");
         assert!((point.peak / amplitude - 1.0).abs() < 1e-4 && point.stable == Some(true));
         let [one, other] = point.multipliers.expect("multipliers");
         let decay = (-c * std::f64::consts::TAU / omega).exp();
         assert!(((one * other).re / decay - 1.0).abs() < 1e-7, "{point:?}");
     }
     let curve = &found.backbone[0];
-    assert!(
-        curve
-            .iter()
-            .all(|point| (point.parameter - 1.0).abs() < 1e-9)
-    );
+    assert!(curve.iter().all(|point| (point.parameter - 1.0).abs() < 1e-9));
 }
 
 /// With one harmonic: `s ((1 - Omega^2 + 3 s/4)^2 + (c Omega)^2) = F^2` with s the square of the
@@ -155,10 +123,7 @@ fn folds_of_one_harmonic_are_those_of_the_closed_form() {
         let damping = (0.1 * omega).powi(2);
         let force = s * (stiffness * stiffness + damping);
         let slope = stiffness * stiffness + damping + 1.5 * s * stiffness;
-        assert!(
-            (force - 0.09).abs() < 1e-9 && slope.abs() < 1e-6,
-            "{fold:?}: {force} {slope}"
-        );
+        assert!((force - 0.09).abs() < 1e-9 && slope.abs() < 1e-6, "{fold:?}: {force} {slope}");
     }
     for point in &found.branches[0].points {
         let (s, omega) = (point.amplitude.powi(2), point.parameter);
@@ -177,23 +142,10 @@ fn what_dies_out_slowly_is_no_motion_of_its_own() {
         ("x'' + x'/50 + x + x^3/10 = cos(Omega*t)/10", [1.3, 1.4]),
     ] {
         let found = response(equation, "Omega", range, "");
-        assert!(
-            found.elsewhere.is_empty(),
-            "{equation}: {:?}",
-            found.elsewhere
-        );
+        assert!(found.elsewhere.is_empty(), "{equation}: {:?}", found.elsewhere);
     }
-    let found = response(
-        "x'' + x'/10 + x^3 = 3*cos(Omega*t)/10",
-        "Omega",
-        [1.0, 1.4],
-        "",
-    );
-    let periods: Vec<_> = found
-        .elsewhere
-        .iter()
-        .map(|elsewhere| elsewhere.periods)
-        .collect();
+    let found = response("x'' + x'/10 + x^3 = 3*cos(Omega*t)/10", "Omega", [1.0, 1.4], "");
+    let periods: Vec<_> = found.elsewhere.iter().map(|elsewhere| elsewhere.periods).collect();
     assert!(
         !periods.is_empty() && periods.iter().all(|periods| *periods == Some(3)),
         "{:?}",
@@ -224,10 +176,8 @@ fn a_narrow_range_has_every_motion_of_its_inside() {
                 s * (stiffness * stiffness + (0.1 * omega).powi(2)) - 0.09
             };
             let places: Vec<f64> = (0..=20_000).map(|step| f64::from(step) * 1e-3).collect();
-            let roots = places
-                .windows(2)
-                .filter(|pair| excess(pair[0]) * excess(pair[1]) < 0.0)
-                .count();
+            let roots =
+                places.windows(2).filter(|pair| excess(pair[0]) * excess(pair[1]) < 0.0).count();
             assert_eq!(passing(&found, omega).len(), roots, "{range:?} at {omega}");
         }
     }
@@ -237,11 +187,7 @@ fn a_narrow_range_has_every_motion_of_its_inside() {
 fn both_stable_motions_are_where_a_simulation_settles() {
     let found = duffing();
     assert_eq!((found.verdict, found.unjudged), (Verdict::Pass, 0));
-    assert!(
-        found.error.is_some_and(|error| error < 1e-5),
-        "{:?}",
-        found.error
-    );
+    assert!(found.error.is_some_and(|error| error < 1e-5), "{:?}", found.error);
     for (parameter, expected) in [(0.7, 1), (1.5, 3), (2.2, 1)] {
         let motions = passing(&found, parameter);
         assert_eq!(motions.len(), expected, "{parameter}");
@@ -251,17 +197,11 @@ fn both_stable_motions_are_where_a_simulation_settles() {
             // A tenth aside: it comes back.
             let start = [1.1 * point.start[0], 0.9 * point.start[1]];
             let (_, amplitude, peak) = simulated(DUFFING, &numbers, start, period, 80);
-            assert!(
-                (point.amplitude / amplitude - 1.0).abs() < 1e-5,
-                "{point:?}: {amplitude}"
-            );
+            assert!((point.amplitude / amplitude - 1.0).abs() < 1e-5, "{point:?}: {amplitude}");
             assert!((point.peak / peak - 1.0).abs() < 1e-4, "{point:?}: {peak}");
         }
         assert_eq!(
-            motions
-                .iter()
-                .filter(|point| point.stable == Some(false))
-                .count(),
+            motions.iter().filter(|point| point.stable == Some(false)).count(),
             expected / 2
         );
     }
@@ -289,14 +229,7 @@ fn a_simulation_jumps_at_the_folds() {
         let after = |offset: f64| {
             let parameter = fold.parameter * (1.0 + 0.004 * offset * step);
             let numbers = [("c", 0.1), ("F", 0.3), ("Omega", parameter)];
-            simulated(
-                DUFFING,
-                &numbers,
-                point.start,
-                std::f64::consts::TAU / parameter,
-                150,
-            )
-            .1
+            simulated(DUFFING, &numbers, point.start, std::f64::consts::TAU / parameter, 150).1
         };
         let (before, beyond) = (after(-1.0), after(1.0));
         assert_eq!(before > 1.0, high, "{fold:?}: {before}");
@@ -321,20 +254,14 @@ fn beyond_a_period_doubling_a_simulation_takes_two_periods() {
     let wells = "x'' + x'/4 - x + x^3 - F*cos(Omega*t) = 0";
     let found = response(wells, "F", [0.05, 0.2], "Omega = 1");
     assert_eq!(found.verdict, Verdict::Pass);
-    let mirrored: Vec<bool> = found
-        .branches
-        .iter()
-        .map(|branch| branch.mirrored)
-        .collect();
+    let mirrored: Vec<bool> = found.branches.iter().map(|branch| branch.mirrored).collect();
     assert_eq!(
         mirrored,
         [true, false, true],
         "one well stands for both, and between them is one motion"
     );
     let doublings = places(&found, BifurcationKind::PeriodDoubling);
-    let [doubling] = &doublings[..] else {
-        panic!("{doublings:?}")
-    };
+    let [doubling] = &doublings[..] else { panic!("{doublings:?}") };
     let beside = |offset: f64| {
         let distance =
             |point: &Point| (point.parameter - doubling.parameter * (1.0 + offset)).abs();
@@ -363,29 +290,18 @@ fn beyond_a_period_doubling_a_simulation_takes_two_periods() {
     let beyond = returns(0.02);
     assert!(beyond.0 > 1e-2 && beyond.1 < 1e-4, "{beyond:?}");
     // The doubled motions are a branch of their own, born there.
-    let doubled = respond(&Question {
-        periods: 2,
-        ..question(wells, "F", [0.15, 0.2], "Omega = 1")
-    })
-    .expect("a response");
-    let born = doubled
-        .bifurcations
-        .iter()
-        .filter(|found| found.kind == BifurcationKind::BranchPoint);
+    let doubled =
+        respond(&Question { periods: 2, ..question(wells, "F", [0.15, 0.2], "Omega = 1") })
+            .expect("a response");
+    let born =
+        doubled.bifurcations.iter().filter(|found| found.kind == BifurcationKind::BranchPoint);
     assert!(
-        born.clone()
-            .any(|born| (born.parameter / doubling.parameter - 1.0).abs() < 1e-5),
+        born.clone().any(|born| (born.parameter / doubling.parameter - 1.0).abs() < 1e-5),
         "{:?}",
         doubled.bifurcations
     );
     let lasting = |point: &&Point| point.stable == Some(true) && point.amplitude > 0.02;
-    assert!(
-        doubled
-            .branches
-            .iter()
-            .flat_map(|branch| &branch.points)
-            .any(|point| lasting(&point))
-    );
+    assert!(doubled.branches.iter().flat_map(|branch| &branch.points).any(|point| lasting(&point)));
 }
 
 /// By Liouville's theorem the determinant of M is 1 where the mean of the damping is zero: the mean
@@ -408,27 +324,15 @@ fn a_locked_oscillator_unlocks_where_its_mean_damping_vanishes() {
         let passes = |pair: &&[Point]| {
             (pair[0].parameter - place.parameter) * (pair[1].parameter - place.parameter) <= 0.0
         };
-        let pair = closely.branches[0]
-            .points
-            .windows(2)
-            .find(passes)
-            .expect("two points");
+        let pair = closely.branches[0].points.windows(2).find(passes).expect("two points");
         let mean_damping = |point: &Point| {
-            let squares = point
-                .harmonics
-                .iter()
-                .skip(1)
-                .flatten()
-                .map(|value| 0.5 * value * value);
+            let squares = point.harmonics.iter().skip(1).flatten().map(|value| 0.5 * value * value);
             point.harmonics[0][0].powi(2) + squares.sum::<f64>() - 1.0
         };
         let [before, after] = [mean_damping(&pair[0]), mean_damping(&pair[1])];
         let part = (place.parameter - pair[0].parameter) / (pair[1].parameter - pair[0].parameter);
         let there = before + part * (after - before);
-        assert!(
-            before * after < 0.0 && there.abs() < 1e-5,
-            "{before} {after}: {there}"
-        );
+        assert!(before * after < 0.0 && there.abs() < 1e-5, "{before} {after}: {there}");
     }
     // Outside it never repeats itself.
     assert!(
@@ -443,32 +347,15 @@ fn a_locked_oscillator_unlocks_where_its_mean_damping_vanishes() {
 fn a_contact_bends_the_resonance() {
     let stop = "x'' + x'/10 + x + k*(x - 1/2)^(3/2)*H(x - 1/2) - F*cos(Omega*t) = 0";
     let found = response(stop, "Omega", [0.7, 1.8], "k = 20, F = 1/10");
-    assert_eq!(
-        found.verdict,
-        Verdict::Pass,
-        "{:?} {}",
-        found.error,
-        found.unjudged
-    );
-    assert_eq!(
-        places(&found, BifurcationKind::Fold).len(),
-        2,
-        "{:?}",
-        found.bifurcations
-    );
+    assert_eq!(found.verdict, Verdict::Pass, "{:?} {}", found.error, found.unjudged);
+    assert_eq!(places(&found, BifurcationKind::Fold).len(), 2, "{:?}", found.bifurcations);
     for parameter in [0.9, 1.15, 1.6] {
-        for point in passing(&found, parameter)
-            .iter()
-            .filter(|point| point.stable == Some(true))
-        {
+        for point in passing(&found, parameter).iter().filter(|point| point.stable == Some(true)) {
             let numbers = [("k", 20.0), ("F", 0.1), ("Omega", point.parameter)];
             let period = std::f64::consts::TAU / point.parameter;
             let start = [1.05 * point.start[0], point.start[1]];
             let (_, amplitude, peak) = simulated(stop, &numbers, start, period, 70);
-            assert!(
-                (point.amplitude / amplitude - 1.0).abs() < 2e-3,
-                "{point:?}: {amplitude}"
-            );
+            assert!((point.amplitude / amplitude - 1.0).abs() < 2e-3, "{point:?}: {amplitude}");
             assert!((point.peak / peak - 1.0).abs() < 2e-3, "{point:?}: {peak}");
         }
     }
@@ -479,28 +366,18 @@ fn a_contact_bends_the_resonance() {
 #[test]
 fn subharmonic_motions_are_found_apart() {
     let cubic = "x'' + x'/20 + x + x^3/10 - F*cos(Omega*t) = 0";
-    let found = respond(&Question {
-        periods: 3,
-        ..question(cubic, "Omega", [3.0, 6.0], "F = 30")
-    })
-    .expect("a response");
+    let found = respond(&Question { periods: 3, ..question(cubic, "Omega", [3.0, 6.0], "F = 30") })
+        .expect("a response");
     let third = |point: &&Point| point.amplitude > 0.2 * point.peak && point.stable == Some(true);
-    let lasting: Vec<&Point> = found
-        .branches
-        .iter()
-        .flat_map(|branch| &branch.points)
-        .filter(third)
-        .collect();
+    let lasting: Vec<&Point> =
+        found.branches.iter().flat_map(|branch| &branch.points).filter(third).collect();
     assert!(lasting.len() > 10, "{}", lasting.len());
     let point = lasting[lasting.len() / 2];
     let numbers = [("F", 30.0), ("Omega", point.parameter)];
     let period = 3.0 * std::f64::consts::TAU / point.parameter;
     let start = [point.start[0] + 1e-2, point.start[1]];
     let (_, amplitude, peak) = simulated(cubic, &numbers, start, period, 120);
-    assert!(
-        (point.amplitude / amplitude - 1.0).abs() < 1e-4,
-        "{amplitude} {point:?}"
-    );
+    assert!((point.amplitude / amplitude - 1.0).abs() < 1e-4, "{amplitude} {point:?}");
     assert!((point.peak / peak - 1.0).abs() < 1e-3);
 }
 
@@ -515,21 +392,11 @@ fn the_backbone_is_the_law_of_the_free_motion() {
     let free = Oscillator::parse("x'' + x + eps*x^3 = 0").expect("an equation");
     let law = solve(&free, &options).expect("a law");
     let mut seen = 0;
-    for point in found.backbone[0]
-        .iter()
-        .filter(|point| point.amplitude < 0.5)
-    {
-        let at = format!("eps = 1, a = {}", point.amplitude)
-            .parse()
-            .expect("values");
-        let frequency = lindstedt::judge(&free, &law, &at, 0.01)
-            .expect("a verdict")
-            .frequency;
+    for point in found.backbone[0].iter().filter(|point| point.amplitude < 0.5) {
+        let at = format!("eps = 1, a = {}", point.amplitude).parse().expect("values");
+        let frequency = lindstedt::judge(&free, &law, &at, 0.01).expect("a verdict").frequency;
         let frequency = frequency.expect("a frequency");
-        assert!(
-            (point.parameter / frequency - 1.0).abs() < 1e-5,
-            "{point:?}: {frequency}"
-        );
+        assert!((point.parameter / frequency - 1.0).abs() < 1e-5, "{point:?}: {frequency}");
         seen += 1;
     }
     assert!(seen > 20);
@@ -544,12 +411,7 @@ fn the_backbone_is_the_law_of_the_free_motion() {
 
 #[test]
 fn without_damping_a_linear_resonance_is_unbounded() {
-    let found = response(
-        "x'' + x - F*cos(Omega*t) = 0",
-        "Omega",
-        [0.6, 1.5],
-        "F = 1/10",
-    );
+    let found = response("x'' + x - F*cos(Omega*t) = 0", "Omega", [0.6, 1.5], "F = 1/10");
     let unbounded = found
         .branches
         .iter()
@@ -558,10 +420,7 @@ fn without_damping_a_linear_resonance_is_unbounded() {
     assert_eq!((found.branches.len(), unbounded.count()), (2, 2));
     for point in found.branches.iter().flat_map(|branch| &branch.points) {
         let amplitude = 0.1 / (1.0 - point.parameter.powi(2)).abs();
-        assert!(
-            (point.amplitude / amplitude - 1.0).abs() < 1e-6,
-            "{point:?}"
-        );
+        assert!((point.amplitude / amplitude - 1.0).abs() < 1e-6, "{point:?}");
     }
     // With its resonance in the middle, and where twice the frequency is that of the free motion;
     // nothing twice, nothing missing.
@@ -573,10 +432,7 @@ fn without_damping_a_linear_resonance_is_unbounded() {
         for branch in &found.branches {
             for point in &branch.points {
                 let amplitude = drive / (1.0 - point.parameter.powi(2)).abs();
-                assert!(
-                    (point.amplitude / amplitude - 1.0).abs() < 1e-6,
-                    "{point:?}"
-                );
+                assert!((point.amplitude / amplitude - 1.0).abs() < 1e-6, "{point:?}");
             }
             ends.extend(
                 [branch.points.first(), branch.points.last()]
@@ -588,12 +444,7 @@ fn without_damping_a_linear_resonance_is_unbounded() {
             assert!((end - place).abs() < 2e-4, "{range:?}: {end}");
         }
     }
-    let refused = respond(&question(
-        "x'' + x - F*cos(Omega*t) = 0",
-        "F",
-        [0.1, 1.0],
-        "Omega = 1",
-    ));
+    let refused = respond(&question("x'' + x - F*cos(Omega*t) = 0", "F", [0.1, 1.0], "Omega = 1"));
     let message = refused.expect_err("no motion").to_string();
     assert!(message.contains("unbounded at resonance"), "{message}");
 }
@@ -602,56 +453,14 @@ fn without_damping_a_linear_resonance_is_unbounded() {
 fn what_cannot_be_answered_is_refused_by_name() {
     for (equation, parameter, range, values, words) in [
         ("x'' + c*x' + x = 0", "c", [0.1, 1.0], "", "no drive"),
-        (
-            "x'' + c*x' + x - exp(-t) = 0",
-            "c",
-            [0.1, 1.0],
-            "",
-            "`-exp(-t)` is not periodic",
-        ),
+        ("x'' + c*x' + x - exp(-t) = 0", "c", [0.1, 1.0], "", "`-exp(-t)` is not periodic"),
         (DUFFING, "Omega", [0.5, 1.5], "c = 1/10", "no value for `F`"),
-        (
-            DUFFING,
-            "omega",
-            [0.5, 1.5],
-            "c = 1/10, F = 1",
-            "no parameter `omega`",
-        ),
-        (
-            DUFFING,
-            "Omega",
-            [0.5, 1.5],
-            "c = 1/10, F = 1, q = 2",
-            "a value for `q`",
-        ),
-        (
-            DUFFING,
-            "Omega",
-            [0.5, 1.5],
-            "c = 1/10, F = 1, Omega = 2",
-            "varies and is given",
-        ),
-        (
-            DUFFING,
-            "Omega",
-            [1.5, 0.5],
-            "c = 1/10, F = 1",
-            "must go from",
-        ),
-        (
-            DUFFING,
-            "Omega",
-            [0.5, f64::INFINITY],
-            "c = 1/10, F = 1",
-            "must go from",
-        ),
-        (
-            DUFFING,
-            "Omega",
-            [-0.5, 0.5],
-            "c = 1/10, F = 1",
-            "must be positive",
-        ),
+        (DUFFING, "omega", [0.5, 1.5], "c = 1/10, F = 1", "no parameter `omega`"),
+        (DUFFING, "Omega", [0.5, 1.5], "c = 1/10, F = 1, q = 2", "a value for `q`"),
+        (DUFFING, "Omega", [0.5, 1.5], "c = 1/10, F = 1, Omega = 2", "varies and is given"),
+        (DUFFING, "Omega", [1.5, 0.5], "c = 1/10, F = 1", "must go from"),
+        (DUFFING, "Omega", [0.5, f64::INFINITY], "c = 1/10, F = 1", "must go from"),
+        (DUFFING, "Omega", [-0.5, 0.5], "c = 1/10, F = 1", "must be positive"),
         (
             "x'' + x'/9 + x - cos(t) - cos(Omega*t) = 0",
             "Omega",
@@ -660,9 +469,8 @@ fn what_cannot_be_answered_is_refused_by_name() {
             "no whole multiples",
         ),
     ] {
-        let message = respond(&question(equation, parameter, range, values))
-            .expect_err(equation)
-            .to_string();
+        let message =
+            respond(&question(equation, parameter, range, values)).expect_err(equation).to_string();
         assert!(message.contains(words), "{equation}: {message}");
     }
     for (harmonics, periods) in [(Some(0), 1), (Some(65), 1), (None, 0), (None, 13)] {
@@ -682,10 +490,7 @@ fn the_page_says_how_many_harmonics_are_enough() {
     let page = include_str!("../../docs/response.md");
     let mut rows = 0;
     for line in page.lines() {
-        let cells: Vec<f64> = line
-            .split('|')
-            .filter_map(|cell| cell.trim().parse().ok())
-            .collect();
+        let cells: Vec<f64> = line.split('|').filter_map(|cell| cell.trim().parse().ok()).collect();
         let [harmonics, down, up, error] = cells[..] else {
             continue;
         };
@@ -694,11 +499,7 @@ fn the_page_says_how_many_harmonics_are_enough() {
             ..question(DUFFING, "Omega", [0.5, 2.0], "c = 1/10, F = 3/10")
         })
         .expect("a response");
-        let folds: Vec<f64> = found
-            .bifurcations
-            .iter()
-            .map(|found| found.parameter)
-            .collect();
+        let folds: Vec<f64> = found.bifurcations.iter().map(|found| found.parameter).collect();
         assert!(
             folds.len() == 2 && (folds[0] - down).abs() < 6e-6 && (folds[1] - up).abs() < 6e-6,
             "{line}: {folds:?}"
@@ -727,11 +528,7 @@ fn slow_equations_come_nearer_with_their_order() {
             ..lindstedt::Options::default()
         };
         let solution = lindstedt::solve(&question.oscillator, &options).expect("slow equations");
-        let slow = respond(&question)
-            .expect("a response")
-            .beside(solution)
-            .slow
-            .expect("states");
+        let slow = respond(&question).expect("a response").beside(solution).slow.expect("states");
         assert_eq!(slow.missing, 0);
         assert!(slow.points > 20 && slow.states.len() > 240);
         slow.error.expect("an error")
@@ -739,10 +536,7 @@ fn slow_equations_come_nearer_with_their_order() {
     for (order, least) in [(1, 0.7), (2, 1.6), (3, 2.5)] {
         let (large, small) = (error(order, 20), error(order, 40));
         let slope = (large / small).log2();
-        assert!(
-            slope > least,
-            "order {order}: {large} and {small}, slope {slope}"
-        );
+        assert!(slope > least, "order {order}: {large} and {small}, slope {slope}");
     }
 }
 
@@ -756,10 +550,7 @@ fn forces_that_jump_on_no_line_are_refused() {
     };
     for force in ["H(x'^2 - 1)*x", "sgn(x' - cos(Omega*t))"] {
         let error = ask(force).expect_err(force).to_string();
-        assert!(
-            error.contains("jumps with the velocity"),
-            "{force}: {error}"
-        );
+        assert!(error.contains("jumps with the velocity"), "{force}: {error}");
     }
     assert!(ask("x'^2*sgn(x')/20").is_ok_and(|found| !found.by_map));
     assert!(
@@ -772,12 +563,8 @@ fn forces_that_jump_on_no_line_are_refused() {
 /// branches that do not meet above.
 #[test]
 fn a_turn_of_a_pendulum_away_is_the_same_branch() {
-    let found = response(
-        "x'' + x'/10 + sin(x) - F*cos(Omega*t) = 0",
-        "Omega",
-        [0.5, 1.5],
-        "F = 1/5",
-    );
+    let found =
+        response("x'' + x'/10 + sin(x) - F*cos(Omega*t) = 0", "Omega", [0.5, 1.5], "F = 1/5");
     let starts: Vec<[f64; 2]> = found
         .branches
         .iter()

@@ -33,12 +33,9 @@ impl Residues {
     fn image(self, value: &Integer) -> u64 {
         match value.is_zero() {
             true => 0,
-            false => self.element(
-                value
-                    .mod_floor(&self.prime.into())
-                    .to_u128()
-                    .expect("a residue"),
-            ),
+            false => {
+                self.element(value.mod_floor(&self.prime.into()).to_u128().expect("a residue"))
+            }
         }
     }
 
@@ -57,9 +54,8 @@ impl Residues {
 
     /// The residue of a fraction whose denominator is no multiple of the prime.
     fn fraction(self, numerator: &Integer, denominator: &Integer) -> u64 {
-        let inverse = self
-            .reciprocal(self.image(denominator))
-            .expect("a denominator with an inverse");
+        let inverse =
+            self.reciprocal(self.image(denominator)).expect("a denominator with an inverse");
         self.product(&self.image(numerator), &inverse)
     }
 }
@@ -112,12 +108,10 @@ impl Ring for Residues {
         elements: impl IntoIterator<Item = &'a mut u64>,
         divisor: &Integer,
     ) -> Result<(), Indivisible> {
-        let inverse = self
-            .reciprocal(self.image(divisor))
-            .ok_or_else(|| Indivisible {
-                divisor: divisor.clone(),
-                ring: format!("the residues modulo {}", self.prime),
-            })?;
+        let inverse = self.reciprocal(self.image(divisor)).ok_or_else(|| Indivisible {
+            divisor: divisor.clone(),
+            ring: format!("the residues modulo {}", self.prime),
+        })?;
         for element in elements {
             *element = self.product(element, &inverse);
         }
@@ -144,11 +138,7 @@ fn term<R: Ring>(
 }
 
 fn scheme(normalisation: AmplitudeConvention, amplitude: Amplitude, detuning: Detuning) -> Scheme {
-    Scheme {
-        normalisation,
-        amplitude,
-        detuning,
-    }
+    Scheme { normalisation, amplitude, detuning }
 }
 
 const LINDSTEDT_POINCARE: Scheme = Scheme {
@@ -181,10 +171,7 @@ fn parts<R: Ring>(expansion: &Expansion<R>) -> Vec<(String, FourierSeries<R>)> {
     let mut parts = Vec::new();
     for (name, series) in lists {
         parts.extend(
-            series
-                .iter()
-                .enumerate()
-                .map(|(n, series)| (format!("{name} {n}"), series.clone())),
+            series.iter().enumerate().map(|(n, series)| (format!("{name} {n}"), series.clone())),
         );
     }
     for (n, fixed) in expansion.amplitudes.iter().enumerate() {
@@ -206,10 +193,8 @@ fn compare<R: Ring, S: Ring>(
     let mut count = 0;
     for ((name, left), (_, right)) in exact.iter().zip(&other) {
         for k in 0..=left.highest_harmonic().max(right.highest_harmonic()) {
-            for (left, right) in [
-                (left.cosine(k), right.cosine(k)),
-                (left.sine(k), right.sine(k)),
-            ] {
+            for (left, right) in [(left.cosine(k), right.cosine(k)), (left.sine(k), right.sine(k))]
+            {
                 let (numerator, denominator) = left.mean();
                 let (found, one) = right.mean();
                 assert!(one.is_one(), "{name}, harmonic {k}: a denominator is left");
@@ -232,11 +217,7 @@ fn agrees(ring: Residues) -> impl Fn(&Integer, &Integer, &u64) -> bool {
 
 /// The largest primes below 2^31 and 2^61 and one between them, found when the test runs.
 fn primes() -> Vec<u64> {
-    let is_prime = |n: u64| {
-        (2..)
-            .take_while(|d| d * d <= n)
-            .all(|d| !n.is_multiple_of(d))
-    };
+    let is_prime = |n: u64| (2..).take_while(|d| d * d <= n).all(|d| !n.is_multiple_of(d));
     let below = |limit: u64| (1..limit).rev().find(|&n| is_prime(n)).expect("a prime");
     // Mersenne's, whose trial division would take long.
     vec![below(1 << 31), below(1 << 36), (1 << 61) - 1]
@@ -256,10 +237,7 @@ fn duffing_to_order_20_modulo_primes() {
 
 #[test]
 fn limit_cycles_and_homotopies_modulo_primes() {
-    let normalisations = [
-        AmplitudeConvention::Initial,
-        AmplitudeConvention::FirstHarmonic,
-    ];
+    let normalisations = [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic];
     for prime in primes() {
         let ring = Residues { prime };
         for normalisation in normalisations {
@@ -323,13 +301,8 @@ fn a_prime_that_divides_a_denominator_is_an_error() {
         let ring = Residues { prime };
         let before = expand(&ring, &duffing(&ring), fails_at - 1, &LINDSTEDT_POINCARE)
             .expect("no bad divisor yet");
-        let exact = expand(
-            &Integers,
-            &duffing(&Integers),
-            fails_at - 1,
-            &LINDSTEDT_POINCARE,
-        )
-        .expect("periodic");
+        let exact = expand(&Integers, &duffing(&Integers), fails_at - 1, &LINDSTEDT_POINCARE)
+            .expect("periodic");
         compare(&exact, &before, agrees(ring));
         let error =
             expand(&ring, &duffing(&ring), 20, &LINDSTEDT_POINCARE).expect_err("a bad prime");
@@ -337,23 +310,13 @@ fn a_prime_that_divides_a_denominator_is_an_error() {
             panic!("{prime}: {error}");
         };
         assert_eq!(*order, fails_at, "{prime}");
-        assert!(
-            indivisible.divisor.is_multiple_of(&prime.into()),
-            "{prime}: {error}"
-        );
+        assert!(indivisible.divisor.is_multiple_of(&prime.into()), "{prime}: {error}");
         let text = error.to_string();
-        assert!(
-            text.contains(&format!("the residues modulo {prime},")),
-            "{text}"
-        );
+        assert!(text.contains(&format!("the residues modulo {prime},")), "{text}");
         assert!(text.contains(&indivisible.divisor.to_string()), "{text}");
     }
-    let error = expand(
-        &Residues { prime: 3 },
-        &duffing(&Residues { prime: 3 }),
-        3,
-        &LINDSTEDT_POINCARE,
-    );
+    let error =
+        expand(&Residues { prime: 3 }, &duffing(&Residues { prime: 3 }), 3, &LINDSTEDT_POINCARE);
     assert_eq!(
         error.expect_err("24 = 3*8").to_string(),
         "no division by 24 in the residues modulo 3, which order 2 needs"
@@ -371,10 +334,7 @@ fn a_coefficient_without_residue_is_an_error() {
     let refused = force[0].coefficient.divided().expect_err("no inverse");
     assert_eq!(refused.divisor, Integer::from(2 * 1_000_003));
     let error = expand(&ring, &force, 2, &LINDSTEDT_POINCARE).expect_err("no inverse");
-    assert!(
-        matches!(error, SecularError::Indivisible { order: 1, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, SecularError::Indivisible { order: 1, .. }), "{error}");
 }
 
 /// Closed intervals with endpoints in double precision, every operation rounded outward.
@@ -392,10 +352,7 @@ fn outward(ends: impl IntoIterator<Item = f64>) -> Interval {
 }
 
 fn enclosing(value: &Integer) -> Interval {
-    match value
-        .to_i64()
-        .filter(|small| small.unsigned_abs() < 1 << 53)
-    {
+    match value.to_i64().filter(|small| small.unsigned_abs() < 1 << 53) {
         Some(small) => [small as f64; 2],
         None => outward([value.to_f64().expect("a number of this size")]),
     }
@@ -428,10 +385,7 @@ impl Ring for Intervals {
     fn accumulate(&self, sum: &mut Interval, term: &Interval) {
         *sum = match (*sum, *term) {
             (ZERO, only) | (only, ZERO) => only,
-            (left, right) => [
-                (left[0] + right[0]).next_down(),
-                (left[1] + right[1]).next_up(),
-            ],
+            (left, right) => [(left[0] + right[0]).next_down(), (left[1] + right[1]).next_up()],
         };
     }
     fn negate(&self, element: &mut Interval) {
@@ -465,22 +419,15 @@ impl Ring for Intervals {
         for element in elements {
             if *element != ZERO {
                 let [lower, upper] = *element;
-                *element = outward(
-                    divisor
-                        .iter()
-                        .flat_map(|divisor| [lower / divisor, upper / divisor]),
-                );
+                *element =
+                    outward(divisor.iter().flat_map(|divisor| [lower / divisor, upper / divisor]));
             }
         }
         Ok(())
     }
     fn inverse(&self, element: &Interval) -> Option<(Interval, Integer)> {
-        (!self.may_be_zero(element)).then(|| {
-            (
-                outward([1.0 / element[0], 1.0 / element[1]]),
-                Integer::one(),
-            )
-        })
+        (!self.may_be_zero(element))
+            .then(|| (outward([1.0 / element[0], 1.0 / element[1]]), Integer::one()))
     }
 }
 
@@ -494,11 +441,8 @@ fn intervals_enclose_the_exact_coefficients() {
     let exact = expand(&Integers, &duffing(&Integers), 6, &LINDSTEDT_POINCARE).expect("periodic");
     let found = expand(&Intervals, &duffing(&Intervals), 6, &LINDSTEDT_POINCARE).expect("periodic");
     assert!(compare(&exact, &found, enclosed) > 50);
-    let cycle = scheme(
-        AmplitudeConvention::FirstHarmonic,
-        Amplitude::Determined,
-        Detuning::Acceleration,
-    );
+    let cycle =
+        scheme(AmplitudeConvention::FirstHarmonic, Amplitude::Determined, Detuning::Acceleration);
     let exact = expand(&Integers, &van_der_pol(&Integers), 6, &cycle).expect("a limit cycle");
     let found = expand(&Intervals, &van_der_pol(&Intervals), 6, &cycle).expect("a limit cycle");
     assert!(compare(&exact, &found, enclosed) > 50);
@@ -512,13 +456,8 @@ fn an_interval_around_zero_is_not_zero() {
         coefficient: FourierSeries::constant(Intervals, bound),
         ..term(&Intervals, order, powers, 1, 1)
     };
-    let found = expand(
-        &Intervals,
-        &[uncertain(1, [3, 0], [-0.5, 0.25])],
-        4,
-        &LINDSTEDT_POINCARE,
-    )
-    .expect("periodic");
+    let found = expand(&Intervals, &[uncertain(1, [3, 0], [-0.5, 0.25])], 4, &LINDSTEDT_POINCARE)
+        .expect("periodic");
     for (n, series) in found.displacement.iter().enumerate() {
         assert_eq!(series.highest_harmonic(), 2 * n + 1);
     }
@@ -526,39 +465,17 @@ fn an_interval_around_zero_is_not_zero() {
         let force = [term(&Integers, 1, [3, 0], numerator, denominator)];
         let exact = expand(&Integers, &force, 4, &LINDSTEDT_POINCARE).expect("periodic");
         compare(&exact, &found, |numerator, denominator, found| {
-            contains(
-                *found,
-                &Rational::new(numerator.clone(), denominator.clone()),
-            )
+            contains(*found, &Rational::new(numerator.clone(), denominator.clone()))
         });
     }
     // Damping is refused where it is certain.
-    let damped = |bound| {
-        expand(
-            &Intervals,
-            &[uncertain(1, [0, 1], bound)],
-            1,
-            &LINDSTEDT_POINCARE,
-        )
-    };
+    let damped = |bound| expand(&Intervals, &[uncertain(1, [0, 1], bound)], 1, &LINDSTEDT_POINCARE);
     assert!(damped([-0.1, 0.2]).is_ok());
-    assert_eq!(
-        damped([0.1, 0.2]).err(),
-        Some(SecularError::Growth { order: 1 })
-    );
+    assert_eq!(damped([0.1, 0.2]).err(), Some(SecularError::Growth { order: 1 }));
     // An amplitude is determined only where its slope is.
-    let cycle = scheme(
-        AmplitudeConvention::FirstHarmonic,
-        Amplitude::Determined,
-        Detuning::Acceleration,
-    );
-    let flat = [
-        uncertain(1, [2, 1], [-4.0, 4.0]),
-        uncertain(1, [0, 1], [-1.0, 1.0]),
-    ];
+    let cycle =
+        scheme(AmplitudeConvention::FirstHarmonic, Amplitude::Determined, Detuning::Acceleration);
+    let flat = [uncertain(1, [2, 1], [-4.0, 4.0]), uncertain(1, [0, 1], [-1.0, 1.0])];
     let error = expand(&Intervals, &flat, 3, &cycle).err();
-    assert!(
-        matches!(error, Some(SecularError::Degenerate { .. })),
-        "{error:?}"
-    );
+    assert!(matches!(error, Some(SecularError::Degenerate { .. })), "{error:?}");
 }

@@ -39,15 +39,10 @@ fn a_linear_motion_settles_on_one_point() {
     assert!(motion.crossings().len() > 9);
     for crossing in motion.crossings() {
         for (found, expected) in crossing.state.iter().zip(expected) {
-            assert!(
-                (found - expected).abs() < 1e-9,
-                "{crossing:?}, expected {expected:?}"
-            );
+            assert!((found - expected).abs() < 1e-9, "{crossing:?}, expected {expected:?}");
         }
     }
-    let [[least, greatest]] = motion.extremes()[..] else {
-        panic!("one coordinate")
-    };
+    let [[least, greatest]] = motion.extremes()[..] else { panic!("one coordinate") };
     assert!((greatest - square.sqrt().recip()).abs() < 1e-9 && (least + greatest).abs() < 1e-9);
 }
 
@@ -58,25 +53,14 @@ fn a_section_meets_every_zero_from_below() {
     let mut free = course("x'' + 4*x = 0", &[("x", 1.5)], 20.0);
     free.section = Some(Section::Rising(parse_expression("x'").expect("a velocity")));
     let motion = free.follow().expect("a motion");
-    let times: Vec<f64> = motion
-        .crossings()
-        .iter()
-        .map(|crossing| crossing.time)
-        .collect();
-    let expected: Vec<f64> = (0..)
-        .map(|turn| PI / 2.0 + PI * f64::from(turn))
-        .take_while(|time| *time < 20.0)
-        .collect();
+    let times: Vec<f64> = motion.crossings().iter().map(|crossing| crossing.time).collect();
+    let expected: Vec<f64> =
+        (0..).map(|turn| PI / 2.0 + PI * f64::from(turn)).take_while(|time| *time < 20.0).collect();
     assert_eq!(times.len(), expected.len());
     for (time, expected) in times.iter().zip(expected) {
         assert!((time - expected).abs() < 1e-12);
     }
-    assert!(
-        motion
-            .crossings()
-            .iter()
-            .all(|crossing| (crossing.state[0] + 1.5).abs() < 1e-12)
-    );
+    assert!(motion.crossings().iter().all(|crossing| (crossing.state[0] + 1.5).abs() < 1e-12));
 }
 
 /// A section through a turning point is touched from one side, whatever rounding does there; a
@@ -94,9 +78,7 @@ fn a_section_at_a_turning_point_is_touched_not_crossed() {
     ] {
         for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
             let mut free = course("x'' + x = 0", &[("x", 1.0)], 40.0);
-            free.section = Some(Section::Rising(
-                parse_expression(section).expect("a section"),
-            ));
+            free.section = Some(Section::Rising(parse_expression(section).expect("a section")));
             let motion = free.follow_by(integrator).expect("a motion");
             let found = (motion.crossings().len(), motion.touches().len());
             assert_eq!(
@@ -135,22 +117,15 @@ fn small_swings_are_no_touches() {
 /// at 0.65.
 #[test]
 fn the_two_wells_double_their_period() {
-    let mut wells = course(
-        "x'' + 3/10*x' - x + x^3 = F*cos(6/5*t)",
-        &[("x", 1.0)],
-        1500.0,
-    );
+    let mut wells = course("x'' + 3/10*x' - x + x^3 = F*cos(6/5*t)", &[("x", 1.0)], 1500.0);
     wells.section = every("2*pi/(6/5)");
     wells.after = 1300.0;
     let forces = [(0.20, 1), (0.28, 2), (0.29, 4), (0.37, 5), (0.65, 2)];
     let grid: Vec<Vec<f64>> = forces.iter().map(|(force, _)| vec![*force]).collect();
     let motions = sweep(&wells, &[Symbol::new("F")], &grid, || ()).expect("motions");
     for (motion, (force, expected)) in motions.iter().zip(forces) {
-        let mut points: Vec<f64> = motion
-            .crossings
-            .iter()
-            .map(|crossing| crossing.state[0])
-            .collect();
+        let mut points: Vec<f64> =
+            motion.crossings.iter().map(|crossing| crossing.state[0]).collect();
         assert!(points.len() > 30);
         points.sort_by(f64::total_cmp);
         points.dedup_by(|one, other| (*one - *other).abs() < 1e-3);
@@ -180,11 +155,9 @@ fn a_sweep_is_its_motions_one_by_one() {
 
 #[test]
 fn a_period_that_is_none_is_refused() {
-    for (period, name) in [
-        ("-1", "-1"),
-        ("0*t + 1e-9", "1/1000000000"),
-        ("sqrt(-1 - t^2)", "sqrt(-1 - t^2)"),
-    ] {
+    for (period, name) in
+        [("-1", "-1"), ("0*t + 1e-9", "1/1000000000"), ("sqrt(-1 - t^2)", "sqrt(-1 - t^2)")]
+    {
         let mut free = course("x'' + x = 0", &[("x", 1.0)], 10.0);
         free.section = every(period);
         match free.follow() {
@@ -217,28 +190,16 @@ fn the_energy_of_an_equation_is_accounted_for_term_by_term() {
             "{equation}: {balance:?}"
         );
     }
-    let conservative = course("x'' + x + x^3 = 0", &[("x", 1.0)], 25.0)
-        .follow()
-        .expect("a motion");
+    let conservative = course("x'' + x + x^3 = 0", &[("x", 1.0)], 25.0).follow().expect("a motion");
     let balance = conservative.balance.as_ref().expect("an energy");
-    assert!(
-        balance.works.is_empty() && (balance.end - 0.75).abs() < 1e-13,
-        "{balance:?}"
-    );
+    assert!(balance.works.is_empty() && (balance.end - 0.75).abs() < 1e-13, "{balance:?}");
     // X = 1/(1 - W^2 + i c W): from settled to settled over one period.
     let (c, w) = (0.2, 1.3);
     let work_until = |duration: f64| {
         let mut driven = course("x'' + c*x' + x = cos(W*t)", &[("x", 0.0)], duration);
         driven.values = [(Symbol::new("c"), c), (Symbol::new("W"), w)].into();
-        let balance = driven
-            .follow()
-            .expect("a motion")
-            .balance
-            .expect("an energy");
-        balance
-            .works
-            .into_iter()
-            .collect::<std::collections::BTreeMap<String, f64>>()
+        let balance = driven.follow().expect("a motion").balance.expect("an energy");
+        balance.works.into_iter().collect::<std::collections::BTreeMap<String, f64>>()
     };
     let period = TAU / w;
     let (before, after) = (work_until(80.0 * period), work_until(81.0 * period));
@@ -246,10 +207,7 @@ fn the_energy_of_an_equation_is_accounted_for_term_by_term() {
     let expected = PI * c * w * square;
     for (name, sign) in [("c*x'", -1.0), ("-cos(W*t)", 1.0)] {
         let work = after[name] - before[name];
-        assert!(
-            (work - sign * expected).abs() < 1e-9,
-            "{name}: {work}, expected {expected}"
-        );
+        assert!((work - sign * expected).abs() < 1e-9, "{name}: {work}, expected {expected}");
     }
 }
 
@@ -263,9 +221,7 @@ fn a_sweep_that_is_interrupted_begins_no_other_motion() {
     const ENOUGH: usize = 5;
     let mut course = course("x'' + k*x = 0", &[("x'", 1.0)], 10.0);
     course.interrupt = Interrupt::by(&STOP);
-    let grid: Vec<Vec<f64>> = (0..MOTIONS)
-        .map(|index| vec![1.0 + index as f64 / 100.0])
-        .collect();
+    let grid: Vec<Vec<f64>> = (0..MOTIONS).map(|index| vec![1.0 + index as f64 / 100.0]).collect();
     let count = || {
         if DONE.fetch_add(1, Ordering::Relaxed) + 1 >= ENOUGH {
             STOP.store(true, Ordering::Relaxed);
@@ -274,37 +230,19 @@ fn a_sweep_that_is_interrupted_begins_no_other_motion() {
     let motions = sweep(&course, &["k".into()], &grid, count).expect("motions");
     // Each thread may be at one when it is asked for.
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    assert!(
-        (ENOUGH..=ENOUGH + threads).contains(&motions.len()),
-        "{}",
-        motions.len()
-    );
-    for motion in motions
-        .iter()
-        .filter(|motion| motion.reason == End::Reached)
-    {
+    assert!((ENOUGH..=ENOUGH + threads).contains(&motions.len()), "{}", motions.len());
+    for motion in motions.iter().filter(|motion| motion.reason == End::Reached) {
         let frequency = motion.values[0].sqrt();
-        assert!(
-            (motion.extremes[0][1] - 1.0 / frequency).abs() < 1e-10,
-            "{motion:?}"
-        );
+        assert!((motion.extremes[0][1] - 1.0 / frequency).abs() < 1e-10, "{motion:?}");
         assert!(
             (motion.state[0] - (frequency * 10.0).sin() / frequency).abs() < 1e-10,
             "{motion:?}"
         );
     }
-    assert!(
-        motions
-            .windows(2)
-            .all(|pair| pair[0].values < pair[1].values)
-    );
+    assert!(motions.windows(2).all(|pair| pair[0].values < pair[1].values));
     // One that has not come to the time from which it counts is none.
     course.after = 5.0;
-    assert!(
-        sweep(&course, &["k".into()], &grid, || ())
-            .expect("motions")
-            .is_empty()
-    );
+    assert!(sweep(&course, &["k".into()], &grid, || ()).expect("motions").is_empty());
 }
 
 /// Each motion of a sweep is bit for bit the one that is followed by itself: smooth, with corners
@@ -312,20 +250,14 @@ fn a_sweep_that_is_interrupted_begins_no_other_motion() {
 #[test]
 fn a_motion_of_a_sweep_is_that_followed_alone() {
     let rising = |expression: &str| {
-        Some(Section::Rising(
-            parse_expression(expression).expect("an expression"),
-        ))
+        Some(Section::Rising(parse_expression(expression).expect("an expression")))
     };
     let cases = [
         ("x'' + 2*p*x' + sin(x) = 0", "p", None),
         ("x'' + 2*p*x' + p*sin(p*x) = 0", "p", rising("x - p")),
         ("x'' + x'/10 + p*x + x^3 = cos(p*t)", "p", every("2*pi/p")),
         ("x'' + x + log(2 + p*x) = 0", "p", rising("x'")),
-        (
-            "x'' + x + max(p*x - 1, 0)^(3/2) + max(x - p, 0)*x' = 0",
-            "p",
-            rising("x"),
-        ),
+        ("x'' + x + max(p*x - 1, 0)^(3/2) + max(x - p, 0)*x' = 0", "p", rising("x")),
         ("x'' + x + sgn(x')*p = cos(t)", "p", rising("x'")),
         ("x'' + x + abs(x)^p*x' = exp(-((t - 5)/p*20)^2)", "p", None),
         ("x'' + x - p/(x + 3) = 0", "x", rising("x'")),
@@ -345,11 +277,7 @@ fn a_motion_of_a_sweep_is_that_followed_alone() {
             }
             let alone = alone.follow().expect("a motion");
             assert_eq!(swept.reason, alone.reason(), "{equation}");
-            assert_eq!(
-                swept.state,
-                alone.at(alone.end()).expect("a state"),
-                "{equation}"
-            );
+            assert_eq!(swept.state, alone.at(alone.end()).expect("a state"), "{equation}");
             assert_eq!(swept.extremes, alone.extremes(), "{equation}");
             assert_eq!(swept.crossings, alone.crossings(), "{equation}");
             assert_eq!(swept.touches, alone.touches(), "{equation}");

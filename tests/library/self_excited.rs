@@ -20,10 +20,7 @@ fn points(response: &Response) -> impl Iterator<Item = &Point> {
 }
 
 fn kinds(response: &Response, kind: BifurcationKind) -> Vec<f64> {
-    let of_kind = response
-        .bifurcations
-        .iter()
-        .filter(|found| found.kind == kind);
+    let of_kind = response.bifurcations.iter().filter(|found| found.kind == kind);
     of_kind.map(|found| found.parameter).collect()
 }
 
@@ -33,12 +30,7 @@ fn returned(
     amplitude: f64,
     attracts: bool,
 ) -> Option<LimitCycle> {
-    let equation = Equation {
-        acceleration,
-        equilibrium: 0.0,
-        amplitude,
-        frequency: 1.0,
-    };
+    let equation = Equation { acceleration, equilibrium: 0.0, amplitude, frequency: 1.0 };
     let found = nearest_limit_cycle(&equation, Some(attracts)).ok()?;
     (found.attracts() == attracts && (found.at(0.0).0 / amplitude - 1.0).abs() < 0.05)
         .then_some(found)
@@ -54,10 +46,7 @@ fn a_circle_is_exact() {
         let [decides, along] = point.multipliers.expect("multipliers");
         let expected = (-std::f64::consts::TAU * point.parameter).exp();
         assert!((point.amplitude - 1.0).abs() < 1e-9 && (point.frequency - 1.0).abs() < 1e-9);
-        assert!(
-            (decides.re / expected - 1.0).abs() < 1e-7 && along.re == 1.0,
-            "{point:?}"
-        );
+        assert!((decides.re / expected - 1.0).abs() < 1e-7 && along.re == 1.0, "{point:?}");
         assert_eq!(point.stable, Some(true));
     }
     // Against time it repels.
@@ -83,17 +72,9 @@ fn van_der_pol_has_its_printed_amplitude_and_period() {
     .expect("a response");
     assert_eq!((found.branches.len(), found.verdict), (1, Verdict::Pass));
     for (mu, peak, period) in [(1.0, 2.00862, 6.66329), (5.0, 2.02151, 11.6122)] {
-        let point = points(&found)
-            .find(|point| point.parameter == mu)
-            .expect("an end");
-        assert!(
-            (std::f64::consts::TAU / point.frequency - period).abs() < 1e-3,
-            "{point:?}"
-        );
-        assert!(
-            (point.peak - peak).abs() < 4e-4 && point.stable == Some(true),
-            "{point:?}"
-        );
+        let point = points(&found).find(|point| point.parameter == mu).expect("an end");
+        assert!((std::f64::consts::TAU / point.frequency - period).abs() < 1e-3, "{point:?}");
+        assert!((point.peak - peak).abs() < 4e-4 && point.stable == Some(true), "{point:?}");
     }
 }
 
@@ -123,10 +104,7 @@ fn two_cycles_meet_in_a_fold_and_one_is_born_from_rest() {
         let attracts = point.stable == Some(true);
         let acceleration = damped(point.parameter);
         let cycle = returned(&acceleration, point.peak, attracts).expect("a cycle");
-        assert!(
-            (cycle.at(0.0).0 / point.peak - 1.0).abs() < 1e-4,
-            "{point:?}"
-        );
+        assert!((cycle.at(0.0).0 / point.peak - 1.0).abs() < 1e-4, "{point:?}");
         let period = std::f64::consts::TAU / point.frequency;
         assert!((cycle.period() / period - 1.0).abs() < 1e-5, "{point:?}");
         seen[usize::from(attracts)] += 1;
@@ -135,10 +113,7 @@ fn two_cycles_meet_in_a_fold_and_one_is_born_from_rest() {
     // On this side of the fold the return map has its two fixed points, beyond it none.
     let both =
         |mu: f64| [true, false].map(|attracts| returned(&damped(mu), 1.0, attracts).is_some());
-    assert_eq!(
-        (both(fold - 1e-5), both(fold + 1e-5)),
-        ([true, true], [false, false])
-    );
+    assert_eq!((both(fold - 1e-5), both(fold + 1e-5)), ([true, true], [false, false]));
 }
 
 /// The multiplier is the slope of the return map at its fixed point.
@@ -154,10 +129,7 @@ fn the_multiplier_is_the_slope_of_the_return_map() {
         let next = |x: f64| {
             let turning = Event::stop(|_, _, v| v).falling();
             let start = State { t: 0.0, x, v: 0.0 };
-            integrate(acceleration, start, 100.0, &[turning], &options)
-                .expect("a path")
-                .end()
-                .x
+            integrate(acceleration, start, 100.0, &[turning], &options).expect("a path").end().x
         };
         let mut turn = point.peak;
         for _ in 0..60 {
@@ -166,10 +138,7 @@ fn the_multiplier_is_the_slope_of_the_return_map() {
         let step = 1e-5;
         let slope = (next(turn + step) - next(turn - step)) / (2.0 * step);
         let multiplier = point.multipliers.expect("multipliers")[0].re;
-        assert!(
-            (multiplier / slope - 1.0).abs() < 1e-3,
-            "{mu}: {multiplier} {slope}"
-        );
+        assert!((multiplier / slope - 1.0).abs() < 1e-3, "{mu}: {multiplier} {slope}");
     }
 }
 
@@ -195,9 +164,7 @@ fn a_branch_ends_where_its_period_grows_without_bound() {
     .expect("a response");
     let branch = &found.branches[0];
     assert!(branch.ends.contains(&BranchEnd::Slow) && found.verdict == Verdict::Pass);
-    let slowest = points(&found)
-        .map(|point| point.frequency)
-        .fold(1.0, f64::min);
+    let slowest = points(&found).map(|point| point.frequency).fold(1.0, f64::min);
     assert!(slowest < 0.2 && points(&found).all(|point| point.peak < 0.8));
     assert!(kinds(&found, BifurcationKind::Hopf)[0].abs() < 1e-9);
 }
@@ -205,14 +172,8 @@ fn a_branch_ends_where_its_period_grows_without_bound() {
 /// Lengths and times of any unit.
 #[test]
 fn units_do_not_matter() {
-    let found = response(
-        "x'' - 50*mu*(1 - x^2/400)*x' + 2500*x = 0",
-        "mu",
-        [0.5, 1.0],
-    );
-    let last = points(&found)
-        .find(|point| point.parameter == 1.0)
-        .expect("an end");
+    let found = response("x'' - 50*mu*(1 - x^2/400)*x' + 2500*x = 0", "mu", [0.5, 1.0]);
+    let last = points(&found).find(|point| point.parameter == 1.0).expect("an end");
     assert!(
         (last.peak / 20.0 - 2.00862).abs() < 1e-3
             && (last.frequency / 50.0 * 6.66329 / std::f64::consts::TAU - 1.0).abs() < 1e-4
@@ -223,10 +184,7 @@ fn units_do_not_matter() {
 fn what_does_not_swing_by_itself_is_refused() {
     for (equation, words) in [
         ("x'' + k*x + x^3 = 0", "there is no drive: time"),
-        (
-            "x'' + k*x' + x = 0",
-            "no limit cycle was found for k from 0.5 to 2",
-        ),
+        ("x'' + k*x' + x = 0", "no limit cycle was found for k from 0.5 to 2"),
         ("x'' + k*x' + x^3 + x'^3 = 0", "no limit cycle"),
     ] {
         let refused = respond(&question(equation, "k", [0.5, 2.0], "")).expect_err(equation);
@@ -236,10 +194,5 @@ fn what_does_not_swing_by_itself_is_refused() {
         periods: 2,
         ..question("x'' - mu*(1 - x^2)*x' + x = 0", "mu", [0.5, 1.0], "")
     });
-    assert!(
-        refused
-            .expect_err("periods")
-            .to_string()
-            .contains("2 periods")
-    );
+    assert!(refused.expect_err("periods").to_string().contains("2 periods"));
 }

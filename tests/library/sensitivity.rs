@@ -38,10 +38,7 @@ fn two_integrators_part_where_six_digits_are_lost() {
         // to a factor.
         let [before, there] = [0.8 * known, known].map(|time| apart(&motions, time));
         assert!(before < 1e-6, "{equation}: {before:e} before {known}");
-        assert!(
-            (1e-8..1e-3).contains(&there),
-            "{equation}: {there:e} at {known}"
-        );
+        assert!((1e-8..1e-3).contains(&there), "{equation}: {there:e} at {known}");
     }
 }
 

@@ -38,13 +38,11 @@ fn series() -> impl Strategy<Value = FourierSeries<Integers>> {
 
 fn polynomial() -> impl Strategy<Value = Polynomial> {
     prop::collection::vec((-9_i64..=9, 1_i64..=4, -2_i32..=3, -2_i32..=3), 0..5).prop_map(|terms| {
-        terms
-            .into_iter()
-            .fold(Polynomial::zero(), |sum, (p, q, a, k)| {
-                let monomial =
-                    Monomial::power_of("A".into(), a).product(&Monomial::power_of("k".into(), k));
-                sum + Polynomial::term(monomial, ratio(p, q))
-            })
+        terms.into_iter().fold(Polynomial::zero(), |sum, (p, q, a, k)| {
+            let monomial =
+                Monomial::power_of("A".into(), a).product(&Monomial::power_of("k".into(), k));
+            sum + Polynomial::term(monomial, ratio(p, q))
+        })
     })
 }
 
@@ -57,10 +55,7 @@ fn symbolic_series() -> impl Strategy<Value = FourierSeries<Polynomials<Integers
                     Monomial::power_of("A".into(), a).product(&Monomial::power_of("k".into(), k));
                 Polynomial::term(monomial, Integer::from(c))
             };
-            terms
-                .into_iter()
-                .map(term)
-                .fold(Polynomial::zero(), |sum, term| sum + term)
+            terms.into_iter().map(term).fold(Polynomial::zero(), |sum, term| sum + term)
         })
     };
     let numerators = move || prop::collection::vec(numerator(), 0..4);
@@ -338,16 +333,10 @@ fn every_function_of_the_grammar_is_expanded() {
             open.extend(expression.children().cloned());
         }
     }
-    let missing: Vec<&str> = Function::all()
-        .filter(|function| !seen.contains(function))
-        .map(Function::name)
-        .collect();
+    let missing: Vec<&str> =
+        Function::all().filter(|function| !seen.contains(function)).map(Function::name).collect();
     assert_eq!(missing, Vec::<&str>::new());
-    assert!(
-        CORNER_AT_ZERO
-            .iter()
-            .all(|corner| FUNCTIONS.contains(corner))
-    );
+    assert!(CORNER_AT_ZERO.iter().all(|corner| FUNCTIONS.contains(corner)));
 }
 
 /// Every function of the grammar, inside its domain for |x| < 1.
@@ -378,15 +367,9 @@ const FUNCTIONS: [&str; 20] = [
 fn several_variables_at_once() {
     // exp(x) cos(v) about (0, 0): the part of degree three is x^3/6 - x v^2/2.
     let function = parse_expression("exp(x)*cos(x')").expect("an expression");
-    let point = [
-        ("x".into(), Rational::zero()),
-        ("x'".into(), Rational::zero()),
-    ];
+    let point = [("x".into(), Rational::zero()), ("x'".into(), Rational::zero())];
     let parts = taylor(&function, &point, 3).expect("analytic");
-    assert_eq!(
-        parts[3],
-        parse_expression("x^3/6 - x*x'^2/2").expect("an expression")
-    );
+    assert_eq!(parts[3], parse_expression("x^3/6 - x*x'^2/2").expect("an expression"));
 }
 
 #[test]
@@ -397,16 +380,9 @@ fn symbolic_coefficients_stay_exact() {
     for (part, expected) in parts.iter().zip(expected) {
         assert_eq!(*part, parse_expression(expected).expect("an expression"));
     }
-    let half = taylor(
-        &parse_expression("sin(x)").expect("sine"),
-        &[("x".into(), ratio(1, 2))],
-        1,
-    )
-    .expect("analytic");
-    assert_eq!(
-        half[0],
-        Expr::sin(&Expr::number(ratio(1, 2))).expect("a sine")
-    );
+    let half = taylor(&parse_expression("sin(x)").expect("sine"), &[("x".into(), ratio(1, 2))], 1)
+        .expect("analytic");
+    assert_eq!(half[0], Expr::sin(&Expr::number(ratio(1, 2))).expect("a sine"));
 }
 
 #[test]
@@ -426,23 +402,14 @@ fn corners_and_branch_points_are_refused() {
     ] {
         let function = parse_expression(text).expect("an expression");
         let error = taylor(&function, &[("x".into(), Rational::zero())], 3).expect_err(text);
-        assert!(
-            error.to_string().contains("x = 0") || text == "1/x",
-            "{text}: {error}"
-        );
+        assert!(error.to_string().contains("x = 0") || text == "1/x", "{text}: {error}");
     }
     // These look like branch points and are none.
-    for (text, expected) in [
-        ("sqrt(x^4)", "x^2"),
-        ("(x^3)^(1/3)", "x"),
-        ("(x^2)^(3/2)*(x^2)^(1/2)", "x^4"),
-    ] {
+    for (text, expected) in
+        [("sqrt(x^4)", "x^2"), ("(x^3)^(1/3)", "x"), ("(x^2)^(3/2)*(x^2)^(1/2)", "x^4")]
+    {
         let function = parse_expression(text).expect("an expression");
         let parts = taylor(&function, &[("x".into(), Rational::zero())], 4).expect(text);
-        assert_eq!(
-            Expr::sum(parts),
-            parse_expression(expected).expect("an expression"),
-            "{text}"
-        );
+        assert_eq!(Expr::sum(parts), parse_expression(expected).expect("an expression"), "{text}");
     }
 }

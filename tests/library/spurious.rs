@@ -42,27 +42,17 @@ fn true_amplitude(
     let mut numbers: BTreeMap<Symbol, f64> = at.numbers();
     let period = TAU * f64::from(resonance.times_linear)
         / resonance.driving_frequency.evaluate(&numbers).ok()?;
-    let defined = solution
-        .defined_values(&|name| numbers.get(&name).copied())
-        .ok()?;
+    let defined = solution.defined_values(&|name| numbers.get(&name).copied()).ok()?;
     numbers.extend(defined);
     let exact = |(name, value): (&Symbol, &f64)| {
-        (
-            *name,
-            format!("{value:.17}").parse::<Expr>().expect("a number"),
-        )
+        (*name, format!("{value:.17}").parse::<Expr>().expect("a number"))
     };
     let values: BTreeMap<Symbol, Expr> = numbers.iter().map(exact).collect();
     let [t, x] = ["t", "x"].map(Symbol::new);
     let force = oscillator.force.substitute_all(&values).ok()?;
     let force = CompiledFunction::new(&force, &[t, x, x.derivative()]).ok()?;
     let slow = solution.modulation.as_ref()?;
-    let motion = solution
-        .response
-        .as_ref()?
-        .motion
-        .substitute_all(&values)
-        .ok()?;
+    let motion = solution.response.as_ref()?.motion.substitute_all(&values).ok()?;
     let arguments = [t, slow.amplitude, slow.phase];
     let [position, velocity] = [motion.clone(), motion.differentiate(t).ok()?]
         .map(|motion| CompiledFunction::new(&motion, &arguments).expect("compiled"));
@@ -76,66 +66,16 @@ fn true_amplitude(
 fn no_true_motion_is_near_what_is_left_out() {
     let mut left_out = 0;
     for (equation, resonance, order, at) in [
-        (
-            PARAMETRIC,
-            (1, 1),
-            2,
-            "zeta = 1/1000, h = 1/5, eps = 1/10, Omega = 1",
-        ),
-        (
-            PARAMETRIC,
-            (1, 1),
-            2,
-            "zeta = 1/1000, h = 1/5, eps = 1/100, Omega = 21/20",
-        ),
-        (
-            PARAMETRIC,
-            (1, 1),
-            2,
-            "zeta = 1/200, h = 1/2, eps = 1/100, Omega = 1",
-        ),
-        (
-            PARAMETRIC,
-            (2, 1),
-            2,
-            "zeta = 1/100, h = 1/10, eps = 1/10, Omega = 2",
-        ),
-        (
-            PARAMETRIC,
-            (2, 1),
-            3,
-            "zeta = 1/100, h = 1/10, eps = -1/10, Omega = 2",
-        ),
-        (
-            DUFFING,
-            (1, 1),
-            2,
-            "zeta = 1/50, eps = 1/10, F = 3/50, Omega = 11/10",
-        ),
-        (
-            DUFFING,
-            (1, 1),
-            2,
-            "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10",
-        ),
-        (
-            DUFFING,
-            (1, 1),
-            3,
-            "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10",
-        ),
-        (
-            DUFFING,
-            (1, 3),
-            2,
-            "zeta = 1/200, eps = 1/20, F = 1/2, Omega = 17/50",
-        ),
-        (
-            DUFFING,
-            (3, 1),
-            2,
-            "zeta = 1/500, eps = 1/20, F = 4, Omega = 31/10",
-        ),
+        (PARAMETRIC, (1, 1), 2, "zeta = 1/1000, h = 1/5, eps = 1/10, Omega = 1"),
+        (PARAMETRIC, (1, 1), 2, "zeta = 1/1000, h = 1/5, eps = 1/100, Omega = 21/20"),
+        (PARAMETRIC, (1, 1), 2, "zeta = 1/200, h = 1/2, eps = 1/100, Omega = 1"),
+        (PARAMETRIC, (2, 1), 2, "zeta = 1/100, h = 1/10, eps = 1/10, Omega = 2"),
+        (PARAMETRIC, (2, 1), 3, "zeta = 1/100, h = 1/10, eps = -1/10, Omega = 2"),
+        (DUFFING, (1, 1), 2, "zeta = 1/50, eps = 1/10, F = 3/50, Omega = 11/10"),
+        (DUFFING, (1, 1), 2, "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10"),
+        (DUFFING, (1, 1), 3, "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10"),
+        (DUFFING, (1, 3), 2, "zeta = 1/200, eps = 1/20, F = 1/2, Omega = 17/50"),
+        (DUFFING, (3, 1), 2, "zeta = 1/500, eps = 1/20, F = 4, Omega = 31/10"),
     ] {
         let solution = derived(equation, resonance, order);
         let at: Values = at.parse().expect("values");
@@ -143,10 +83,7 @@ fn no_true_motion_is_near_what_is_left_out() {
         for state in &motions.spurious {
             let truth = true_amplitude(equation, &solution, &at, state);
             let near = truth.is_some_and(|truth| (truth / state.amplitude - 1.0).abs() < 0.2);
-            assert!(
-                !near,
-                "{equation} {at:?} {resonance:?} {order}: {state:?} {truth:?}"
-            );
+            assert!(!near, "{equation} {at:?} {resonance:?} {order}: {state:?} {truth:?}");
         }
         left_out += motions.spurious.len();
     }
@@ -156,55 +93,13 @@ fn no_true_motion_is_near_what_is_left_out() {
 #[test]
 fn motions_of_the_equation_stay() {
     for (equation, resonance, order, at, count) in [
-        (
-            PARAMETRIC,
-            (1, 1),
-            2,
-            "zeta = 1/1000, h = 1/5, eps = 1/10, Omega = 1",
-            3,
-        ),
-        (
-            PARAMETRIC,
-            (1, 1),
-            3,
-            "zeta = 1/1000, h = 1/10, eps = 1/100, Omega = 1",
-            5,
-        ),
-        (
-            PARAMETRIC,
-            (2, 1),
-            2,
-            "zeta = 1/200, h = 1/20, eps = 1/100, Omega = 2",
-            2,
-        ),
-        (
-            DUFFING,
-            (1, 1),
-            1,
-            "zeta = 1/100, eps = 1/50, F = 1/20, Omega = 26/25",
-            3,
-        ),
-        (
-            DUFFING,
-            (1, 1),
-            2,
-            "zeta = 1/100, eps = 1/50, F = 1/20, Omega = 26/25",
-            3,
-        ),
-        (
-            DUFFING,
-            (1, 1),
-            3,
-            "zeta = 1/100, eps = 1/50, F = 1/20, Omega = 26/25",
-            3,
-        ),
-        (
-            DUFFING,
-            (3, 1),
-            2,
-            "zeta = 1/2000, eps = 1/200, F = 10, Omega = 31/10",
-            3,
-        ),
+        (PARAMETRIC, (1, 1), 2, "zeta = 1/1000, h = 1/5, eps = 1/10, Omega = 1", 3),
+        (PARAMETRIC, (1, 1), 3, "zeta = 1/1000, h = 1/10, eps = 1/100, Omega = 1", 5),
+        (PARAMETRIC, (2, 1), 2, "zeta = 1/200, h = 1/20, eps = 1/100, Omega = 2", 2),
+        (DUFFING, (1, 1), 1, "zeta = 1/100, eps = 1/50, F = 1/20, Omega = 26/25", 3),
+        (DUFFING, (1, 1), 2, "zeta = 1/100, eps = 1/50, F = 1/20, Omega = 26/25", 3),
+        (DUFFING, (1, 1), 3, "zeta = 1/100, eps = 1/50, F = 1/20, Omega = 26/25", 3),
+        (DUFFING, (3, 1), 2, "zeta = 1/2000, eps = 1/200, F = 10, Omega = 31/10", 3),
     ] {
         let solution = derived(equation, resonance, order);
         let values: Values = at.parse().expect("values");
@@ -251,20 +146,8 @@ const QUADRATIC: &str = "x'' + 2*zeta*x' + x + b*x^2 = F*cos(Omega*t)";
 #[test]
 fn motions_that_the_last_order_holds_stay() {
     for (equation, resonance, order, at, amplitudes) in [
-        (
-            QUADRATIC,
-            (2, 1),
-            2,
-            "zeta = 1/200, b = 1/10, F = 3/5, Omega = 201/100",
-            vec![0.881],
-        ),
-        (
-            QUADRATIC,
-            (2, 1),
-            3,
-            "zeta = 1/200, b = 1/10, F = 3/5, Omega = 201/100",
-            vec![0.881],
-        ),
+        (QUADRATIC, (2, 1), 2, "zeta = 1/200, b = 1/10, F = 3/5, Omega = 201/100", vec![0.881]),
+        (QUADRATIC, (2, 1), 3, "zeta = 1/200, b = 1/10, F = 3/5, Omega = 201/100", vec![0.881]),
         (
             DUFFING,
             (1, 3),
@@ -274,24 +157,14 @@ fn motions_that_the_last_order_holds_stay() {
         ),
     ] {
         let oscillator = Oscillator::parse(equation).expect(equation);
-        let judged = judge(
-            &oscillator,
-            &derived(equation, resonance, order),
-            &at.parse().expect(at),
-            0.1,
-        )
-        .expect(at);
-        let moving = judged
-            .steady_states
-            .iter()
-            .filter(|state| state.state.amplitude > 0.0);
+        let judged =
+            judge(&oscillator, &derived(equation, resonance, order), &at.parse().expect(at), 0.1)
+                .expect(at);
+        let moving = judged.steady_states.iter().filter(|state| state.state.amplitude > 0.0);
         let found: Vec<f64> = moving.filter_map(|state| state.true_amplitude).collect();
         assert_eq!(found.len(), amplitudes.len(), "{equation} {at}: {found:?}");
         for (found, expected) in found.iter().zip(&amplitudes) {
-            assert!(
-                (found / expected - 1.0).abs() < 5e-3,
-                "{equation} {at}: {found} {expected}"
-            );
+            assert!((found / expected - 1.0).abs() < 5e-3, "{equation} {at}: {found} {expected}");
         }
         for state in &judged.steady_states {
             let near = state.state.amplitude == 0.0
@@ -306,76 +179,22 @@ fn motions_that_the_last_order_holds_stay() {
 #[test]
 fn steady_motions_are_all_roots_of_the_slow_equations() {
     for (equation, resonance, order, at) in [
-        (
-            DUFFING,
-            (1, 1),
-            1,
-            "zeta = 1/50, eps = 1/10, F = 3/50, Omega = 11/10",
-        ),
-        (
-            DUFFING,
-            (1, 1),
-            2,
-            "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10",
-        ),
-        (
-            DUFFING,
-            (1, 1),
-            3,
-            "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10",
-        ),
-        (
-            DUFFING,
-            (1, 3),
-            2,
-            "zeta = 1/500, eps = 1/20, F = 6/5, Omega = 37/100",
-        ),
-        (
-            DUFFING,
-            (3, 1),
-            2,
-            "zeta = 1/500, eps = 1/20, F = 4, Omega = 31/10",
-        ),
-        (
-            QUADRATIC,
-            (2, 1),
-            2,
-            "zeta = 1/200, b = 1/10, F = 3/5, Omega = 201/100",
-        ),
-        (
-            QUADRATIC,
-            (1, 2),
-            2,
-            "zeta = 1/100, b = 1/5, F = 1/2, Omega = 51/100",
-        ),
-        (
-            PARAMETRIC,
-            (1, 1),
-            2,
-            "zeta = 1/1000, h = 1/5, eps = 1/10, Omega = 1",
-        ),
-        (
-            PARAMETRIC,
-            (1, 1),
-            3,
-            "zeta = 1/1000, h = 1/10, eps = 1/100, Omega = 1",
-        ),
-        (
-            PARAMETRIC,
-            (2, 1),
-            3,
-            "zeta = 1/100, h = 1/10, eps = -1/10, Omega = 2",
-        ),
+        (DUFFING, (1, 1), 1, "zeta = 1/50, eps = 1/10, F = 3/50, Omega = 11/10"),
+        (DUFFING, (1, 1), 2, "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10"),
+        (DUFFING, (1, 1), 3, "zeta = 1/50, eps = 1/2, F = 1/2, Omega = 9/10"),
+        (DUFFING, (1, 3), 2, "zeta = 1/500, eps = 1/20, F = 6/5, Omega = 37/100"),
+        (DUFFING, (3, 1), 2, "zeta = 1/500, eps = 1/20, F = 4, Omega = 31/10"),
+        (QUADRATIC, (2, 1), 2, "zeta = 1/200, b = 1/10, F = 3/5, Omega = 201/100"),
+        (QUADRATIC, (1, 2), 2, "zeta = 1/100, b = 1/5, F = 1/2, Omega = 51/100"),
+        (PARAMETRIC, (1, 1), 2, "zeta = 1/1000, h = 1/5, eps = 1/10, Omega = 1"),
+        (PARAMETRIC, (1, 1), 3, "zeta = 1/1000, h = 1/10, eps = 1/100, Omega = 1"),
+        (PARAMETRIC, (2, 1), 3, "zeta = 1/100, h = 1/10, eps = -1/10, Omega = 2"),
     ] {
         let solution = derived(equation, resonance, order);
         let at: Values = at.parse().expect("values");
         let motions = found(&solution, &at);
-        let all: Vec<SteadyState> = motions
-            .states
-            .iter()
-            .chain(&motions.spurious)
-            .copied()
-            .collect();
+        let all: Vec<SteadyState> =
+            motions.states.iter().chain(&motions.spurious).copied().collect();
         let largest = all.iter().map(|state| state.amplitude).fold(1.0, f64::max);
         let times = f64::from(resonance.0);
         let own: Vec<[f64; 2]> = on_grid(&solution, &at, 1.1 * largest);
@@ -383,27 +202,18 @@ fn steady_motions_are_all_roots_of_the_slow_equations() {
         let same = |[u, v]: &[f64; 2], state: &SteadyState| {
             let near = |k: u32| {
                 let angle = (state.phase + TAU * f64::from(k)) / times;
-                let [x, y] = [
-                    state.amplitude * angle.cos(),
-                    -state.amplitude * angle.sin(),
-                ];
+                let [x, y] = [state.amplitude * angle.cos(), -state.amplitude * angle.sin()];
                 (x - u).hypot(y - v) < 1e-5 * largest
             };
             (0..resonance.0).any(near)
         };
         for place in &own {
             let known = all.iter().any(|state| same(place, state));
-            assert!(
-                known,
-                "{equation} {at:?} {order}: {place:?} is missing in {all:?}"
-            );
+            assert!(known, "{equation} {at:?} {order}: {place:?} is missing in {all:?}");
         }
         for state in &all {
             let known = own.iter().any(|place| same(place, state));
-            assert!(
-                known,
-                "{equation} {at:?} {order}: {state:?} is none of {own:?}"
-            );
+            assert!(known, "{equation} {at:?} {order}: {state:?} is none of {own:?}");
         }
     }
 }
@@ -411,22 +221,12 @@ fn steady_motions_are_all_roots_of_the_slow_equations() {
 /// The places to which Newton's method leads from a grid, by the rates in the plane alone.
 fn on_grid(solution: &Solution, at: &Values, size: f64) -> Vec<[f64; 2]> {
     const STEPS: i32 = 24;
-    let plane = solution
-        .response
-        .as_ref()
-        .and_then(|response| response.plane.as_ref())
-        .expect("a plane");
+    let plane =
+        solution.response.as_ref().and_then(|response| response.plane.as_ref()).expect("a plane");
     let mut numbers = at.numbers();
-    numbers.extend(
-        solution
-            .defined_values(&|name| at.get(name))
-            .expect("all values are given"),
-    );
+    numbers.extend(solution.defined_values(&|name| at.get(name)).expect("all values are given"));
     let exact = |(name, value): (&Symbol, &f64)| {
-        (
-            *name,
-            format!("{value:.17}").parse::<Expr>().expect("a number"),
-        )
+        (*name, format!("{value:.17}").parse::<Expr>().expect("a number"))
     };
     let values: BTreeMap<Symbol, Expr> = numbers.iter().map(exact).collect();
     let compiled = |part: &Expr| CompiledFunction::new(part, &plane.coordinates).expect("compiled");
@@ -437,9 +237,7 @@ fn on_grid(solution: &Solution, at: &Values, size: f64) -> Vec<[f64; 2]> {
         .collect();
     let [p, q] = [0, 1].map(|k| compiled(&rates[k]));
     let slopes = [0, 1].map(|k| {
-        plane
-            .coordinates
-            .map(|name| compiled(&rates[k].differentiate(name).expect("a slope")))
+        plane.coordinates.map(|name| compiled(&rates[k].differentiate(name).expect("a slope")))
     });
     let mut places: Vec<[f64; 2]> = vec![];
     for i in -STEPS..=STEPS {
@@ -447,9 +245,8 @@ fn on_grid(solution: &Solution, at: &Values, size: f64) -> Vec<[f64; 2]> {
             let mut place = [i, j].map(|k| size * (f64::from(k) + 0.37) / f64::from(STEPS));
             let mut moved = f64::INFINITY;
             for _ in 0..60 {
-                let [[a, b], [c, d]] = slopes
-                    .each_ref()
-                    .map(|row| row.each_ref().map(|slope| slope.call(&place)));
+                let [[a, b], [c, d]] =
+                    slopes.each_ref().map(|row| row.each_ref().map(|slope| slope.call(&place)));
                 let [u, v] = [p.call(&place), q.call(&place)];
                 let determinant = a * d - b * c;
                 let step = [(d * u - b * v) / determinant, (a * v - c * u) / determinant];

@@ -23,11 +23,7 @@ type Point = (f64, f64, f64);
 fn depth(model: &Model, x: f64) -> (f64, f64) {
     let right = model.right.map_or(f64::NEG_INFINITY, |barrier| x - barrier);
     let left = model.left.map_or(f64::NEG_INFINITY, |barrier| barrier - x);
-    if left > right {
-        (left, -1.0)
-    } else {
-        (right, 1.0)
-    }
+    if left > right { (left, -1.0) } else { (right, 1.0) }
 }
 
 /// All forces of equation (7) but Coulomb's.
@@ -84,11 +80,7 @@ fn truth(model: &Model, start: Start, duration: f64, h: f64) -> Truth {
     // Where friction acts: 1 or -1, 0 while it holds.
     let mut direction = if start.velocity == 0.0 {
         let push = force(model, now);
-        if push.abs() > model.alpha {
-            push.signum()
-        } else {
-            0.0
-        }
+        if push.abs() > model.alpha { push.signum() } else { 0.0 }
     } else {
         start.velocity.signum()
     };
@@ -103,25 +95,15 @@ fn truth(model: &Model, start: Start, duration: f64, h: f64) -> Truth {
             now.0 += length;
             continue;
         }
-        let dry = if coulomb {
-            model.alpha * direction
-        } else {
-            0.0
-        };
+        let dry = if coulomb { model.alpha * direction } else { 0.0 };
         let mut next = step(model, now, dry, length);
         let turned = coulomb && direction * next.2 < 0.0;
         if turned {
-            length = bisected(length, |part| {
-                direction * step(model, now, dry, part).2 < 0.0
-            });
+            length = bisected(length, |part| direction * step(model, now, dry, part).2 < 0.0);
             next = step(model, now, dry, length);
             next.2 = 0.0;
             let push = force(model, next);
-            direction = if push.abs() > model.alpha {
-                push.signum()
-            } else {
-                0.0
-            };
+            direction = if push.abs() > model.alpha { push.signum() } else { 0.0 };
         }
         let entered = depth(model, next.1).0 > 0.0;
         if entered != inside {
@@ -138,18 +120,11 @@ fn truth(model: &Model, start: Start, duration: f64, h: f64) -> Truth {
         }
         now = next;
     }
-    Truth {
-        contacts,
-        x: now.1,
-        velocity: now.2,
-    }
+    Truth { contacts, x: now.1, velocity: now.2 }
 }
 
 fn followed(model: &Model, start: Start, duration: f64, integrator: Integrator) -> Simulation {
-    let options = Settings {
-        duration,
-        ..Settings::default()
-    };
+    let options = Settings { duration, ..Settings::default() };
     simulate(model, start, integrator, &options).expect("a motion")
 }
 
@@ -158,17 +133,9 @@ fn agrees(name: &str, model: &Model, start: Start, duration: f64, allowed: f64) 
     let truth = truth(model, start, duration, 2e-5);
     for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
         let motion = followed(model, start, duration, integrator);
-        assert_eq!(
-            motion.stop,
-            Stop::Duration,
-            "{name}, {integrator:?}: {}",
-            motion.stop
-        );
-        let found: Vec<Span> = motion
-            .impacts
-            .iter()
-            .map(|impact| (impact.entry_time, impact.exit_time))
-            .collect();
+        assert_eq!(motion.stop, Stop::Duration, "{name}, {integrator:?}: {}", motion.stop);
+        let found: Vec<Span> =
+            motion.impacts.iter().map(|impact| (impact.entry_time, impact.exit_time)).collect();
         assert_eq!(
             found.len(),
             truth.contacts.len(),
@@ -196,10 +163,7 @@ fn agrees(name: &str, model: &Model, start: Start, duration: f64, allowed: f64) 
             truth.velocity
         );
         let residual = motion.energy().residual;
-        assert!(
-            residual < 1e-8,
-            "{name}, {integrator:?}: energy residual {residual}"
-        );
+        assert!(residual < 1e-8, "{name}, {integrator:?}: energy residual {residual}");
     }
 }
 
@@ -219,72 +183,32 @@ fn shaken(alpha: f64, beta: f64) -> Model {
 
 #[test]
 fn at_rest_on_a_barrier_it_goes_where_the_force_goes() {
-    let rest = Start {
-        x: 0.0,
-        velocity: 0.0,
-    };
+    let rest = Start { x: 0.0, velocity: 0.0 };
     // The force is zero at first and grows with time: into the barrier, or away from it.
     agrees("pushed in", &shaken(0.0, 0.3), rest, 30.0, 1e-6);
     agrees("pulled away", &shaken(0.0, -0.3), rest, 30.0, 1e-6);
     // Held at first, and let go by friction into the barrier, or away from it.
     agrees("let go into it", &shaken(0.1, 0.3), rest, 30.0, 1e-6);
     agrees("let go away from it", &shaken(0.1, -0.3), rest, 30.0, 1e-6);
-    let creeping = Model {
-        friction: Friction::Arctangent,
-        ..shaken(0.1, 0.3)
-    };
+    let creeping = Model { friction: Friction::Arctangent, ..shaken(0.1, 0.3) };
     agrees("creeping", &creeping, rest, 30.0, 1e-6);
     // Gravity presses from the first moment on; nothing but the damping of the barrier takes
     // energy.
-    let pressed = Model {
-        gamma: 1e4,
-        mu: 1e3,
-        right: Some(-0.3),
-        ..Model::default()
-    };
-    let on_it = Start {
-        x: -0.3,
-        velocity: 0.0,
-    };
+    let pressed = Model { gamma: 1e4, mu: 1e3, right: Some(-0.3), ..Model::default() };
+    let on_it = Start { x: -0.3, velocity: 0.0 };
     agrees("pressed", &pressed, on_it, 10.0, 1e-6);
-    let mirrored = Model {
-        left: Some(0.3),
-        right: None,
-        ..pressed
-    };
-    agrees(
-        "pressed from the right",
-        &mirrored,
-        Start { x: 0.3, ..on_it },
-        10.0,
-        1e-6,
-    );
-    let falling = Model {
-        right: Some(0.3),
-        ..pressed
-    };
-    agrees(
-        "falls away",
-        &falling,
-        Start { x: 0.3, ..on_it },
-        10.0,
-        1e-6,
-    );
+    let mirrored = Model { left: Some(0.3), right: None, ..pressed };
+    agrees("pressed from the right", &mirrored, Start { x: 0.3, ..on_it }, 10.0, 1e-6);
+    let falling = Model { right: Some(0.3), ..pressed };
+    agrees("falls away", &falling, Start { x: 0.3, ..on_it }, 10.0, 1e-6);
 }
 
 #[test]
 fn pressed_into_an_elastic_barrier_at_rest_it_never_leaves() {
     // It comes back to the barrier without speed again and again: one contact that lasts.
     for (gamma, barrier) in [(1e3, -0.3), (3.0407e7, -0.3), (1e5, -1.2)] {
-        let model = Model {
-            gamma,
-            right: Some(barrier),
-            ..Model::default()
-        };
-        let start = Start {
-            x: barrier,
-            velocity: 0.0,
-        };
+        let model = Model { gamma, right: Some(barrier), ..Model::default() };
+        let start = Start { x: barrier, velocity: 0.0 };
         for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
             let motion = followed(&model, start, 3.0, integrator);
             assert_eq!(motion.stop, Stop::Duration, "{gamma}, {integrator:?}");
@@ -307,68 +231,28 @@ fn pressed_into_an_elastic_barrier_at_rest_it_never_leaves() {
 
 #[test]
 fn a_start_inside_the_contact_begins_with_what_the_barrier_stores() {
-    let model = Model {
-        zeta: 0.01,
-        gamma: 1e4,
-        mu: 1e3,
-        right: Some(0.2),
-        ..Model::default()
-    };
+    let model = Model { zeta: 0.01, gamma: 1e4, mu: 1e3, right: Some(0.2), ..Model::default() };
     let inside = |x: f64, velocity: f64| Start { x, velocity };
     agrees("at rest", &model, inside(0.22, 0.0), 10.0, 1e-6);
     agrees("inwards", &model, inside(0.21, 0.5), 10.0, 1e-6);
     agrees("outwards", &model, inside(0.21, -0.5), 10.0, 1e-6);
     // Faster than the barrier comes back: gamma + mu v < 0.
     agrees("detached", &model, inside(0.22, -12.0), 4.0, 1e-6);
-    let left = Model {
-        left: Some(-0.2),
-        right: Some(0.9),
-        ..model
-    };
+    let left = Model { left: Some(-0.2), right: Some(0.9), ..model };
     agrees("on the left", &left, inside(-0.215, -0.3), 10.0, 1e-6);
-    let rough = Model {
-        alpha: 0.1,
-        ..model
-    };
+    let rough = Model { alpha: 0.1, ..model };
     agrees("with friction", &rough, inside(0.22, 0.0), 10.0, 1e-6);
     agrees("and speed", &rough, inside(0.21, 0.4), 10.0, 1e-6);
     // gamma d^(3/2) + sin x stays below alpha: it is held where it is.
-    agrees(
-        "held",
-        &Model {
-            alpha: 0.5,
-            ..model
-        },
-        inside(0.201, 0.0),
-        5.0,
-        1e-9,
-    );
-    let driven = Model {
-        alpha: 0.25,
-        beta: 0.6,
-        frequency_ratio: 1.3,
-        ..model
-    };
-    agrees(
-        "held, then let go",
-        &driven,
-        inside(0.2001, 0.0),
-        10.0,
-        1e-6,
-    );
-    let creeping = Model {
-        friction: Friction::Arctangent,
-        ..rough
-    };
+    agrees("held", &Model { alpha: 0.5, ..model }, inside(0.201, 0.0), 5.0, 1e-9);
+    let driven = Model { alpha: 0.25, beta: 0.6, frequency_ratio: 1.3, ..model };
+    agrees("held, then let go", &driven, inside(0.2001, 0.0), 10.0, 1e-6);
+    let creeping = Model { friction: Friction::Arctangent, ..rough };
     agrees("creeping", &creeping, inside(0.22, 0.0), 10.0, 1e-6);
 
     // Without damping nothing is lost: it leaves with all that was stored, and there was no touch
     // to compare with.
-    let elastic = Model {
-        zeta: 0.0,
-        mu: 0.0,
-        ..model
-    };
+    let elastic = Model { zeta: 0.0, mu: 0.0, ..model };
     for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
         let motion = followed(&elastic, inside(0.22, 0.0), 0.3, integrator);
         let impact = motion.impacts[0];
@@ -385,30 +269,13 @@ fn at_a_barrier_near_plumb_a_dying_motion_goes_on_to_the_end() {
     // Where the barrier stands at the place of rest a touch becomes ever slower and longer: steps
     // must grow with it.
     for barrier in [0.0, 1e-12, -1e-12, 1e-15, -1e-14] {
-        let model = Model {
-            zeta: 0.1,
-            gamma: 1e5,
-            mu: 1e4,
-            right: Some(barrier),
-            ..Model::default()
-        };
-        let start = Start {
-            x: -1.0,
-            velocity: 0.0,
-        };
+        let model =
+            Model { zeta: 0.1, gamma: 1e5, mu: 1e4, right: Some(barrier), ..Model::default() };
+        let start = Start { x: -1.0, velocity: 0.0 };
         for duration in [500.0, 2e4] {
             let motion = followed(&model, start, duration, Integrator::Taylor);
-            assert_eq!(
-                motion.stop,
-                Stop::Duration,
-                "{barrier}, {duration}: {}",
-                motion.stop
-            );
-            assert!(
-                motion.steps < 20_000,
-                "{barrier}, {duration}: {} steps",
-                motion.steps
-            );
+            assert_eq!(motion.stop, Stop::Duration, "{barrier}, {duration}: {}", motion.stop);
+            assert!(motion.steps < 20_000, "{barrier}, {duration}: {} steps", motion.steps);
             assert!(motion.end_x.abs() < 1e-11 && motion.end_velocity.abs() < 1e-11);
         }
         agrees("near plumb", &model, start, 25.0, 1e-6);
@@ -427,16 +294,9 @@ fn a_tiny_motion_is_followed_as_closely_as_a_large_one() {
             right: Some(0.3 * size),
             ..Model::default()
         };
-        let start = Start {
-            x: -size,
-            velocity: 0.0,
-        };
+        let start = Start { x: -size, velocity: 0.0 };
         let motion = followed(&model, start, 20.0, integrator);
-        assert!(
-            motion.energy().residual < 1e-8,
-            "{size}: {}",
-            motion.energy().residual
-        );
+        assert!(motion.energy().residual < 1e-8, "{size}: {}", motion.energy().residual);
         let spans = motion
             .impacts
             .iter()

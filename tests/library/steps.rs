@@ -16,21 +16,13 @@ fn solution(equation: &str, options: &Options) -> Solution {
 }
 
 fn by(method: Method, order: u32) -> Options {
-    Options {
-        method: Some(method),
-        order: Some(order),
-        ..Options::default()
-    }
+    Options { method: Some(method), order: Some(order), ..Options::default() }
 }
 
 /// The lines of a derivation, without what surrounds them.
 fn lines(solution: &Solution) -> Vec<String> {
     let text = text::steps(solution);
-    text.lines()
-        .map(str::trim)
-        .filter(|line| !line.is_empty())
-        .map(str::to_owned)
-        .collect()
+    text.lines().map(str::trim).filter(|line| !line.is_empty()).map(str::to_owned).collect()
 }
 
 fn read(text: &str) -> Expr {
@@ -53,24 +45,17 @@ fn value_of(name: &str, lines: &[String]) -> Expr {
 type Numbers = BTreeMap<Symbol, f64>;
 
 fn numbers(pairs: &[(&str, f64)]) -> Numbers {
-    pairs
-        .iter()
-        .map(|(name, value)| (Symbol::new(name), *value))
-        .collect()
+    pairs.iter().map(|(name, value)| (Symbol::new(name), *value)).collect()
 }
 
 fn at(expression: &Expr, numbers: &Numbers, theta: f64) -> f64 {
     let mut numbers = numbers.clone();
     numbers.insert("theta".into(), theta);
-    expression
-        .evaluate(&numbers)
-        .unwrap_or_else(|error| panic!("{expression}: {error}"))
+    expression.evaluate(&numbers).unwrap_or_else(|error| panic!("{expression}: {error}"))
 }
 
 fn derivative(expression: &Expr) -> Expr {
-    expression
-        .differentiate("theta".into())
-        .expect("a derivative")
+    expression.differentiate("theta".into()).expect("a derivative")
 }
 
 /// `y_n'' + y_n` is the printed right side with the printed `W_n` in it, and the printed conditions
@@ -84,16 +69,10 @@ fn orders_hold(solution: &Solution, numbers: &Numbers) {
         let mut numbers = numbers.clone();
         if n > 0 {
             let w = value_of(&format!("W{n}"), &lines);
-            numbers.insert(
-                Symbol::new(&format!("W{n}")),
-                w.evaluate(&numbers).expect("a number"),
-            );
+            numbers.insert(Symbol::new(&format!("W{n}")), w.evaluate(&numbers).expect("a number"));
         }
         let start = format!("y{n}'' + y{n} = ");
-        let right = lines
-            .iter()
-            .find_map(|line| line.strip_prefix(&start))
-            .expect("the equation");
+        let right = lines.iter().find_map(|line| line.strip_prefix(&start)).expect("the equation");
         let right = read(right);
         for theta in angles {
             let (left, right) = (at(&left, &numbers, theta), at(&right, &numbers, theta));
@@ -103,22 +82,14 @@ fn orders_hold(solution: &Solution, numbers: &Numbers) {
                 solution.equation
             );
         }
-        let order = lines
-            .iter()
-            .skip_while(|line| **line != format!("order {n}"));
-        let conditions = order
-            .clone()
-            .find_map(|line| line.strip_prefix("with "))
-            .expect("conditions")
-            .trim();
+        let order = lines.iter().skip_while(|line| **line != format!("order {n}"));
+        let conditions =
+            order.clone().find_map(|line| line.strip_prefix("with ")).expect("conditions").trim();
         for condition in conditions.split(", ") {
             let pi = std::f64::consts::PI;
             let projection = |wave: &dyn Fn(f64) -> f64| -> f64 {
                 let sample = |k: u32| 2.0 * pi * f64::from(k) / 64.0;
-                (0..64)
-                    .map(|k| at(&y, &numbers, sample(k)) * wave(sample(k)))
-                    .sum::<f64>()
-                    / 32.0
+                (0..64).map(|k| at(&y, &numbers, sample(k)) * wave(sample(k))).sum::<f64>() / 32.0
             };
             let value = if condition == format!("y{n}(0) = 1") {
                 at(&y, &numbers, 0.0) - 1.0
@@ -151,9 +122,7 @@ fn residual(solution: &Solution, unit: &Expr, numbers: &Numbers, small: (&str, f
     let squared = &value_of("omega0^2", &lines) * &(Expr::one() + sum("W", 1));
     let omega = squared.evaluate(&numbers).expect("a number").sqrt();
     let (velocity, acceleration) = (derivative(&motion), derivative(&derivative(&motion)));
-    let force = Oscillator::from_equation(&solution.equation)
-        .expect("an equation")
-        .force;
+    let force = Oscillator::from_equation(&solution.equation).expect("an equation").force;
     let defect = |theta: f64| {
         let mut at_theta = numbers.clone();
         at_theta.insert("x".into(), at(&motion, &numbers, theta));
@@ -161,9 +130,8 @@ fn residual(solution: &Solution, unit: &Expr, numbers: &Numbers, small: (&str, f
         omega * omega * at(&acceleration, &numbers, theta)
             + force.evaluate(&at_theta).expect("a force")
     };
-    let sum: f64 = (0..48)
-        .map(|k| defect(2.0 * std::f64::consts::PI * f64::from(k) / 48.0).powi(2))
-        .sum();
+    let sum: f64 =
+        (0..48).map(|k| defect(2.0 * std::f64::consts::PI * f64::from(k) / 48.0).powi(2)).sum();
     (sum / 48.0).sqrt()
 }
 
@@ -174,22 +142,14 @@ fn the_orders_of_lindstedt_and_poincare_hold_as_printed() {
         ..by(Method::LindstedtPoincare, order)
     };
     for (equation, options, values) in [
-        (
-            "x'' + x + eps*x^3 = 0",
-            by(Method::LindstedtPoincare, 3),
-            vec![("A", 1.3)],
-        ),
+        ("x'' + x + eps*x^3 = 0", by(Method::LindstedtPoincare, 3), vec![("A", 1.3)]),
         ("x'' + x + eps*x^3 = 0", first_harmonic(3), vec![("a", 1.3)]),
         (
             "x'' + k*x + eps*(x^2 + 2*x^3) = 0",
             by(Method::LindstedtPoincare, 3),
             vec![("A", 0.7), ("k", 2.25)],
         ),
-        (
-            "x'' + 4*x + eps*x*x'^2 = 0",
-            by(Method::LindstedtPoincare, 2),
-            vec![("A", 0.7)],
-        ),
+        ("x'' + 4*x + eps*x*x'^2 = 0", by(Method::LindstedtPoincare, 2), vec![("A", 0.7)]),
     ] {
         let solution = solution(equation, &options);
         let mut at = numbers(&values);
@@ -203,11 +163,7 @@ fn the_orders_of_lindstedt_and_poincare_hold_as_printed() {
         let ratio = residual(&solution, &unit, &at, ("eps", 2e-2))
             / residual(&solution, &unit, &at, ("eps", 1e-2));
         let expected = f64::from(options.order.expect("an order") + 1);
-        assert!(
-            (ratio.log2() - expected).abs() < 0.2,
-            "{equation}: {}",
-            ratio.log2()
-        );
+        assert!((ratio.log2() - expected).abs() < 0.2, "{equation}: {}", ratio.log2());
     }
 }
 
@@ -220,16 +176,11 @@ fn the_orders_of_homotopy_perturbation_hold_as_printed() {
         // omega0^2 = omega^2 (1 - W1 - W2 - W3) is the relation that the answer gives.
         let lines = lines(&solution);
         let corrections = (1..=3).map(|n| value_of(&format!("W{n}"), &lines));
-        let sum: f64 = corrections
-            .map(|w| w.evaluate(&at).expect("a number"))
-            .sum();
-        let left = value_of("omega0^2", &lines)
-            .evaluate(&at)
-            .expect("a number");
+        let sum: f64 = corrections.map(|w| w.evaluate(&at).expect("a number")).sum();
+        let left = value_of("omega0^2", &lines).evaluate(&at).expect("a number");
         let relation = solution.law.relation().expect("a relation");
-        let value = solution
-            .evaluate(relation, &|symbol| at.get(&symbol).copied())
-            .expect("a value");
+        let value =
+            solution.evaluate(relation, &|symbol| at.get(&symbol).copied()).expect("a value");
         // The relation has been multiplied by a power of omega.
         let highest = relation.exponent_range("omega".into()).expect("a power").1;
         let scaled = value / 1.7_f64.powi(highest);
@@ -245,21 +196,10 @@ fn limit_cycles_have_their_amplitude_conditions() {
     for (equation, amplitude, others) in [
         ("x'' - mu*(1 - x^2)*x' + x = 0", 2.0, vec![]),
         ("x'' - mu*(1 - x^2)*x' + 4*x = 0", 2.0, vec![]),
-        (
-            "x'' + mu*(x'^3/3 - x') + k*x = 0",
-            2.0 / f64::sqrt(2.25),
-            vec![("k", 2.25)],
-        ),
-        (
-            "x'' - mu*(1 - b*x^2)*x' + x + mu*x^3 = 0",
-            2.0 / f64::sqrt(1.7),
-            vec![("b", 1.7)],
-        ),
+        ("x'' + mu*(x'^3/3 - x') + k*x = 0", 2.0 / f64::sqrt(2.25), vec![("k", 2.25)]),
+        ("x'' - mu*(1 - b*x^2)*x' + x + mu*x^3 = 0", 2.0 / f64::sqrt(1.7), vec![("b", 1.7)]),
     ] {
-        for convention in [
-            AmplitudeConvention::FirstHarmonic,
-            AmplitudeConvention::Initial,
-        ] {
+        for convention in [AmplitudeConvention::FirstHarmonic, AmplitudeConvention::Initial] {
             let options = Options {
                 amplitude: Some(convention),
                 small: Some("mu".to_owned()),
@@ -276,10 +216,8 @@ fn limit_cycles_have_their_amplitude_conditions() {
             let lines = lines(&solution);
             for (n, name) in ["a0", "B1", "B2", "B3"].into_iter().enumerate() {
                 let start = format!("no secular sin(theta) at order {}:  ", n + 1);
-                let condition = lines
-                    .iter()
-                    .find_map(|line| line.strip_prefix(&start))
-                    .expect("a condition");
+                let condition =
+                    lines.iter().find_map(|line| line.strip_prefix(&start)).expect("a condition");
                 let condition = read(condition.strip_suffix(" = 0").expect("an equation"));
                 let value = value_of(name, &lines).evaluate(&at).expect("a number");
                 let mut at = at.clone();
@@ -301,10 +239,7 @@ fn limit_cycles_have_their_amplitude_conditions() {
                         .map(|k| self::at(&y, &at, sample(k)) * sample(k).cos())
                         .sum::<f64>()
                         / 32.0;
-                    assert!(
-                        (part - value).abs() < 1e-12,
-                        "{equation}, {name}: {part} {value}"
-                    );
+                    assert!((part - value).abs() < 1e-12, "{equation}, {name}: {part} {value}");
                 }
             }
             let unit = value_of("a0", &lines);
@@ -327,9 +262,7 @@ fn homotopy_analysis_shows_its_residuals() {
         let solution = solution(equation, &by(Method::HomotopyAnalysis, order));
         let lines = lines(&solution);
         let mut values = numbers(&[("A", 0.6), ("eps", 0.4), ("hbar", -0.8)]);
-        let squared = value_of("w0^2", &lines)
-            .evaluate(&values)
-            .expect("a number");
+        let squared = value_of("w0^2", &lines).evaluate(&values).expect("a number");
         values.insert("w0".into(), squared.sqrt());
         let mut w = vec![squared.sqrt()];
         for m in 1..order {
@@ -338,21 +271,12 @@ fn homotopy_analysis_shows_its_residuals() {
             values.insert(Symbol::new(&name), value);
             w.push(value);
         }
-        let u: Vec<Expr> = (0..order)
-            .map(|m| value_of(&format!("u{m}"), &lines))
-            .collect();
+        let u: Vec<Expr> = (0..order).map(|m| value_of(&format!("u{m}"), &lines)).collect();
         // u0 has the amplitude, so that the others begin at rest at zero, as printed.
         for (m, u) in u.iter().enumerate().skip(1) {
             let start = [at(u, &values, 0.0), at(&derivative(u), &values, 0.0)];
-            assert!(
-                start.iter().all(|value| value.abs() < 1e-14),
-                "{equation}, u{m}: {start:?}"
-            );
-            assert!(
-                lines
-                    .iter()
-                    .any(|line| *line == format!("u{m}(0) = u{m}'(0) = 0"))
-            );
+            assert!(start.iter().all(|value| value.abs() < 1e-14), "{equation}, u{m}: {start:?}");
+            assert!(lines.iter().any(|line| *line == format!("u{m}(0) = u{m}'(0) = 0")));
         }
         let accelerations: Vec<Expr> = u.iter().map(|u| derivative(&derivative(u))).collect();
         for theta in [0.2, 1.0, 2.5] {
@@ -368,11 +292,7 @@ fn homotopy_analysis_shows_its_residuals() {
                 };
                 let omega: f64 = w.iter().zip(0..).map(|(w, k)| q.powi(k) * w).sum();
                 let x = sum(&u);
-                let force: f64 = powers
-                    .iter()
-                    .zip(1..)
-                    .map(|(c, power)| c * x.powi(power))
-                    .sum();
+                let force: f64 = powers.iter().zip(1..).map(|(c, power)| c * x.powi(power)).sum();
                 omega * omega * sum(&accelerations) + force
             };
             let matrix = DMatrix::from_fn(7, 7, |i, j| points[i].powi(j as i32));
@@ -389,10 +309,8 @@ fn homotopy_analysis_shows_its_residuals() {
         }
         for m in 1..=order as usize {
             let start = format!("no cos(theta) in R{m}:  ");
-            let condition = lines
-                .iter()
-                .find_map(|line| line.strip_prefix(&start))
-                .expect("a condition");
+            let condition =
+                lines.iter().find_map(|line| line.strip_prefix(&start)).expect("a condition");
             let value = read(condition.strip_suffix(" = 0").expect("an equation"))
                 .evaluate(&values)
                 .expect("a number");
@@ -404,10 +322,9 @@ fn homotopy_analysis_shows_its_residuals() {
 /// The printed coefficients solve the printed equations, and are those of the printed polynomials.
 #[test]
 fn hermite_pade_shows_the_system_it_solves() {
-    for (equation, degrees) in [
-        ("x'' + x + eps*x^3 = 0", [1, 2, 1]),
-        ("x'' + k*sin(x) = 0", [2, 1, 2]),
-    ] {
+    for (equation, degrees) in
+        [("x'' + x + eps*x^3 = 0", [1, 2, 1]), ("x'' + k*sin(x) = 0", [2, 1, 2])]
+    {
         let [p, q, r] = degrees;
         let options = Options {
             method: Some(Method::HermitePade),
@@ -428,36 +345,18 @@ fn hermite_pade_shows_the_system_it_solves() {
         }
         let equations: Vec<&String> = lines.iter().filter(|line| line.ends_with(" = 0")).collect();
         assert_eq!(equations.len(), (p + q + r + 2) as usize, "{equations:?}");
-        let size = values
-            .values()
-            .fold(0.0_f64, |size, value| size.max(value.abs()));
+        let size = values.values().fold(0.0_f64, |size, value| size.max(value.abs()));
         for equation in equations {
-            let left = equation
-                .rsplit(":  ")
-                .next()
-                .and_then(|line| line.strip_suffix(" = 0"));
-            let left = read(left.expect("an equation"))
-                .evaluate(&values)
-                .expect("a number");
+            let left = equation.rsplit(":  ").next().and_then(|line| line.strip_suffix(" = 0"));
+            let left = read(left.expect("an equation")).evaluate(&values).expect("a number");
             assert!(left.abs() < 1e-13 * size, "{equation}: {left}");
         }
         for letter in ["P", "Q", "R"] {
-            let defined = solution
-                .definitions
-                .iter()
-                .find(|own| own.symbol.name() == letter);
-            let defined = defined
-                .expect("a definition")
-                .meaning
-                .evaluate(&values)
-                .expect("a number");
-            let printed = value_of(letter, &lines)
-                .evaluate(&values)
-                .expect("a number");
-            assert!(
-                (printed / defined - 1.0).abs() < 1e-12,
-                "{letter}: {printed} {defined}"
-            );
+            let defined = solution.definitions.iter().find(|own| own.symbol.name() == letter);
+            let defined =
+                defined.expect("a definition").meaning.evaluate(&values).expect("a number");
+            let printed = value_of(letter, &lines).evaluate(&values).expect("a number");
+            assert!((printed / defined - 1.0).abs() < 1e-12, "{letter}: {printed} {defined}");
         }
     }
 }
@@ -476,12 +375,8 @@ fn pade_shows_the_system_it_solves() {
         };
         let solution = solution(equation, &options);
         let lines = lines(&solution);
-        let mut values = numbers(&[
-            ("A", 0.9),
-            ("eps", 0.4),
-            ("k", 2.0),
-            ("omega0", 2.0_f64.sqrt()),
-        ]);
+        let mut values =
+            numbers(&[("A", 0.9), ("eps", 0.4), ("k", 2.0), ("omega0", 2.0_f64.sqrt())]);
         for j in 1..=degrees.1 {
             let name = format!("q{j}");
             let value = value_of(&name, &lines).evaluate(&values).expect("a number");
@@ -496,10 +391,7 @@ fn pade_shows_the_system_it_solves() {
                 .expect("an equation")
                 .strip_suffix(" = 0")
                 .expect("zero");
-            assert!(
-                read(left).evaluate(&values).expect("a number").abs() < 1e-13,
-                "{equation}"
-            );
+            assert!(read(left).evaluate(&values).expect("a number").abs() < 1e-13, "{equation}");
         }
         for i in 0..=degrees.0 {
             let start = format!("p{i} = ");
@@ -511,10 +403,7 @@ fn pade_shows_the_system_it_solves() {
                 .split(" = ")
                 .map(|side| read(side).evaluate(&values).expect("a number"))
                 .collect();
-            assert!(
-                sides.iter().all(|side| (side - sides[0]).abs() < 1e-13),
-                "{line}"
-            );
+            assert!(sides.iter().all(|side| (side - sides[0]).abs() < 1e-13), "{line}");
             values.insert(Symbol::new(&format!("p{i}")), sides[0]);
         }
         // The quotient of the printed coefficients is the law.
@@ -544,10 +433,8 @@ fn iteration_perturbation_shows_what_it_freezes() {
             let (before, after) = (format!("x{}", pass - 1), format!("x{pass}"));
             let motion = value_of(&before, &lines);
             let start = format!("pass {pass}, the factor frozen at {before}:  ");
-            let frozen = lines
-                .iter()
-                .find_map(|line| line.strip_prefix(&start))
-                .expect("the frozen factor");
+            let frozen =
+                lines.iter().find_map(|line| line.strip_prefix(&start)).expect("the frozen factor");
             let (named, written_out) = frozen.split_once(" = ").expect("an equation");
             assert_eq!(read(named), read(&factor.replace('x', &before)));
             let written_out = read(written_out);
@@ -593,11 +480,7 @@ fn iteration_perturbation_shows_what_it_freezes() {
 /// from.
 #[test]
 fn derivations_by_one_term_end_in_their_law() {
-    for equation in [
-        "x'' + x + eps*x^3 = 0",
-        "x'' + sin(x) = 0",
-        "x'' + x + eps*x*abs(x) = 0",
-    ] {
+    for equation in ["x'' + x + eps*x^3 = 0", "x'' + sin(x) = 0", "x'' + x + eps*x*abs(x) = 0"] {
         for (method, order) in [
             (Method::LindstedtPoincare, 1),
             (Method::IterationPerturbation, 1),
@@ -624,11 +507,7 @@ fn derivations_by_one_term_end_in_their_law() {
             let found = lines.iter().any(|line| {
                 line.contains(&format!("{name} = ")) && line.ends_with(&format!("= {law}"))
             });
-            assert!(
-                found,
-                "{equation} by {}: {formula} in {lines:#?}",
-                method.name()
-            );
+            assert!(found, "{equation} by {}: {formula} in {lines:#?}", method.name());
         }
     }
 }
@@ -643,44 +522,27 @@ fn max_min_has_the_bounds_of_the_motion() {
         ("x'' + x*abs(x) = 0", vec![]),
         ("x'' + x + x^3 - x^5 = 0", vec![0.5_f64.sqrt()]),
         ("x'' + x + x^3*exp(-x^2) = 0", vec![1.0]),
-        (
-            "x'' + 1e12*x - 1e26*x^3 + 1e40*x^5 = 0",
-            vec![0.5_f64.sqrt() * 1e-7],
-        ),
+        ("x'' + 1e12*x - 1e26*x^3 + 1e40*x^5 = 0", vec![0.5_f64.sqrt() * 1e-7]),
         (
             "x'' + x - 3*x^3 + 3*x^5 - x^7/2 = 0",
-            vec![
-                f64::sqrt(2.0 - f64::sqrt(2.0)),
-                f64::sqrt(2.0 + f64::sqrt(2.0)),
-            ],
+            vec![f64::sqrt(2.0 - f64::sqrt(2.0)), f64::sqrt(2.0 + f64::sqrt(2.0))],
         ),
     ] {
         let solution = solution(equation, &by(Method::MaxMin, 1));
         let lines = lines(&solution);
         let force = Oscillator::parse(equation).expect("an equation").force;
-        let quotient = |x: f64| {
-            force
-                .evaluate(&BTreeMap::from([("x".into(), x)]))
-                .expect("a force")
-                / x
-        };
+        let quotient =
+            |x: f64| force.evaluate(&BTreeMap::from([("x".into(), x)])).expect("a force") / x;
         let scale = turning.first().copied().unwrap_or(1.0);
         let found: Vec<f64> = lines
             .iter()
             .filter_map(|line| {
-                line.strip_prefix("x = ")?
-                    .split_once(": q turns back")?
-                    .0
-                    .parse()
-                    .ok()
+                line.strip_prefix("x = ")?.split_once(": q turns back")?.0.parse().ok()
             })
             .collect();
         assert_eq!(found.len(), turning.len(), "{equation}: {lines:#?}");
         for (found, expected) in found.iter().zip(&turning) {
-            assert!(
-                (found / expected - 1.0).abs() < 1e-4,
-                "{equation}: {found} {expected}"
-            );
+            assert!((found / expected - 1.0).abs() < 1e-4, "{equation}: {found} {expected}");
         }
         for part in [0.3, 0.9, 1.2, 1.8, 2.6] {
             let amplitude = part * scale;
@@ -713,10 +575,7 @@ fn max_min_has_the_bounds_of_the_motion() {
                 }
             };
             let width = (largest - least).abs().max(1e-6 * largest.abs());
-            assert!(
-                (lo - least).abs() < 2e-3 * width,
-                "{equation} at {amplitude}: {lo} {least}"
-            );
+            assert!((lo - least).abs() < 2e-3 * width, "{equation} at {amplitude}: {lo} {least}");
             assert!(
                 (hi - largest).abs() < 2e-3 * width,
                 "{equation} at {amplitude}: {hi} {largest}"
@@ -727,10 +586,7 @@ fn max_min_has_the_bounds_of_the_motion() {
                 at.extend(numbers(&[("lo", lo), ("hi", hi)]));
                 let share = value_of("k", &lines).evaluate(&at).expect("a number");
                 let (from, to) = match passed {
-                    0 => (
-                        value_of("q_rest", &lines).evaluate(&at).expect("a number"),
-                        q_end,
-                    ),
+                    0 => (value_of("q_rest", &lines).evaluate(&at).expect("a number"), q_end),
                     _ => (lo, hi),
                 };
                 let mean = |i: u32| {
@@ -757,22 +613,13 @@ fn max_min_sees_narrow_dips() {
         let equation =
             format!("x'' + x + {rise:e}*x^3 - x*exp(-{sharp:e}*(x^2 - {square:e})^2)/10 = 0");
         let lines = lines(&solution(&equation, &by(Method::MaxMin, 1)));
-        let places = lines
-            .iter()
-            .filter_map(|line| line.strip_prefix("x = ")?.split_once(": q turns back"));
-        let places: Vec<f64> = places
-            .map(|entry| entry.0.parse().expect("a number"))
-            .collect();
+        let places =
+            lines.iter().filter_map(|line| line.strip_prefix("x = ")?.split_once(": q turns back"));
+        let places: Vec<f64> = places.map(|entry| entry.0.parse().expect("a number")).collect();
         assert_eq!(places.len(), 2, "{equation}: {lines:#?}");
+        assert!((places[1] / square.sqrt() - 1.0).abs() < 1e-5, "{equation}: {places:?}");
         assert!(
-            (places[1] / square.sqrt() - 1.0).abs() < 1e-5,
-            "{equation}: {places:?}"
-        );
-        assert!(
-            lines
-                .iter()
-                .any(|line| line.contains("the least is L2 = 0.92"))
-                || centre > 3.0,
+            lines.iter().any(|line| line.contains("the least is L2 = 0.92")) || centre > 3.0,
             "{lines:#?}"
         );
     }
@@ -789,15 +636,9 @@ fn max_min_says_on_what_its_bounds_depend() {
          as it does for positive eps, k"
     );
     let mixed = bounds("x'' + x + eps*x^3 - k*x^5 = 0");
-    assert!(
-        mixed.ends_with("while 2*eps*x - 4*k*x^3 keeps its sign for 0 < x < A"),
-        "{mixed}"
-    );
+    assert!(mixed.ends_with("while 2*eps*x - 4*k*x^3 keeps its sign for 0 < x < A"), "{mixed}");
     // One power changes one way only, whatever its sign.
-    assert_eq!(
-        bounds("x'' + x - eps*x^3 = 0"),
-        "omega^2 lies between 1 and 1 - eps*A^2"
-    );
+    assert_eq!(bounds("x'' + x - eps*x^3 = 0"), "omega^2 lies between 1 and 1 - eps*A^2");
 }
 
 /// Where the coefficients are letters, the place at which f(x)/x turns back is given by them.
@@ -806,13 +647,9 @@ fn max_min_names_where_letters_make_it_turn() {
     let solution = solution("x'' + k*x + b*x^3 + eps*x^5 = 0", &by(Method::MaxMin, 1));
     let lines = lines(&solution);
     let values = numbers(&[("k", 2.0), ("b", 3.0), ("eps", -1.0)]);
-    let line = lines
-        .iter()
-        .find(|line| line.starts_with("it turns back"))
-        .expect("the place");
-    let place = read(line.rsplit(" = ").next().expect("a right side"))
-        .evaluate(&values)
-        .expect("a number");
+    let line = lines.iter().find(|line| line.starts_with("it turns back")).expect("the place");
+    let place =
+        read(line.rsplit(" = ").next().expect("a right side")).evaluate(&values).expect("a number");
     // 2 + 3 z - z^2 is stationary at z = 3/2, where it is 17/4.
     assert!((place - 1.5).abs() < 1e-15);
     let value = value_of("q_s", &lines).evaluate(&values).expect("a number");
@@ -824,55 +661,29 @@ fn max_min_names_where_letters_make_it_turn() {
 fn orders_and_corrections_have_names_of_their_own() {
     let solution = solution(
         "x'' + x + eps*(W1*x^3 + y2*x^5) = 0",
-        &Options {
-            small: Some("eps".to_owned()),
-            ..by(Method::LindstedtPoincare, 2)
-        },
+        &Options { small: Some("eps".to_owned()), ..by(Method::LindstedtPoincare, 2) },
     );
     let (text, latex) = (text::steps(&solution), latex::steps(&solution));
-    assert!(
-        text.contains("W_1 = 3*eps*W1*A^2/4 + 5*eps*y2*A^4/8"),
-        "{text}"
-    );
-    assert!(
-        text.contains("y_0'' + y_0 = 0") && !text.contains("y0"),
-        "{text}"
-    );
-    assert!(
-        !latex.contains("y_{0}''") && latex.contains("W_{1} A^{2}"),
-        "{latex}"
-    );
+    assert!(text.contains("W_1 = 3*eps*W1*A^2/4 + 5*eps*y2*A^4/8"), "{text}");
+    assert!(text.contains("y_0'' + y_0 = 0") && !text.contains("y0"), "{text}");
+    assert!(!latex.contains("y_{0}''") && latex.contains("W_{1} A^{2}"), "{latex}");
 }
 
 /// What prints as text prints as LaTeX: formulas, not comments.
 #[test]
 fn no_method_leaves_its_derivation_in_comments() {
-    for equation in [
-        "x'' + x + eps*x^3 = 0",
-        "x'' + sin(x) = 0",
-        "x'' + x + sinh(x)*atan(x)^2 = 0",
-    ] {
+    for equation in ["x'' + x + eps*x^3 = 0", "x'' + sin(x) = 0", "x'' + x + sinh(x)*atan(x)^2 = 0"]
+    {
         let oscillator = Oscillator::parse(equation).expect("an equation");
         for method in Method::ALL {
-            let options = Options {
-                method: Some(method),
-                ..Options::default()
-            };
+            let options = Options { method: Some(method), ..Options::default() };
             let Ok(solution) = solve(&oscillator, &options) else {
                 continue;
             };
             let (text, latex) = (text::steps(&solution), latex::steps(&solution));
-            assert!(
-                text.lines().count() > 2,
-                "{equation} by {}: {text}",
-                method.name()
-            );
+            assert!(text.lines().count() > 2, "{equation} by {}: {text}", method.name());
             assert!(!latex.contains('%'), "{latex}");
-            assert!(
-                latex.matches("&=").count() >= 2,
-                "{equation} by {}: {latex}",
-                method.name()
-            );
+            assert!(latex.matches("&=").count() >= 2, "{equation} by {}: {latex}", method.name());
             let whole = latex::solution(&solution, None);
             if solution.law.quadrature().is_some() {
                 assert!(whole.contains("\\int_"), "{whole}");

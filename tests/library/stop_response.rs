@@ -21,21 +21,13 @@ struct Pieces<'a> {
 
 impl Pieces<'_> {
     fn touches(&self, x: f64) -> Vec<bool> {
-        self.stops
-            .iter()
-            .map(|[at, _]| x * at.signum() > at.abs())
-            .collect()
+        self.stops.iter().map(|[at, _]| x * at.signum() > at.abs()).collect()
     }
 
     /// The state some time after another one, as long as these stops are touched: the closed form
     /// of a linear oscillator.
     fn after(&self, touched: &[bool], [x, v]: [f64; 2], from: f64, time: f64) -> [f64; 2] {
-        let active = || {
-            self.stops
-                .iter()
-                .zip(touched)
-                .filter(|(_, touched)| **touched)
-        };
+        let active = || self.stops.iter().zip(touched).filter(|(_, touched)| **touched);
         let stiffness = 1.0 + active().map(|([_, k], _)| k).sum::<f64>();
         let offset = active().map(|([at, k], _)| k * at).sum::<f64>() / stiffness;
         let (w, c) = (self.omega, self.damping);
@@ -101,19 +93,9 @@ impl Pieces<'_> {
     fn holds(&self, point: &Point) {
         let (end, peak) = self.period(point.start);
         let missed = (end[0] - point.start[0]).hypot(end[1] - point.start[1]);
-        let largest = point
-            .multipliers
-            .map_or(1.0, |multipliers| multipliers[0].norm());
-        assert!(
-            missed < 1e-6 * largest.max(1.0),
-            "{} {missed}",
-            point.parameter
-        );
-        assert!(
-            (point.peak / peak - 1.0).abs() < 2e-3,
-            "{} {peak}",
-            point.parameter
-        );
+        let largest = point.multipliers.map_or(1.0, |multipliers| multipliers[0].norm());
+        assert!(missed < 1e-6 * largest.max(1.0), "{} {missed}", point.parameter);
+        assert!((point.peak / peak - 1.0).abs() < 2e-3, "{} {peak}", point.parameter);
     }
 }
 
@@ -132,24 +114,13 @@ fn a_stop_is_no_jump_of_the_force() {
         let equation = format!("x'' + 0.2*x' + x + {force} = F*cos(Omega*t)");
         let found = response(&equation, [0.5, 3.0], &format!("F = {drive}"));
         assert!(!found.by_map && !found.jumps, "{force}");
-        assert_eq!(
-            found.verdict,
-            Verdict::Pass,
-            "{force}: {:?} {}",
-            found.error,
-            found.unjudged
-        );
+        assert_eq!(found.verdict, Verdict::Pass, "{force}: {:?} {}", found.error, found.unjudged);
         assert_eq!(found.branches.len(), 1, "{force}");
         let points = &found.branches[0].points;
         let ends = [points.first(), points.last()].map(|point| point.expect("a point").parameter);
         assert_eq!(ends, [0.5, 3.0], "{force}");
         for point in points.iter().filter(|point| point.error.is_some()) {
-            let pieces = Pieces {
-                damping: 0.2,
-                drive,
-                omega: point.parameter,
-                stops,
-            };
+            let pieces = Pieces { damping: 0.2, drive, omega: point.parameter, stops };
             pieces.holds(point);
         }
     }
@@ -193,44 +164,21 @@ fn in_contact(omega: f64, start: [f64; 2], periods: u32) -> ([f64; 2], f64) {
 #[test]
 fn ripple_of_the_balance_is_no_fold() {
     let question = Question::new(CONTACT, "Omega", [1.4, 1.7], "F = 3/10").expect("a question");
-    let found = respond(&Question {
-        harmonics: Some(32),
-        ..question
-    })
-    .expect("a response");
-    let folds = found
-        .bifurcations
-        .iter()
-        .filter(|found| found.kind == BifurcationKind::Fold);
+    let found = respond(&Question { harmonics: Some(32), ..question }).expect("a response");
+    let folds = found.bifurcations.iter().filter(|found| found.kind == BifurcationKind::Fold);
     let folds: Vec<f64> = folds.map(|fold| fold.parameter).collect();
     // A simulation that is led up the branch stays on it at the first of these, and falls from it
     // at the second.
     let (mut state, mut peaks) = ([-0.6, 0.8], vec![]);
-    for (omega, periods) in [
-        (1.4, 150),
-        (1.5, 100),
-        (1.55, 100),
-        (1.5605, 150),
-        (1.5625, 400),
-    ] {
+    for (omega, periods) in [(1.4, 150), (1.5, 100), (1.55, 100), (1.5605, 150), (1.5625, 400)] {
         let peak;
         (state, peak) = in_contact(omega, state, periods);
         peaks.push(peak);
     }
-    assert!(
-        peaks[..4].iter().all(|peak| *peak > 0.7) && peaks[4] < 0.3,
-        "{peaks:?}"
-    );
-    assert!(
-        folds.len() == 1 && (1.5605..1.5625).contains(&folds[0]),
-        "{folds:?}"
-    );
+    assert!(peaks[..4].iter().all(|peak| *peak > 0.7) && peaks[4] < 0.3, "{peaks:?}");
+    assert!(folds.len() == 1 && (1.5605..1.5625).contains(&folds[0]), "{folds:?}");
     // The branch waves, and says so.
-    assert!(
-        found
-            .ripple
-            .is_some_and(|ripple| ripple.folds > 4 && ripple.range[1] < folds[0])
-    );
+    assert!(found.ripple.is_some_and(|ripple| ripple.folds > 4 && ripple.range[1] < folds[0]));
 }
 
 /// A motion on which simulations settle is followed by as many harmonics as it takes; by fewer it
@@ -243,23 +191,10 @@ fn a_motion_that_few_harmonics_do_not_say_is_not_missed() {
     let is_it = |point: &Point| point.parameter == 1.3 && (point.peak / peak - 1.0).abs() < 5e-3;
     let points = || found.branches.iter().flat_map(|branch| &branch.points);
     assert!(points().any(|point| is_it(point) && point.stable == Some(true)));
-    assert!(
-        found.elsewhere.is_empty() && found.verdict == Verdict::Pass,
-        "{:?}",
-        found.elsewhere
-    );
-    let by_few = respond(&Question {
-        harmonics: Some(8),
-        ..found.question.clone()
-    })
-    .expect("a response");
-    assert!(
-        by_few
-            .branches
-            .iter()
-            .flat_map(|branch| &branch.points)
-            .all(|point| !is_it(point))
-    );
+    assert!(found.elsewhere.is_empty() && found.verdict == Verdict::Pass, "{:?}", found.elsewhere);
+    let by_few =
+        respond(&Question { harmonics: Some(8), ..found.question.clone() }).expect("a response");
+    assert!(by_few.branches.iter().flat_map(|branch| &branch.points).all(|point| !is_it(point)));
     assert!(
         by_few
             .elsewhere

@@ -17,33 +17,23 @@ fn expression(text: &str) -> Expr {
 fn system(states: &[&str], right: &[&str], numbers: &[(&str, f64)]) -> Result<System, SystemError> {
     let states: Vec<Symbol> = states.iter().map(|name| Symbol::new(name)).collect();
     let right: Vec<Expr> = right.iter().map(|text| expression(text)).collect();
-    let numbers: BTreeMap<Symbol, f64> = numbers
-        .iter()
-        .map(|(name, value)| (Symbol::new(name), *value))
-        .collect();
+    let numbers: BTreeMap<Symbol, f64> =
+        numbers.iter().map(|(name, value)| (Symbol::new(name), *value)).collect();
     System::new(&states, "t".into(), &right, &numbers)
 }
 
 fn follow(system: &System, start: &[f64], end: f64, events: &[Event]) -> Path {
-    system
-        .solve(0.0, start, end, events, &Options::default())
-        .expect("a path")
+    system.solve(0.0, start, end, events, &Options::default()).expect("a path")
 }
 
 fn runge_kutta() -> Options {
-    Options {
-        integrator: Integrator::RungeKutta,
-        ..Options::default()
-    }
+    Options { integrator: Integrator::RungeKutta, ..Options::default() }
 }
 
 /// By Taylor series and by Runge-Kutta.
 fn by_both(system: &System, start: &[f64], end: f64, events: &[Event]) -> [Path; 2] {
-    [Options::default(), runge_kutta()].map(|options| {
-        system
-            .solve(0.0, start, end, events, &options)
-            .expect("a path")
-    })
+    [Options::default(), runge_kutta()]
+        .map(|options| system.solve(0.0, start, end, events, &options).expect("a path"))
 }
 
 #[test]
@@ -72,25 +62,15 @@ fn two_links_keep_their_energy() {
     let second =
         format!("(2*cos(a - b)*sin(a) - 2*sin(b) + sin(a - b)*(2*p^2 + cos(a - b)*q^2))/{divisor}");
     let links = system(&["a", "b", "p", "q"], &["p", "q", &first, &second], &[]).unwrap();
-    let vertical = [
-        Event::record(expression("a")),
-        Event::record(expression("a - 3/2")),
-    ];
+    let vertical = [Event::record(expression("a")), Event::record(expression("a - 3/2"))];
     let energy = |y: &[f64]| {
         let [a, b, p, q] = [y[0], y[1], y[2], y[3]];
         p * p + 0.5 * q * q + (a - b).cos() * p * q - 2.0 * a.cos() - b.cos()
     };
     // Small, large, and one that tumbles over.
-    for start in [
-        [0.1, 0.1, 0.0, 0.0],
-        [1.5, -0.5, 0.0, 0.0],
-        [2.5, 2.0, 0.5, -1.0],
-    ] {
+    for start in [[0.1, 0.1, 0.0, 0.0], [1.5, -0.5, 0.0, 0.0], [2.5, 2.0, 0.5, -1.0]] {
         let [path, other] = by_both(&links, &start, 50.0, &vertical);
-        assert_eq!(
-            (path.reason(), other.reason()),
-            (End::Reached, End::Reached)
-        );
+        assert_eq!((path.reason(), other.reason()), (End::Reached, End::Reached));
         assert!(other.step_count() > path.step_count());
         let before = energy(&start);
         for i in 0..=500 {
@@ -103,11 +83,7 @@ fn two_links_keep_their_energy() {
             // Both are right as far as the motion lets errors grow: the one that tumbles is
             // chaotic.
             let time = 0.1 * f64::from(i);
-            let allowed = if start[0] < 2.0 {
-                1e-10
-            } else {
-                1e-11 * time.exp()
-            };
+            let allowed = if start[0] < 2.0 { 1e-10 } else { 1e-11 * time.exp() };
             for (value, expected) in judged.iter().zip(&state).filter(|_| allowed < 1e-4) {
                 assert!(
                     (value - expected).abs() < allowed,
@@ -118,17 +94,10 @@ fn two_links_keep_their_energy() {
         // At rest on the surface of an event they leave it without an occurrence.
         let until = if start[0] < 2.0 { 50.0 } else { 15.0 };
         let met = |path: &Path| -> Vec<_> {
-            path.occurrences()
-                .iter()
-                .copied()
-                .filter(|met| met.time < until)
-                .collect()
+            path.occurrences().iter().copied().filter(|met| met.time < until).collect()
         };
         let (met, judged) = (met(&path), met(&other));
-        assert!(
-            met.len() == judged.len() && met.len() > 5,
-            "{met:?} {judged:?}"
-        );
+        assert!(met.len() == judged.len() && met.len() > 5, "{met:?} {judged:?}");
         for (met, judged) in met.iter().zip(judged) {
             assert_eq!((met.event, met.rising), (judged.event, judged.rising));
             assert!((met.time - judged.time).abs() < 1e-4, "{met:?} {judged:?}");
@@ -138,12 +107,7 @@ fn two_links_keep_their_energy() {
     for sign in [1.0, -1.0] {
         let size = 1e-6;
         let period = TAU / (2.0 - sign * 2.0_f64.sqrt()).sqrt();
-        let path = follow(
-            &links,
-            &[size, sign * 2.0_f64.sqrt() * size, 0.0, 0.0],
-            period,
-            &[],
-        );
+        let path = follow(&links, &[size, sign * 2.0_f64.sqrt() * size, 0.0, 0.0], period, &[]);
         let end = path.at(path.end()).expect("a state");
         assert!((end[0] / size - 1.0).abs() < 1e-9, "{end:?}");
     }
@@ -158,12 +122,8 @@ fn an_orbit_closes_after_its_period() {
     )
     .unwrap();
     for eccentricity in [0.0, 0.5, 0.9] {
-        let start = [
-            1.0 - eccentricity,
-            0.0,
-            0.0,
-            f64::sqrt((1.0 + eccentricity) / (1.0 - eccentricity)),
-        ];
+        let start =
+            [1.0 - eccentricity, 0.0, 0.0, f64::sqrt((1.0 + eccentricity) / (1.0 - eccentricity))];
         let path = follow(&kepler, &start, TAU, &[Event::record(expression("x"))]);
         let end = path.at(TAU).expect("a state");
         for (value, expected) in end.iter().zip(start) {
@@ -185,26 +145,14 @@ fn an_orbit_closes_after_its_period() {
 /// Half a period on a spring k, half on 1 + k, exactly, however the corner is written.
 #[test]
 fn a_corner_is_met_and_left_where_it_is() {
-    for right in [
-        "-x - k*x*H(x)",
-        "-x - k*max(x, 0)",
-        "-x - k*(x + abs(x))/2",
-        "min(-x, -(1 + k)*x)",
-    ] {
+    for right in
+        ["-x - k*x*H(x)", "-x - k*max(x, 0)", "-x - k*(x + abs(x))/2", "min(-x, -(1 + k)*x)"]
+    {
         let bilinear = system(&["x", "v"], &["v", right], &[("k", 3.0)]).unwrap();
-        for path in by_both(
-            &bilinear,
-            &[-1.0, 0.0],
-            100.0,
-            &[Event::stop(expression("v"))],
-        ) {
+        for path in by_both(&bilinear, &[-1.0, 0.0], 100.0, &[Event::stop(expression("v"))]) {
             assert_eq!(path.reason(), End::Event(0));
             // From -1 up to the corner in a quarter of 2 pi, on to rest at 1/2 in a quarter of pi.
-            assert!(
-                (path.end() - 0.75 * PI).abs() < 1e-12,
-                "{right}: {}",
-                path.end()
-            );
+            assert!((path.end() - 0.75 * PI).abs() < 1e-12, "{right}: {}", path.end());
             assert!((path.at(path.end()).expect("a state")[0] - 0.5).abs() < 1e-13);
         }
     }
@@ -227,12 +175,9 @@ fn corners_are_met_in_any_units() {
         let numbers = [("s", omega * omega)];
         let bilinear = system(&["x", "v"], &["v", "-s*x - 3*s*x*H(x)"], &numbers).unwrap();
         let period = 1.5 * PI / omega;
-        for path in by_both(
-            &bilinear,
-            &[-length, 0.0],
-            50.0 * period,
-            &[Event::record(expression("v"))],
-        ) {
+        for path in
+            by_both(&bilinear, &[-length, 0.0], 50.0 * period, &[Event::record(expression("v"))])
+        {
             assert_eq!(
                 (path.reason(), path.end()),
                 (End::Reached, 50.0 * period),
@@ -241,10 +186,7 @@ fn corners_are_met_in_any_units() {
             );
             let end = path.at(path.end()).expect("a state");
             assert!((end[0] / length + 1.0).abs() < 1e-10, "{omega} {end:?}");
-            let turns = path
-                .occurrences()
-                .iter()
-                .filter(|met| met.time < 49.9 * period);
+            let turns = path.occurrences().iter().filter(|met| met.time < 49.9 * period);
             assert_eq!(turns.count(), 99, "{omega}");
         }
     }
@@ -255,10 +197,7 @@ fn corners_are_met_in_any_units() {
 #[test]
 fn a_contact_is_gated_by_its_step() {
     let contact = system(&["x", "v"], &["v", "-k*x^(3/2)*H(x)"], &[("k", 1e6)]).unwrap();
-    let events = [
-        Event::record(expression("v")),
-        Event::stop(expression("x + 1/2")),
-    ];
+    let events = [Event::record(expression("v")), Event::stop(expression("x + 1/2"))];
     for path in by_both(&contact, &[-0.4, 1.0], 10.0, &events) {
         // In time the contact has no series at the touch and the release: the series may end there,
         // and says so.
@@ -269,16 +208,10 @@ fn a_contact_is_gated_by_its_step() {
         assert_eq!(path.reason(), End::Event(1));
         let end = path.at(path.end()).expect("a state");
         assert!((end[1] + 1.0).abs() < 1e-8, "{end:?}");
-        let deepest = path
-            .occurrences()
-            .iter()
-            .find(|met| met.event == 0)
-            .expect("a turning point");
+        let deepest =
+            path.occurrences().iter().find(|met| met.event == 0).expect("a turning point");
         let depth = path.at(deepest.time).expect("a state")[0];
-        assert!(
-            (depth / 1.25e-6_f64.powf(0.4) - 1.0).abs() < 1e-8,
-            "{depth}"
-        );
+        assert!((depth / 1.25e-6_f64.powf(0.4) - 1.0).abs() < 1e-8, "{depth}");
     }
 }
 
@@ -316,59 +249,29 @@ fn any_number_of_states_by_a_closure() {
     let nowhere = |_: f64, w: &[f64; 3], rates: &mut [f64; 3]| *rates = [0.0, (-w[0]).sqrt(), 0.0];
     let refused =
         integrate_first_order(nowhere, Point { t: 0.0, y: start }, 1.0, &[], &options).unwrap_err();
-    assert_eq!(
-        refused,
-        ode::IntegrationError::RateNotFinite { index: 1, t: 0.0 }
-    );
-    let refused = integrate_first_order(
-        spin,
-        Point {
-            t: 0.0,
-            y: [f64::NAN; 3],
-        },
-        1.0,
-        &[],
-        &options,
-    )
-    .unwrap_err();
-    assert!(
-        matches!(refused, ode::IntegrationError::ValuesNotFinite { .. }),
-        "{refused}"
-    );
+    assert_eq!(refused, ode::IntegrationError::RateNotFinite { index: 1, t: 0.0 });
+    let refused =
+        integrate_first_order(spin, Point { t: 0.0, y: [f64::NAN; 3] }, 1.0, &[], &options)
+            .unwrap_err();
+    assert!(matches!(refused, ode::IntegrationError::ValuesNotFinite { .. }), "{refused}");
 }
 
 /// What is looked for may turn faster than the motion, at any time of the day.
 #[test]
 fn fast_events_and_corners_are_all_met() {
     let even = system(&["x"], &["1"], &[]).unwrap();
-    for path in by_both(
-        &even,
-        &[0.001],
-        10.0,
-        &[Event::record(expression("sin(100*x)"))],
-    ) {
+    for path in by_both(&even, &[0.001], 10.0, &[Event::record(expression("sin(100*x)"))]) {
         assert_eq!(path.occurrences().len(), 318);
         for (index, met) in path.occurrences().iter().enumerate() {
             let time = (index + 1) as f64 * PI / 100.0 - 0.001;
-            assert!(
-                (met.time - time).abs() < 1e-12 && met.rising == (index % 2 == 1),
-                "{met:?}"
-            );
+            assert!((met.time - time).abs() < 1e-12 && met.rising == (index % 2 == 1), "{met:?}");
         }
     }
     // Up on one half of every period, down on the other; and twice as long up as down.
-    let square = system(
-        &["x", "y"],
-        &["sgn(sin(50*t))", "sgn(sin(50*t) + 1/2)"],
-        &[],
-    )
-    .unwrap();
+    let square = system(&["x", "y"], &["sgn(sin(50*t))", "sgn(sin(50*t) + 1/2)"], &[]).unwrap();
     for path in by_both(&square, &[0.0, 0.0], TAU, &[]) {
         let end = path.at(TAU).expect("a state");
-        assert!(
-            end[0].abs() < 1e-11 && (end[1] - TAU / 3.0).abs() < 1e-11,
-            "{end:?}"
-        );
+        assert!(end[0].abs() < 1e-11 && (end[1] - TAU / 3.0).abs() < 1e-11, "{end:?}");
     }
     // A late start costs no digits.
     let bilinear = system(&["x", "v"], &["v", "-x - 3*x*H(x)"], &[]).unwrap();
@@ -377,10 +280,7 @@ fn fast_events_and_corners_are_all_met() {
             .solve(1e6, &[-1.0, 0.0], 1e6 + 1.5 * PI * 20.0, &[], &options)
             .expect("a path");
         let end = path.at(path.end()).expect("a state");
-        assert!(
-            (end[0] + 1.0).abs() < 1e-10 && end[1].abs() < 1e-8,
-            "{end:?}"
-        );
+        assert!((end[0] + 1.0).abs() < 1e-10 && end[1].abs() < 1e-8, "{end:?}");
     }
 }
 
@@ -389,31 +289,14 @@ fn fast_events_and_corners_are_all_met() {
 #[test]
 fn an_event_on_a_corner_is_met_once() {
     let saturated = system(&["x", "v"], &["v", "-min(max(x, -1), 1)"], &[]).unwrap();
-    let events = [
-        Event::record(expression("x")),
-        Event::record(expression("abs(x) - 1")),
-    ];
+    let events = [Event::record(expression("x")), Event::record(expression("abs(x) - 1"))];
     // Parabolas from 3 to 1 in two units, a sine from there to -1 in 2 atan(1/2).
     let (fall, swing) = (2.0, 2.0 * 0.5_f64.atan());
-    for path in by_both(
-        &saturated,
-        &[3.0, 0.0],
-        40.0 * (2.0 * fall + swing),
-        &events,
-    ) {
-        let count = |event: usize| {
-            path.occurrences()
-                .iter()
-                .filter(|met| met.event == event)
-                .count()
-        };
+    for path in by_both(&saturated, &[3.0, 0.0], 40.0 * (2.0 * fall + swing), &events) {
+        let count =
+            |event: usize| path.occurrences().iter().filter(|met| met.event == event).count();
         assert_eq!((count(0), count(1)), (40, 80), "{:?}", path.occurrences());
-        for (index, met) in path
-            .occurrences()
-            .iter()
-            .filter(|met| met.event == 1)
-            .enumerate()
-        {
+        for (index, met) in path.occurrences().iter().filter(|met| met.event == 1).enumerate() {
             let halves = (index / 2) as f64 * (2.0 * fall + swing);
             let time = halves + fall + if index % 2 == 1 { swing } else { 0.0 };
             assert!(
@@ -431,10 +314,7 @@ fn an_event_on_a_corner_is_met_once() {
     for path in by_both(&bounce, &[0.0, 1.0], 9.0, &[Event::record(expression("x"))]) {
         assert_eq!((path.reason(), path.occurrences().len()), (End::Reached, 4));
         let end = path.at(9.0).expect("a state");
-        assert!(
-            (end[0] - 0.5).abs() < 1e-11 && end[1].abs() < 1e-11,
-            "{end:?}"
-        );
+        assert!((end[0] - 0.5).abs() < 1e-11 && end[1].abs() < 1e-11, "{end:?}");
     }
 }
 
@@ -443,12 +323,7 @@ fn an_event_on_a_corner_is_met_once() {
 #[test]
 fn dry_friction_stops_the_motion_where_it_holds() {
     let slider = system(&["x", "v"], &["v", "-x - mu*sgn(v)"], &[("mu", 0.1)]).unwrap();
-    for path in by_both(
-        &slider,
-        &[-1.05, 0.0],
-        100.0,
-        &[Event::record(expression("v"))],
-    ) {
+    for path in by_both(&slider, &[-1.05, 0.0], 100.0, &[Event::record(expression("v"))]) {
         assert_eq!(path.reason(), End::Sticks);
         // 1.05 -> 0.85 -> 0.65 -> 0.45 -> 0.25 -> 0.05, which is less than 0.1: five half swings of
         // time pi.
@@ -469,23 +344,13 @@ fn an_event_may_count_in_one_direction() {
         (Event::stop(expression("v")).rising(), PI),
     ] {
         for path in by_both(&wave, &[1.0, 0.0], 10.0, std::slice::from_ref(&event)) {
-            assert!(
-                (path.end() - end).abs() < 1e-11,
-                "{event:?}: {}",
-                path.end()
-            );
+            assert!((path.end() - end).abs() < 1e-11, "{event:?}: {}", path.end());
         }
     }
     // x = t^2/2 - 1e-17 t: it dips below zero for 2e-17.
     let onset = system(&["x"], &["t - e"], &[("e", 1e-17)]).unwrap();
     let path = onset
-        .solve(
-            0.0,
-            &[0.0],
-            1.0,
-            &[Event::stop(expression("x")).falling()],
-            &Options::default(),
-        )
+        .solve(0.0, &[0.0], 1.0, &[Event::stop(expression("x")).falling()], &Options::default())
         .expect("a path");
     assert_eq!(path.reason(), End::Reached);
 }
@@ -496,10 +361,7 @@ fn what_cannot_be_followed_is_said() {
         system(&["x"], &["k*x"], &[]).expect_err("an unknown name"),
         SystemError::Expression(RecurrenceError::Unknown("k".into()))
     );
-    assert!(matches!(
-        system(&["x"], &[], &[]),
-        Err(SystemError::Length { .. })
-    ));
+    assert!(matches!(system(&["x"], &[], &[]), Err(SystemError::Length { .. })));
     // A corner inside a jump would keep a side that is no longer its own.
     for jumps in ["max(H(x), 1/2)", "1 - abs(1 + 2*sgn(x))"] {
         let refused = system(&["x"], &[jumps], &[]).expect_err(jumps);
@@ -510,40 +372,18 @@ fn what_cannot_be_followed_is_said() {
     let root = system(&["x"], &["sqrt(x)"], &[]).unwrap();
     for options in [Options::default(), runge_kutta()] {
         let refused = unsigned.solve(0.0, &[-1.0], 1.0, &[], &options);
-        assert_eq!(
-            refused.expect_err("no logarithm"),
-            SystemError::Start("x".into())
-        );
+        assert_eq!(refused.expect_err("no logarithm"), SystemError::Start("x".into()));
         let refused = root.solve(0.0, &[-1.0], 1.0, &[], &options);
-        assert_eq!(
-            refused.expect_err("no root"),
-            SystemError::Start("x".into())
-        );
-        let refused = root.solve(
-            0.0,
-            &[1.0],
-            1.0,
-            &[Event::record(expression("y"))],
-            &options,
-        );
+        assert_eq!(refused.expect_err("no root"), SystemError::Start("x".into()));
+        let refused = root.solve(0.0, &[1.0], 1.0, &[Event::record(expression("y"))], &options);
         let unknown = SystemError::Expression(RecurrenceError::Unknown("y".into()));
         assert_eq!(refused.expect_err("an unknown name"), unknown);
-        let refused = root.solve(
-            0.0,
-            &[1.0],
-            1.0,
-            &[Event::record(expression("log(x - 9)"))],
-            &options,
-        );
+        let refused =
+            root.solve(0.0, &[1.0], 1.0, &[Event::record(expression("log(x - 9)"))], &options);
         assert_eq!(refused.expect_err("no logarithm"), SystemError::Event(0));
         // Without a way to go the start is all there is.
-        let path = root
-            .solve(2.0, &[1.0], 2.0, &[], &options)
-            .expect("a start");
-        assert_eq!(
-            (path.end(), path.reason(), path.at(2.0)),
-            (2.0, End::Reached, Some(vec![1.0]))
-        );
+        let path = root.solve(2.0, &[1.0], 2.0, &[], &options).expect("a start");
+        assert_eq!((path.end(), path.reason(), path.at(2.0)), (2.0, End::Reached, Some(vec![1.0])));
         assert!(path.at(2.1).is_none() && path.at(1.9).is_none());
     }
     assert!(matches!(
@@ -556,13 +396,8 @@ fn what_cannot_be_followed_is_said() {
         assert_eq!(path.reason(), End::Singular);
         assert!((path.end() - 1.0).abs() < 1e-6, "{}", path.end());
     }
-    let short = Options {
-        step_limit: 3,
-        ..Options::default()
-    };
-    let path = pole
-        .solve(0.0, &[1e-3], 900.0, &[], &short)
-        .expect("a part");
+    let short = Options { step_limit: 3, ..Options::default() };
+    let path = pole.solve(0.0, &[1e-3], 900.0, &[], &short).expect("a part");
     assert_eq!((path.reason(), path.step_count()), (End::StepLimit, 3));
 }
 
@@ -575,16 +410,9 @@ fn a_state_that_leaves_the_range_of_numbers_ends_the_path() {
     let events = [Event::record(expression("x - 1e10"))];
     for path in by_both(&growing, &[1.0, 0.0], 1000.0, &events) {
         assert_eq!(path.reason(), End::Overflow);
-        assert!(
-            (path.end() - expected).abs() < 1e-7,
-            "{} {expected}",
-            path.end()
-        );
+        assert!((path.end() - expected).abs() < 1e-7, "{} {expected}", path.end());
         let last = path.at(path.end()).expect("a state");
-        assert!(
-            last.iter().all(|value| (value / 1e300 - 1.0).abs() < 1e-6),
-            "{last:?}"
-        );
+        assert!(last.iter().all(|value| (value / 1e300 - 1.0).abs() < 1e-6), "{last:?}");
         assert_eq!(path.occurrences().len(), 1);
     }
     // In time to be followed to its end.
@@ -608,13 +436,8 @@ fn a_state_that_leaves_the_range_of_numbers_ends_the_path() {
     }
     for start in [1.1e300, -1e308] {
         for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
-            let options = Options {
-                integrator,
-                ..Options::default()
-            };
-            let refused = growing
-                .solve(0.0, &[start, 0.0], 1.0, &[], &options)
-                .unwrap_err();
+            let options = Options { integrator, ..Options::default() };
+            let refused = growing.solve(0.0, &[start, 0.0], 1.0, &[], &options).unwrap_err();
             assert_eq!(refused, SystemError::Large("x".into(), start));
         }
     }
@@ -636,15 +459,10 @@ fn corners_at_the_same_place_are_all_switched() {
         let period = 1.5 * std::f64::consts::PI;
         for path in by_both(&system, &[1.0, 0.0], 3.0 * period, &[]) {
             assert_eq!(path.reason(), End::Reached, "{force}");
-            for (time, expected) in [
-                (1.0 / 6.0, [0.0, -2.0]),
-                (2.0, [1.0, 0.0]),
-                (3.0, [1.0, 0.0]),
-            ] {
+            for (time, expected) in [(1.0 / 6.0, [0.0, -2.0]), (2.0, [1.0, 0.0]), (3.0, [1.0, 0.0])]
+            {
                 let state = path.at(time * period).expect("a state");
-                let astray = (state[0] - expected[0])
-                    .abs()
-                    .max((state[1] - expected[1]).abs());
+                let astray = (state[0] - expected[0]).abs().max((state[1] - expected[1]).abs());
                 assert!(astray < 1e-9, "{force}: {state:?} after {time} periods");
             }
         }
@@ -657,36 +475,18 @@ fn a_loose_tolerance_is_followed_to_the_end() {
     type Motion<'a> = (&'a [&'a str; 2], [f64; 2], fn(f64) -> f64);
     let motions: [Motion; 3] = [
         (&["v", "-x"], [0.0, 1.0], f64::sin),
-        (&["v", "-x + 3*x/4/(1 + x^2/1e9)"], [1.0, 0.0], |t| {
-            (0.5 * t).cos()
-        }),
+        (&["v", "-x + 3*x/4/(1 + x^2/1e9)"], [1.0, 0.0], |t| (0.5 * t).cos()),
         (&["1", "3*x^2"], [0.0, 0.0], |t| t),
     ];
     for (right, start, exact) in motions {
         let system = system(&["x", "v"], right, &[]).unwrap();
         for tolerance in [0.1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
-            let options = Options {
-                tolerance,
-                ..Options::default()
-            };
-            let path = system
-                .solve(0.0, &start, 20.0, &[], &options)
-                .expect("a path");
-            assert_eq!(
-                (path.end(), path.reason()),
-                (20.0, End::Reached),
-                "{right:?} {tolerance}"
-            );
-            assert!(
-                path.step_count() <= 60,
-                "{right:?} {tolerance}: {} steps",
-                path.step_count()
-            );
+            let options = Options { tolerance, ..Options::default() };
+            let path = system.solve(0.0, &start, 20.0, &[], &options).expect("a path");
+            assert_eq!((path.end(), path.reason()), (20.0, End::Reached), "{right:?} {tolerance}");
+            assert!(path.step_count() <= 60, "{right:?} {tolerance}: {} steps", path.step_count());
             let error = (path.at(20.0).expect("a state")[0] - exact(20.0)).abs();
-            assert!(
-                error < 100.0 * tolerance + 1e-6,
-                "{right:?} {tolerance}: {error}"
-            );
+            assert!(error < 100.0 * tolerance + 1e-6, "{right:?} {tolerance}: {error}");
         }
     }
 }

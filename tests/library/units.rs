@@ -11,9 +11,7 @@ use serde_json::Value;
 
 fn si(text: &str) -> Option<SiImpact> {
     let file: Problem = text.parse().expect("a file");
-    solve(Setup::try_from(&file).expect("an impact"))
-        .expect("a motion")
-        .si()
+    solve(Setup::try_from(&file).expect("an impact")).expect("a motion").si()
 }
 
 /// A pendulum, its length and gravity, and the stiffness of its contact, in SI units.
@@ -27,12 +25,7 @@ struct Pendulum {
 /// Time to contact, speed, penetration, duration, period and peak force, each in SI units, of the
 /// paper's release and barrier.
 fn followed(pendulum: &Pendulum) -> [f64; 6] {
-    let &Pendulum {
-        mass,
-        length,
-        gravity,
-        stiffness,
-    } = pendulum;
+    let &Pendulum { mass, length, gravity, stiffness } = pendulum;
     let barrier = 0.323;
     let (inertia, weight) = (mass * length * length, mass * gravity * length);
     let force = |x: f64| stiffness * (length * (x - barrier)).max(0.0).powf(1.5);
@@ -41,27 +34,13 @@ fn followed(pendulum: &Pendulum) -> [f64; 6] {
     let from = |t, x, v| State { t, x, v };
     let seconds = (length / gravity).sqrt();
     let touch = Event::stop(|_, x, _| x - barrier);
-    let approach = integrate(
-        acceleration,
-        from(0.0, -1.5, 0.0),
-        10.0 * seconds,
-        &[touch],
-        &options,
-    )
-    .expect("a touch");
+    let approach =
+        integrate(acceleration, from(0.0, -1.5, 0.0), 10.0 * seconds, &[touch], &options)
+            .expect("a touch");
     let touch = approach.end();
-    let events = [
-        Event::record(|_, _, v| v),
-        Event::stop(|_, x, _| x - barrier).falling(),
-    ];
-    let pressed = integrate(
-        acceleration,
-        from(0.0, barrier, touch.v),
-        seconds,
-        &events,
-        &options,
-    )
-    .expect("a release");
+    let events = [Event::record(|_, _, v| v), Event::stop(|_, x, _| x - barrier).falling()];
+    let pressed = integrate(acceleration, from(0.0, barrier, touch.v), seconds, &events, &options)
+        .expect("a release");
     let deepest = pressed.occurrences()[0].state.x;
     let duration = pressed.end().t;
     [
@@ -92,16 +71,10 @@ fn every_number_is_that_of_a_motion_followed_in_si_units() {
     let bodies = "[pendulum]\nmass = 0.5\nlength = 2\ngravity = 1.62\n[sphere]\nradius = 0.03\nmodulus = 2.1e11\npoisson = \
                   0.3\n[barrier]\nmodulus = 3e9\npoisson = 0.4";
     let given = "[contact]\ngamma = 1e6\n[pendulum]\nmass = 0.5\nlength = 2\ngravity = 1.62";
-    let by_gamma = Pendulum {
-        stiffness: 1e6 * 0.5 * 1.62 / 2_f64.powf(1.5),
-        ..on_the_moon
-    };
+    let by_gamma = Pendulum { stiffness: 1e6 * 0.5 * 1.62 / 2_f64.powf(1.5), ..on_the_moon };
     for (text, pendulum) in [("", &papers), (bodies, &on_the_moon), (given, &by_gamma)] {
         let found = si(text).expect("units");
-        assert!(
-            (found.contact_stiffness / pendulum.stiffness - 1.0).abs() < 1e-13,
-            "{text}"
-        );
+        assert!((found.contact_stiffness / pendulum.stiffness - 1.0).abs() < 1e-13, "{text}");
         let quantities = [
             &found.time_to_contact,
             &found.speed,
@@ -112,11 +85,7 @@ fn every_number_is_that_of_a_motion_followed_in_si_units() {
         ];
         for (quantity, expected) in quantities.into_iter().zip(followed(pendulum)) {
             let error = quantity.runge_kutta / expected - 1.0;
-            assert!(
-                error.abs() < 1e-7,
-                "{text}: {} is off by {error}",
-                quantity.name
-            );
+            assert!(error.abs() < 1e-7, "{text}: {} is off by {error}", quantity.name);
         }
         let kinetic = pendulum.mass * found.speed.runge_kutta.powi(2) / 2.0;
         assert!((found.energy.runge_kutta / kinetic - 1.0).abs() < 1e-13);
@@ -161,28 +130,16 @@ fn units_are_those_of_the_pendulum_with_the_contact_of_hertz() {
 
 #[test]
 fn a_stated_yield_limit_is_held_against_the_peak_pressure() {
-    let pressure = si("")
-        .and_then(|si| si.peak_pressure)
-        .expect("a pressure")
-        .runge_kutta;
+    let pressure = si("").and_then(|si| si.peak_pressure).expect("a pressure").runge_kutta;
     for (part, exceeded) in [(0.99, true), (1.01, false)] {
         let text = format!("[barrier]\nyield = {}", part * pressure / 1.6);
         let checks = si(&text).expect("units").yield_checks();
-        let [check] = &checks[..] else {
-            panic!("{checks:?}")
-        };
+        let [check] = &checks[..] else { panic!("{checks:?}") };
         assert_eq!((check.body, check.is_exceeded()), ("barrier", exceeded));
     }
     assert!(si("").expect("units").yield_checks().is_empty());
-    let both = si("[barrier]\nyield = 1e7\n[sphere]\nyield = 1e12")
-        .expect("units")
-        .yield_checks();
-    assert_eq!(
-        both.iter()
-            .map(|check| check.is_exceeded())
-            .collect::<Vec<_>>(),
-        [false, true]
-    );
+    let both = si("[barrier]\nyield = 1e7\n[sphere]\nyield = 1e12").expect("units").yield_checks();
+    assert_eq!(both.iter().map(|check| check.is_exceeded()).collect::<Vec<_>>(), [false, true]);
 }
 
 #[test]
@@ -236,25 +193,16 @@ fn text_and_documents_say_so() {
         serde_json::from_str(&program(&["impact", example, "--format", "json"])).expect("JSON");
     let limits = document["si"]["yield_limits"].as_array().expect("a list");
     let exceeded = |body: &str| {
-        limits
-            .iter()
-            .find(|limit| limit["body"] == body)
-            .map(|limit| limit["exceeded"].clone())
+        limits.iter().find(|limit| limit["body"] == body).map(|limit| limit["exceeded"].clone())
     };
     assert_eq!(exceeded("barrier"), Some(true.into()));
-    assert_eq!(
-        document["si"]["printed_contact_time"]["paper"]["verdict"],
-        "not-reproduced"
-    );
+    assert_eq!(document["si"]["printed_contact_time"]["paper"]["verdict"], "not-reproduced");
     let compared = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
         .args(["impact", example, "--compare"])
         .output()
         .expect("the program starts");
     let words = String::from_utf8_lossy(&compared.stderr);
-    assert!(
-        compared.status.code() == Some(2) && words.contains("`yield`"),
-        "{words}"
-    );
+    assert!(compared.status.code() == Some(2) && words.contains("`yield`"), "{words}");
     let gamma = program(&["impact", "--at", "gamma=1e6", "--format", "json"]);
     let document: Value = serde_json::from_str(&gamma).expect("JSON");
     assert!(document["si"].is_null());
@@ -274,25 +222,14 @@ fn the_peak_force_of_a_damped_contact_is_the_greatest_one() {
     let impact = solve(Setup::try_from(&file).expect("a setup")).expect("an impact");
     let si = impact.si().expect("units");
     let gamma = impact.setup.stiffness;
-    let model = Model {
-        gamma,
-        mu: impact.damping * gamma,
-        right: Some(0.323),
-        ..Model::default()
-    };
-    let settings = Settings {
-        duration: 4.0,
-        ..Settings::default()
-    };
+    let model = Model { gamma, mu: impact.damping * gamma, right: Some(0.323), ..Model::default() };
+    let settings = Settings { duration: 4.0, ..Settings::default() };
     let motion =
         simulate(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
     let first = motion.impacts[0];
     let (from, to) = (first.entry_time, first.exit_time.expect("it leaves"));
     let force = |k: u32| {
-        let (x, v) = motion
-            .path
-            .at(from + (to - from) * f64::from(k) / 1e4)
-            .expect("a place");
+        let (x, v) = motion.path.at(from + (to - from) * f64::from(k) / 1e4).expect("a place");
         model.contact(x - 0.323, v)
     };
     let greatest = si.units.force() * (0..=10_000).map(force).fold(0.0, f64::max);
@@ -310,19 +247,11 @@ fn the_peak_force_of_a_damped_contact_is_the_greatest_one() {
 #[test]
 fn a_stated_speed_has_the_unit_of_the_numbers_beside_it() {
     let mu_of = |text: &str| {
-        let file: Problem = format!("[contact]\ngamma = 1e6\nrestitution = 0.8\n{text}")
-            .parse()
-            .expect("a file");
+        let file: Problem =
+            format!("[contact]\ngamma = 1e6\nrestitution = 0.8\n{text}").parse().expect("a file");
         let asked = file.simulate(&[]).expect("a motion");
         let (model, _) = asked.case.motion().expect("an equation");
-        (
-            model.mu,
-            asked
-                .case
-                .dissipation(None)
-                .expect("forms")
-                .at_speed_in_words(),
-        )
+        (model.mu, asked.case.dissipation(None).expect("forms").at_speed_in_words())
     };
     let unit = |length: f64, gravity: f64| (length * gravity).sqrt();
     let bare = |speed: f64| mu_of(&format!("at_speed = {speed}"));
@@ -336,15 +265,9 @@ fn a_stated_speed_has_the_unit_of_the_numbers_beside_it() {
     ] {
         let (mu, words) = mu_of(&format!("at_speed = 0.7\n{sections}"));
         let expected = bare(0.7 / unit(length, gravity)).0;
-        assert!(
-            (mu / expected - 1.0).abs() < 1e-12,
-            "{sections}: {mu} and {expected}"
-        );
+        assert!((mu / expected - 1.0).abs() < 1e-12, "{sections}: {mu} and {expected}");
         let words = words.expect("a speed");
-        assert!(
-            words.starts_with("0.7 m/s, ") && words.ends_with(" rad*omega"),
-            "{words}"
-        );
+        assert!(words.starts_with("0.7 m/s, ") && words.ends_with(" rad*omega"), "{words}");
     }
     // The phases of one impact and the study of materials read it alike.
     let text = "[contact]\ngamma = 1e6\nrestitution = 0.8\nat_speed = 0.7\n[design]\nmass = 0.02\nlength = 0.25\ngravity = 9.81";
@@ -354,17 +277,11 @@ fn a_stated_speed_has_the_unit_of_the_numbers_beside_it() {
     let (mu, _) = mu_of("at_speed = 0.7\n[design]\nlength = 0.25");
     assert!((impact.damping / (mu / 1e6) - 1.0).abs() < 1e-12);
     let text = "[contact]\nrestitution = 0.8\nat_speed = 0.7\n[design]\nlength = 0.25";
-    let study = text
-        .parse::<Problem>()
-        .expect("a file")
-        .materials(false)
-        .expect("a study");
+    let study = text.parse::<Problem>().expect("a file").materials(false).expect("a study");
     let forms = study.case.dissipation(None).expect("forms");
     assert!((forms.mu_over_gamma / (mu / 1e6) - 1.0).abs() < 1e-12);
     // Where the length is swept the speed of the bob stays what it is.
-    let file: Problem = "[contact]\nrestitution = 0.8\nat_speed = 0.7"
-        .parse()
-        .expect("a file");
+    let file: Problem = "[contact]\nrestitution = 0.8\nat_speed = 0.7".parse().expect("a file");
     let mut case = file.simulate(&[Parameter::Length]).expect("a motion").case;
     let mut ratio = |length: f64| {
         case.set(Parameter::Length, length);

@@ -31,10 +31,8 @@ fn run(arguments: &[&str]) -> Output {
 
 /// The program on a file of its own.
 fn of_file(name: &str, text: &str, options: &[&str]) -> Output {
-    let path = std::env::temp_dir().join(format!(
-        "lindstedt-audit-{name}-{}.toml",
-        std::process::id()
-    ));
+    let path =
+        std::env::temp_dir().join(format!("lindstedt-audit-{name}-{}.toml", std::process::id()));
     std::fs::write(&path, text).expect("a file");
     let output = run(&[&["audit", path.to_str().expect("a path in text")], options].concat());
     std::fs::remove_file(path).expect("the file goes");
@@ -45,10 +43,8 @@ fn of_file(name: &str, text: &str, options: &[&str]) -> Output {
 fn the_paper_is_the_file_in_the_examples() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/audit/paper.toml");
     for format in ["text", "latex", "json"] {
-        let (own, of_file) = (
-            run(&["paper", "--format", format]),
-            run(&["audit", file, "--format", format]),
-        );
+        let (own, of_file) =
+            (run(&["paper", "--format", format]), run(&["audit", file, "--format", format]));
         assert_eq!((own.status.code(), own.stderr.len()), (Some(0), 0));
         assert_eq!(own.stdout, of_file.stdout);
     }
@@ -75,20 +71,10 @@ fn every_equation_table_and_figure_has_its_claim() {
 
 /// The printed text with its last digit changed.
 fn tampered(printed: &str) -> String {
-    let place = printed
-        .rfind(|letter: char| letter.is_ascii_digit())
-        .expect("a digit");
-    let digit = printed[place..]
-        .chars()
-        .next()
-        .and_then(|digit| digit.to_digit(10))
-        .expect("a digit");
-    format!(
-        "{}{}{}",
-        &printed[..place],
-        (digit + 5) % 10,
-        &printed[place + 1..]
-    )
+    let place = printed.rfind(|letter: char| letter.is_ascii_digit()).expect("a digit");
+    let digit =
+        printed[place..].chars().next().and_then(|digit| digit.to_digit(10)).expect("a digit");
+    format!("{}{}{}", &printed[..place], (digit + 5) % 10, &printed[place + 1..])
 }
 
 #[test]
@@ -108,20 +94,13 @@ fn a_changed_digit_turns_the_verdict() {
                 continue;
             }
             let mut claim = claims(text).claims.swap_remove(index);
-            let text = tampered(
-                claim.entries[0]
-                    .read_as
-                    .as_ref()
-                    .unwrap_or(&claim.entries[0].printed),
-            );
+            let text =
+                tampered(claim.entries[0].read_as.as_ref().unwrap_or(&claim.entries[0].printed));
             claim.entries[0].stated = Stated::Number(Printed::read(&text).expect("a number"));
             // An unknown takes up what is left of two digits.
             claim.unknown = claim.unknown.filter(|_| false);
             let id = claim.id.clone();
-            let found = audit(Claims {
-                claims: vec![claim],
-                ..Claims::default()
-            });
+            let found = audit(Claims { claims: vec![claim], ..Claims::default() });
             let verdict = found.findings[0].verdict;
             assert!(
                 !verdict.is_reproduced() && !found.passes(false),
@@ -156,22 +135,13 @@ fn every_assumption_is_needed() {
                     }
                     None => claim.unknown = None,
                 }
-                let found = audit(Claims {
-                    claims: vec![claim],
-                    ..Claims::default()
-                });
+                let found = audit(Claims { claims: vec![claim], ..Claims::default() });
                 found.findings[0].verdict
             };
-            let all = (0..supposed.len())
-                .map(Some)
-                .chain(finding.demand.map(|_| None));
+            let all = (0..supposed.len()).map(Some).chain(finding.demand.map(|_| None));
             for one in all {
                 let verdict = without(one);
-                assert!(
-                    !verdict.is_reproduced(),
-                    "{}: {one:?} is not needed",
-                    finding.claim.id
-                );
+                assert!(!verdict.is_reproduced(), "{}: {one:?} is not needed", finding.claim.id);
                 needed += 1;
             }
         }
@@ -190,10 +160,7 @@ fn what_is_found_of_the_paper_follows_from_its_numbers() {
         "pi = 3.14 and digits rounded or cut off"
     );
     assert_eq!(finding(&paper, "table-1-errors").assumption(), "pi = 3.14");
-    assert_eq!(
-        finding(&paper, "equation-16-phase").assumption(),
-        "digits cut off"
-    );
+    assert_eq!(finding(&paper, "equation-16-phase").assumption(), "digits cut off");
     // Equation (15): slope 36/35 sqrt(d), d = (5 v^2/(4 gamma))^(2/5).
     let speed = (1.0 - 1.5_f64.powi(2) / 8.0).sqrt() * (1.5_f64.powi(2) - 0.323_f64.powi(2)).sqrt();
     let gamma_of = |slope: f64| 1.25 * speed * speed / (35.0 / 36.0 * slope).powi(5);
@@ -214,10 +181,7 @@ fn what_is_found_of_the_paper_follows_from_its_numbers() {
             .any(|words| words.contains("`equation-15-constant`"))
     );
     // The range of Table 4.
-    let box_of_table_4 = [
-        stiffness(0.1e9, 0.001, 0.03, 0.1),
-        stiffness(200e9, 0.02, 0.3, 0.01),
-    ];
+    let box_of_table_4 = [stiffness(0.1e9, 0.001, 0.03, 0.1), stiffness(200e9, 0.02, 0.3, 0.01)];
     for (end, expected) in slope.unknown.within.into_iter().zip(box_of_table_4) {
         assert!((end / expected - 1.0).abs() < 1e-12);
     }
@@ -233,14 +197,8 @@ fn what_is_found_of_the_paper_follows_from_its_numbers() {
         by_line(9.258e-8 / time_unit),
     ] {
         assert!(wanted > 1e3 * box_of_table_4[1]);
-        let text = format!(
-            "would need gamma = {},",
-            lindstedt::export::significant(wanted, 3)
-        );
-        assert!(
-            evidence.iter().any(|words| words.contains(&text)),
-            "{text}: {evidence:?}"
-        );
+        let text = format!("would need gamma = {},", lindstedt::export::significant(wanted, 3));
+        assert!(evidence.iter().any(|words| words.contains(&text)), "{text}: {evidence:?}");
     }
     assert!(!demand("contact-duration").is_within);
     // The density of Table 5's sphere.
@@ -250,11 +208,7 @@ fn what_is_found_of_the_paper_follows_from_its_numbers() {
     // The speed of the pendulum.
     let number = |id: &str| {
         let tried = finding(&paper, id).shown().expect("a try");
-        tried.computed[0]
-            .as_ref()
-            .expect("a number")
-            .number()
-            .expect("a number")
+        tried.computed[0].as_ref().expect("a number").number().expect("a number")
     };
     let exact = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();
     assert!((number("contact-speed-of-the-pendulum") / exact - 1.0).abs() < 1e-12);
@@ -276,15 +230,9 @@ fn claims_that_share_an_unknown_must_agree_on_it() {
     for finding in &agree.findings {
         assert_eq!(finding.verdict, Verdict::UnderAssumption, "{finding:?}");
         let [low, high] = finding.demand.expect("a demand").range;
+        assert!(low <= 2.0 && 2.0 <= high && high - low < 0.1, "{low} {high}");
         assert!(
-            low <= 2.0 && 2.0 <= high && high - low < 0.1,
-            "{low} {high}"
-        );
-        assert!(
-            finding
-                .evidence
-                .iter()
-                .any(|words| words.contains("serves")),
+            finding.evidence.iter().any(|words| words.contains("serves")),
             "{:?}",
             finding.evidence
         );
@@ -294,18 +242,11 @@ fn claims_that_share_an_unknown_must_agree_on_it() {
         assert_eq!(finding.verdict, Verdict::Inconsistent);
         assert!(finding.demand.is_some_and(|demand| demand.is_within));
         let last = finding.evidence.last().expect("evidence");
-        assert!(
-            last.contains(other) && last.contains("there is one k"),
-            "{last}"
-        );
+        assert!(last.contains(other) && last.contains("there is one k"), "{last}");
     }
     // Beyond its range one does not speak for the other.
     let beyond = audit(claims(&file("0.02")));
-    let verdicts: Vec<Verdict> = beyond
-        .findings
-        .iter()
-        .map(|finding| finding.verdict)
-        .collect();
+    let verdicts: Vec<Verdict> = beyond.findings.iter().map(|finding| finding.verdict).collect();
     assert_eq!(verdicts, [Verdict::UnderAssumption, Verdict::Inconsistent]);
     assert!(
         beyond.findings[1].evidence[0]
@@ -326,11 +267,7 @@ fn the_exit_code_says_whether_every_verdict_is_the_expected_one() {
         ("\"1.4143\"\nexpect = \"inconsistent\"", &["--strict"], 3),
         ("\"1.4142\"\nexpect = \"inconsistent\"", &[], 3),
         ("\"1.4142\"\nexpect = \"inconsistent\"", &["--strict"], 0),
-        (
-            "\"1.4142\"\nexpect = \"reproduced-under-assumption\"",
-            &[],
-            3,
-        ),
+        ("\"1.4142\"\nexpect = \"reproduced-under-assumption\"", &[], 3),
         ("\"1.41\"\nrounding = \"cut\"", &[], 0),
         ("\"about\"", &[], 1),
         ("\"1.4142\"", &["--tolerance", "0.1"], 2),
@@ -338,11 +275,7 @@ fn the_exit_code_says_whether_every_verdict_is_the_expected_one() {
     ] {
         let output = of_file("codes", &format!("{ONE}{printed}\n"), options);
         assert_eq!(output.status.code(), Some(code), "{printed} {options:?}");
-        assert_eq!(
-            output.stdout.is_empty(),
-            matches!(code, 1 | 2),
-            "{printed} {options:?}"
-        );
+        assert_eq!(output.stdout.is_empty(), matches!(code, 1 | 2), "{printed} {options:?}");
     }
     assert_eq!(run(&["paper", "--strict"]).status.code(), Some(3));
 }
@@ -350,11 +283,9 @@ fn the_exit_code_says_whether_every_verdict_is_the_expected_one() {
 #[test]
 fn what_is_missing_is_named_and_what_is_refused_has_its_reason() {
     let of = |text: &str| {
-        audit(claims(&format!(
-            "[[claim]]\nid = \"one\"\nprinted = \"1\"\n{text}"
-        )))
-        .findings
-        .swap_remove(0)
+        audit(claims(&format!("[[claim]]\nid = \"one\"\nprinted = \"1\"\n{text}")))
+            .findings
+            .swap_remove(0)
     };
     let found = of("quantity = \"rest_time\"\nvalues = { A = 1.5, xc = 0.323, gamma = 1e6 }");
     assert_eq!(
@@ -364,21 +295,10 @@ fn what_is_missing_is_named_and_what_is_refused_has_its_reason() {
     let found = of(
         "quantity = \"frequency\"\nequation = \"cubic-pendulum\"\norder = 2\nvalues = { A = 3 }",
     );
-    assert_eq!(
-        (found.verdict, found.missing.len()),
-        (Verdict::NotReproducible, 0)
-    );
-    assert!(
-        found.evidence[0].contains("omega^2 = -0.125"),
-        "{:?}",
-        found.evidence
-    );
+    assert_eq!((found.verdict, found.missing.len()), (Verdict::NotReproducible, 0));
+    assert!(found.evidence[0].contains("omega^2 = -0.125"), "{:?}", found.evidence);
     let found = of("quantity = \"value\"\nformula = \"a1\"\nvalues = { a1 = \"b1\", b1 = \"a1\" }");
-    assert!(
-        found.evidence[0].contains("defined by itself"),
-        "{:?}",
-        found.evidence
-    );
+    assert!(found.evidence[0].contains("defined by itself"), "{:?}", found.evidence);
     let found = of("quantity = \"value\"\nformula = \"1/(k - 1)\"\nvalues = { k = 1 }");
     assert_eq!(found.verdict, Verdict::NotReproducible);
     // A number far from what is meant is never reproduced.
@@ -393,17 +313,11 @@ fn the_fewest_suppositions_are_found() {
     let found = audit(claims(text)).findings.swap_remove(0);
     assert_eq!(found.assumption(), "k = 3");
     let text = text.replace("9.42\"", "6.28\"");
-    assert_eq!(
-        audit(claims(&text)).findings[0].verdict,
-        Verdict::Reproduced
-    );
+    assert_eq!(audit(claims(&text)).findings[0].verdict, Verdict::Reproduced);
     let text = text.replace("6.28\"", "9\"").replace("k = 4", "k = 5");
     assert_eq!(audit(claims(&text)).findings[0].assumption(), "k = 3");
     let text = text.replace("printed = \"9\"", "printed = \"9.00\"");
-    assert_eq!(
-        audit(claims(&text)).findings[0].assumption(),
-        "k = 3 and pi = 3"
-    );
+    assert_eq!(audit(claims(&text)).findings[0].assumption(), "k = 3 and pi = 3");
 }
 
 #[test]
@@ -432,35 +346,22 @@ fn the_page_names_everything() {
         assert!(page.contains(&row), "{row}");
     }
     for verdict in Verdict::ALL {
-        assert!(
-            page.contains(&format!("| `{}` |", verdict.name())),
-            "{}",
-            verdict.name()
-        );
+        assert!(page.contains(&format!("| `{}` |", verdict.name())), "{}", verdict.name());
     }
-    let words = Rounding::ALL
-        .map(Rounding::name)
-        .into_iter()
-        .chain(Trend::ALL.map(Trend::name));
+    let words = Rounding::ALL.map(Rounding::name).into_iter().chain(Trend::ALL.map(Trend::name));
     for word in words {
         assert!(page.contains(&format!("`{word}`")), "{word}");
     }
     // The parser lists its keys where it meets another one.
-    let error = "[[claim]]\nnonsense = 1"
-        .parse::<Claims>()
-        .expect_err("a mistake")
-        .to_string();
+    let error = "[[claim]]\nnonsense = 1".parse::<Claims>().expect_err("a mistake").to_string();
     let keys: Vec<&str> = error.split('`').skip(3).step_by(2).collect();
     assert!(keys.len() > 20, "{error}");
     for key in keys {
         assert!(page.contains(&format!("`{key}`")), "{key}");
     }
     // The file on the page is one.
-    let example = page
-        .split("```toml\n")
-        .nth(1)
-        .and_then(|rest| rest.split("```").next())
-        .expect("a file");
+    let example =
+        page.split("```toml\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a file");
     assert!(audit(claims(example)).passes(true));
 }
 
@@ -472,24 +373,15 @@ fn a_formula_is_compared_for_every_value_of_its_symbols() {
             "[[claim]]\nid = \"one\"\nquantity = \"identity\"\nformula = \"m*X'^2/2\"\nvalues = {{ X = \"L*sin(x)\" }}\nprinted = \"{printed}\""
         );
         let found = audit(claims(&text)).findings.swap_remove(0);
-        assert!(matches!(
-            found.claim.question.quantity,
-            Quantity::Identity(_)
-        ));
+        assert!(matches!(found.claim.question.quantity, Quantity::Identity(_)));
         (found.verdict, found.evidence.join("; "))
     };
     assert_eq!(of("m*L^2*x'^2*cos(x)^2/2").0, Verdict::Reproduced);
     assert_eq!(of("m*L^2*x'^2*(1 - sin(x)^2)/2").0, Verdict::Reproduced);
     let (verdict, words) = of("m*L^2*x'*cos(x)^2/2");
     assert_eq!(verdict, Verdict::Inconsistent);
-    assert!(
-        words.contains("printed, but not derived: `L^2*m*x'*cos(x)^2/2`"),
-        "{words}"
-    );
-    assert!(
-        words.contains("derived, but not printed: `L^2*m*x'^2*cos(x)^2/2`"),
-        "{words}"
-    );
+    assert!(words.contains("printed, but not derived: `L^2*m*x'*cos(x)^2/2`"), "{words}");
+    assert!(words.contains("derived, but not printed: `L^2*m*x'^2*cos(x)^2/2`"), "{words}");
 }
 
 /// A term that the law does not have is marked as absent, and one that it cannot have, or does not
@@ -506,10 +398,7 @@ fn the_coefficient_of_a_term_that_does_not_occur_is_no_number_among_others() {
     assert_eq!(of("A^2", "-1/8").verdict, Verdict::Reproduced);
     let absent = of("A^3", "1/8");
     assert_eq!(absent.verdict, Verdict::Inconsistent);
-    assert_eq!(
-        absent.evidence,
-        ["printed 1/8, but the derived law has no such term"]
-    );
+    assert_eq!(absent.evidence, ["printed 1/8, but the derived law has no such term"]);
     assert!(matches!(absent.tried[0].computed[0], Ok(Computed::Absent)));
     assert_eq!(of("A^3", "0").verdict, Verdict::Reproduced);
     for (term, words) in [
@@ -521,10 +410,7 @@ fn the_coefficient_of_a_term_that_does_not_occur_is_no_number_among_others() {
             let found = of(term, printed);
             assert_eq!(found.verdict, Verdict::NotReproducible, "{term}");
             assert!(
-                found
-                    .evidence
-                    .iter()
-                    .any(|evidence| evidence.contains(words)),
+                found.evidence.iter().any(|evidence| evidence.contains(words)),
                 "{:?}",
                 found.evidence
             );
@@ -540,15 +426,12 @@ fn the_coefficient_of_a_term_that_does_not_occur_is_no_number_among_others() {
 fn no_file_of_claims_breaks_the_program() {
     let mut state = 12_345_u64;
     let mut next = |below: usize| {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as usize % below
     };
-    let sections: Vec<&str> = [PAPER, FREQUENCIES]
-        .iter()
-        .flat_map(|text| text.split("\n[[claim]]\n").skip(1))
-        .collect();
+    let sections: Vec<&str> =
+        [PAPER, FREQUENCIES].iter().flat_map(|text| text.split("\n[[claim]]\n").skip(1)).collect();
     let words = [
         "1e400",
         "-1",
@@ -574,10 +457,8 @@ fn no_file_of_claims_breaks_the_program() {
             match next(4) {
                 0 => drop(lines.remove(number)),
                 1 => {
-                    let other = sections[next(sections.len())]
-                        .lines()
-                        .nth(next(6))
-                        .unwrap_or_default();
+                    let other =
+                        sections[next(sections.len())].lines().nth(next(6)).unwrap_or_default();
                     lines.insert(number, other.to_owned());
                 }
                 2 => {
@@ -607,20 +488,12 @@ fn no_file_of_claims_breaks_the_program() {
             Ok(claims) if claims.claims.iter().any(|claim| claim.unknown.is_some()) => {}
             Ok(claims) => {
                 let found = audit(claims);
-                assert!(
-                    found
-                        .findings
-                        .iter()
-                        .all(|finding| !finding.claim.entries.is_empty())
-                );
+                assert!(found.findings.iter().all(|finding| !finding.claim.entries.is_empty()));
                 read += 1;
             }
         }
     }
-    assert!(
-        read > 100 && refused > 300,
-        "{read} read, {refused} refused"
-    );
+    assert!(read > 100 && refused > 300, "{read} read, {refused} refused");
 }
 
 #[test]
@@ -632,44 +505,26 @@ fn an_equation_of_motion_follows_from_its_energies() {
         audit(claims(&text)).findings.swap_remove(0)
     };
     for (parts, printed) in [
-        (
-            "kinetic = \"m*L^2*x'^2/2\"\npotential = \"-m*g*L*cos(x)\"",
-            "x'' + g/L*sin(x) = 0",
-        ),
-        (
-            "kinetic = \"x'^2/2\"\nforce = \"-c*x' + F*cos(Omega*t)\"",
-            "x'' + c*x' = F*cos(Omega*t)",
-        ),
+        ("kinetic = \"m*L^2*x'^2/2\"\npotential = \"-m*g*L*cos(x)\"", "x'' + g/L*sin(x) = 0"),
+        ("kinetic = \"x'^2/2\"\nforce = \"-c*x' + F*cos(Omega*t)\"", "x'' + c*x' = F*cos(Omega*t)"),
         // A bead on a rotating hoop, and a mass that grows with its place.
         (
             "kinetic = \"m*r^2*(x'^2 + w^2*sin(x)^2)/2\"\npotential = \"-m*g*r*cos(x)\"",
             "x'' + g/r*sin(x) - w^2*sin(x)*cos(x)",
         ),
-        (
-            "kinetic = \"(1 + x^2)*x'^2/2\"\npotential = \"x^2/2\"",
-            "x'' + (x*x'^2 + x)/(1 + x^2)",
-        ),
+        ("kinetic = \"(1 + x^2)*x'^2/2\"\npotential = \"x^2/2\"", "x'' + (x*x'^2 + x)/(1 + x^2)"),
     ] {
         assert_eq!(of(parts, printed).verdict, Verdict::Reproduced, "{printed}");
     }
-    let wrong = of(
-        "kinetic = \"m*L^2*x'^2/2\"\npotential = \"-m*g*L*cos(x)\"",
-        "x'' + g*L*sin(x) = 0",
-    );
+    let wrong =
+        of("kinetic = \"m*L^2*x'^2/2\"\npotential = \"-m*g*L*cos(x)\"", "x'' + g*L*sin(x) = 0");
     assert_eq!(wrong.verdict, Verdict::Inconsistent);
     assert!(
-        wrong
-            .evidence
-            .iter()
-            .any(|words| words.contains("derived, but not printed: `g*sin(x)/L`")),
+        wrong.evidence.iter().any(|words| words.contains("derived, but not printed: `g*sin(x)/L`")),
         "{:?}",
         wrong.evidence
     );
     let none = of("kinetic = \"m*L^2/2\"", "x'' = 0");
     assert_eq!(none.verdict, Verdict::NotReproducible);
-    assert!(
-        none.evidence[0].contains("without inertia"),
-        "{:?}",
-        none.evidence
-    );
+    assert!(none.evidence[0].contains("without inertia"), "{:?}", none.evidence);
 }

@@ -29,12 +29,9 @@ fn every_method_answers_or_says_why_not() {
         for (method, result) in methods(entry) {
             match result {
                 Ok(()) => answers += 1,
-                Err(refusal) => assert!(
-                    refusal.to_string().len() > 20,
-                    "{} {}",
-                    entry.name,
-                    method.name()
-                ),
+                Err(refusal) => {
+                    assert!(refusal.to_string().len() > 20, "{} {}", entry.name, method.name())
+                }
             }
         }
     }
@@ -53,15 +50,8 @@ fn the_listing_fills_its_lines() {
     let lines: Vec<&str> = text.lines().collect();
     let mut broken = 0;
     for pair in lines.windows(2).filter(|pair| pair[0].ends_with(',')) {
-        let next = pair[1]
-            .trim_start()
-            .split([',', ':'])
-            .next()
-            .expect("a name");
-        assert!(
-            pair[0].len() <= 101 && pair[1].starts_with("    "),
-            "{pair:?}"
-        );
+        let next = pair[1].trim_start().split([',', ':']).next().expect("a name");
+        assert!(pair[0].len() <= 101 && pair[1].starts_with("    "), "{pair:?}");
         assert!(pair[0].len() + " ".len() + next.len() > 100, "{pair:?}");
         broken += 1;
     }
@@ -80,20 +70,15 @@ fn derived_laws_are_the_published_ones() {
         };
         let oscillator = Oscillator::parse(entry.equation).expect(entry.name);
         let amplitude = Some(AmplitudeConvention::Initial);
-        let options = Options {
-            order: Some(published.order),
-            amplitude,
-            ..Options::default()
-        };
+        let options = Options { order: Some(published.order), amplitude, ..Options::default() };
         let solution = solve(&oscillator, &options).expect(entry.name);
         let law = if published.squared {
             solution.law.frequency_squared()
         } else {
             solution.law.frequency()
         };
-        let expected = parse_expression(published.law)
-            .expect(entry.name)
-            .to_polynomial(&mut |_| None);
+        let expected =
+            parse_expression(published.law).expect(entry.name).to_polynomial(&mut |_| None);
         let expected: Option<Polynomial> = expected.expect("short");
         assert_eq!(law, expected.as_ref(), "{}", entry.name);
         compared += 1;
@@ -110,10 +95,7 @@ fn derived_motions_are_the_true_ones_at_small_amplitudes() {
     for entry in CATALOG {
         let oscillator = Oscillator::parse(entry.equation).expect(entry.name);
         for method in EXPANSIONS {
-            let options = Options {
-                method: Some(method),
-                ..Options::default()
-            };
+            let options = Options { method: Some(method), ..Options::default() };
             let Ok(solution) = solve(&oscillator, &options) else {
                 continue;
             };
@@ -126,8 +108,7 @@ fn derived_motions_are_the_true_ones_at_small_amplitudes() {
                     "eps" | "mu" | "lambda" => "1/10",
                     _ => "1/2",
                 };
-                at.insert(name, value.parse().expect("a number"))
-                    .expect("a value");
+                at.insert(name, value.parse().expect("a number")).expect("a value");
             }
             let verdict = judge(&oscillator, &solution, &at, 1e-3)
                 .unwrap_or_else(|error| panic!("{}: {error}", entry.name));
@@ -139,9 +120,7 @@ fn derived_motions_are_the_true_ones_at_small_amplitudes() {
                 method.name()
             );
             assert!(
-                verdict
-                    .max_deviation
-                    .is_some_and(|deviation| deviation < 5e-3),
+                verdict.max_deviation.is_some_and(|deviation| deviation < 5e-3),
                 "{} {verdict:?}",
                 entry.name
             );
@@ -159,8 +138,7 @@ fn values(solution: &Solution, size: &str) -> Values {
             "lambda" => "1/10",
             _ => "1/2",
         };
-        at.insert(name, value.parse().expect("a number"))
-            .expect("a value");
+        at.insert(name, value.parse().expect("a number")).expect("a value");
     }
     at
 }
@@ -175,10 +153,7 @@ fn derived_laws_follow_the_shift_of_the_frequency() {
     for entry in CATALOG {
         let oscillator = Oscillator::parse(entry.equation).expect(entry.name);
         for method in EXPANSIONS {
-            let options = Options {
-                method: Some(method),
-                ..Options::default()
-            };
+            let options = Options { method: Some(method), ..Options::default() };
             let Ok(solution) = solve(&oscillator, &options) else {
                 continue;
             };
@@ -190,10 +165,7 @@ fn derived_laws_follow_the_shift_of_the_frequency() {
             let missed = nonlinear.relative_error.expect("a real frequency").abs();
             assert!(shift > 1e-7, "{} does not shift: {shift:e}", entry.name);
             let context = format!("{} by {}", entry.name, method.name());
-            assert!(
-                missed < shift / 8.0,
-                "{context} misses {missed:e} of {shift:e}"
-            );
+            assert!(missed < shift / 8.0, "{context} misses {missed:e} of {shift:e}");
             shifts += 1;
         }
     }

@@ -13,18 +13,12 @@ use super::documents::python;
 
 fn run(arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lindstedt"));
-    command
-        .args(arguments)
-        .args(["--timeout", "3600"])
-        .output()
-        .expect("the program starts")
+    command.args(arguments).args(["--timeout", "3600"]).output().expect("the program starts")
 }
 
 fn folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!(
-        "lindstedt-certificates-{name}-{}",
-        std::process::id()
-    ));
+    let folder =
+        std::env::temp_dir().join(format!("lindstedt-certificates-{name}-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     folder
 }
@@ -32,12 +26,9 @@ fn folder(name: &str) -> PathBuf {
 /// A certificate, and its file.
 fn certified(folder: &Path, arguments: &[&str]) -> (PathBuf, Value) {
     let file = folder.join("certificate.json");
-    let written = run(&[
-        &["certify"],
-        arguments,
-        &["--output", file.to_str().expect("a path in text")],
-    ]
-    .concat());
+    let written =
+        run(&[&["certify"], arguments, &["--output", file.to_str().expect("a path in text")]]
+            .concat());
     assert!(
         written.status.success(),
         "{arguments:?}: {}",
@@ -66,10 +57,7 @@ fn driven_motions_are_proved_and_proved_again() {
         let (file, document) = certified(&folder, &[&problem]);
         let said = run(&["certify", &problem]);
         let said = String::from_utf8_lossy(&said.stdout);
-        assert!(
-            said.contains("pass (amplitude within 1 %, proved)"),
-            "{example}: {said}"
-        );
+        assert!(said.contains("pass (amplitude within 1 %, proved)"), "{example}: {said}");
         let checked = run(&["check", file.to_str().expect("a path in text")]);
         assert!(checked.status.success(), "{example}");
         let proof = |text: &str| {
@@ -78,11 +66,7 @@ fn driven_motions_are_proved_and_proved_again() {
                 .map(str::to_owned)
                 .collect::<Vec<_>>()
         };
-        assert_eq!(
-            proof(&said),
-            proof(&String::from_utf8_lossy(&checked.stdout)),
-            "{example}"
-        );
+        assert_eq!(proof(&said), proof(&String::from_utf8_lossy(&checked.stdout)), "{example}");
         // What belongs to a cycle is not there, and what is put there is refused.
         for key in ["p", "omega"] {
             assert!(document.get(key).is_none(), "{example}: {key}");
@@ -107,10 +91,7 @@ fn driven_motions_are_proved_and_proved_again() {
 fn what_certify_writes_check_proves() {
     let folder = folder("check");
     for example in ["pendulum", "cubic-pendulum", "quadratic", "spring"] {
-        let problem = format!(
-            "{}/examples/certify/{example}.toml",
-            env!("CARGO_MANIFEST_DIR")
-        );
+        let problem = format!("{}/examples/certify/{example}.toml", env!("CARGO_MANIFEST_DIR"));
         let (file, document) = certified(&folder, &[&problem]);
         let checked = run(&["check", file.to_str().expect("a path in text")]);
         assert!(
@@ -129,11 +110,7 @@ fn what_certify_writes_check_proves() {
         let proved = run(&["certify", &problem]);
         let same = facts(&proved.stdout);
         assert!(
-            facts(&checked.stdout)
-                .iter()
-                .filter(|line| same.contains(line))
-                .count()
-                >= 7,
+            facts(&checked.stdout).iter().filter(|line| same.contains(line)).count() >= 7,
             "{example}"
         );
         // Once more through the types.
@@ -141,12 +118,8 @@ fn what_certify_writes_check_proves() {
         let certificate = document.read().expect("a certificate");
         assert_eq!(lindstedt::export::json::certificate(&certificate), document);
         // A tolerance that is missed is exit code 3.
-        let strict = run(&[
-            "check",
-            file.to_str().expect("a path in text"),
-            "--tolerance",
-            "1e-12",
-        ]);
+        let strict =
+            run(&["check", file.to_str().expect("a path in text"), "--tolerance", "1e-12"]);
         assert_eq!(strict.status.code(), Some(3), "{example}");
     }
 }
@@ -167,10 +140,7 @@ fn by_python(python: &Path, file: &Path) -> Option<[Rational; 2]> {
         return None;
     }
     let proved: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    let ends = proved
-        .get("omega")
-        .or(proved.get("amplitude"))
-        .expect("two ends");
+    let ends = proved.get("omega").or(proved.get("amplitude")).expect("two ends");
     let fraction = |place: usize| {
         let text = ends[place].as_str().expect("text");
         let digits: Rational = text.replace('.', "").parse().expect("digits");
@@ -184,10 +154,8 @@ fn by_library(document: &Value) -> Result<Enclosure, String> {
     let unread = |error: serde_json::Error| error.to_string();
     let proved = match document["ode"].as_str() {
         Some("x''+f(x)=0") => {
-            let certificate = read(document)
-                .map_err(unread)?
-                .read()
-                .map_err(|error| error.to_string())?;
+            let certificate =
+                read(document).map_err(unread)?.read().map_err(|error| error.to_string())?;
             check(&certificate)
         }
         _ => {
@@ -220,10 +188,8 @@ fn a_second_program_in_python_proves_the_same() {
         |document| document["formula"]["frequency_error"][1] = json!("1e-12"),
         |document| document["formula"]["drift"][0] = json!("1"),
         |document| {
-            document["formula"]["omega"] = json!(format!(
-                "-{}",
-                document["formula"]["omega"].as_str().unwrap_or("1")
-            ))
+            document["formula"]["omega"] =
+                json!(format!("-{}", document["formula"]["omega"].as_str().unwrap_or("1")))
         },
     ];
     let of_cycles: [Tamper; 6] = [
@@ -260,10 +226,7 @@ fn a_second_program_in_python_proves_the_same() {
                 lower <= &own.middle + &radius && &own.middle - &radius <= upper,
                 "{arguments:?}"
             );
-            assert!(
-                &upper - &lower < ratio(1, 1_000_000_000).pow(3),
-                "{arguments:?}"
-            );
+            assert!(&upper - &lower < ratio(1, 1_000_000_000).pow(3), "{arguments:?}");
             // Tampered with, it is no proof for either.
             let all = of_all.iter().chain(tampers).enumerate();
             for (which, tamper) in all.filter(|_| index == 0) {
@@ -286,15 +249,7 @@ fn a_second_program_in_python_proves_the_same() {
             let questions: [&[&str]; 3] = [
                 &["pendulum", "--at", "A=3/2"],
                 &["x'' + x + x^2/5 = 0", "--at", "A=1/2"],
-                &[
-                    "duffing",
-                    "--at",
-                    "A=1",
-                    "--at",
-                    "eps=10",
-                    "--method",
-                    "harmonic-balance",
-                ],
+                &["duffing", "--at", "A=1", "--at", "eps=10", "--method", "harmonic-balance"],
             ];
             proved("python", &questions, &of_motions);
         });
@@ -321,25 +276,13 @@ fn a_second_program_in_python_proves_the_same() {
 fn half_a_period_later(document: &mut Value) {
     let turned = |text: &Value| match text.as_str().unwrap_or("0") {
         "0" => json!("0"),
-        text => json!(
-            text.strip_prefix('-')
-                .map_or_else(|| format!("-{text}"), str::to_owned)
-        ),
+        text => json!(text.strip_prefix('-').map_or_else(|| format!("-{text}"), str::to_owned)),
     };
     for key in ["c", "s"] {
-        document[key] = document[key]
-            .as_array()
-            .expect("a list")
-            .iter()
-            .map(turned)
-            .collect();
+        document[key] = document[key].as_array().expect("a list").iter().map(turned).collect();
     }
-    document["A_block"][0] = document["A_block"][0]
-        .as_array()
-        .expect("a row")
-        .iter()
-        .map(turned)
-        .collect();
+    document["A_block"][0] =
+        document["A_block"][0].as_array().expect("a row").iter().map(turned).collect();
     document["formula"]["phase_error"] = json!(["1", "10"]);
 }
 
@@ -357,8 +300,7 @@ fn words_of_a_file_are_words() {
         (text, String::from_utf8(output.stderr).expect("text"))
     };
     let steers = |text: &str| {
-        text.chars()
-            .any(|letter| letter != '\n' && lindstedt::export::is_invisible(letter))
+        text.chars().any(|letter| letter != '\n' && lindstedt::export::is_invisible(letter))
     };
     let (text, _) = checked(&document.to_string());
     let (proved, _) = text.split_once("\n\nThe proof").expect("a proof");
@@ -376,10 +318,7 @@ fn words_of_a_file_are_words() {
         if !text.is_empty() {
             assert_eq!(text.matches("\nProved\n").count(), 1, "{text}");
             let (proved, words) = text.split_once("\n\nWords of the file").expect("words");
-            assert!(
-                !proved.contains("by all") && words.contains("\\u{"),
-                "{text}"
-            );
+            assert!(!proved.contains("by all") && words.contains("\\u{"), "{text}");
         }
     }
     // Keys and texts that are quoted in a refusal.
@@ -387,26 +326,16 @@ fn words_of_a_file_are_words() {
     keyed["\u{1b}[31m\nerror: none"] = json!(1);
     let mut kind = document.clone();
     kind["ode"] = json!("\u{1b}]0;title\u{7}");
-    for other in [
-        keyed,
-        kind,
-        json!({"ode": "\u{1b}[2J", "schema": "\u{1b}[2J"}),
-    ] {
+    for other in [keyed, kind, json!({"ode": "\u{1b}[2J", "schema": "\u{1b}[2J"})] {
         let (text, errors) = checked(&other.to_string());
-        assert!(
-            text.is_empty() && errors.starts_with("error: ") && !steers(&errors),
-            "{errors:?}"
-        );
+        assert!(text.is_empty() && errors.starts_with("error: ") && !steers(&errors), "{errors:?}");
         assert_eq!(errors.lines().count(), 1, "{errors:?}");
     }
     // A law that gives other numbers is none.
     let mut other = document.clone();
     other["formula"]["law"] = json!("omega^2 = 1 - A^2/16");
     let (text, errors) = checked(&other.to_string());
-    assert!(
-        text.is_empty() && errors.contains("another frequency than its numbers"),
-        "{errors}"
-    );
+    assert!(text.is_empty() && errors.contains("another frequency than its numbers"), "{errors}");
 }
 
 /// If the formula has no real value, the motion is proved, and it is said that no formula is
@@ -418,64 +347,38 @@ fn a_motion_is_proved_without_its_formula() {
     let refused = run(&[&["certify"], &question[..]].concat());
     let errors = String::from_utf8_lossy(&refused.stderr);
     assert_eq!(refused.status.code(), Some(1));
-    assert!(
-        errors.contains("not real") && errors.contains("--no-formula"),
-        "{errors}"
-    );
+    assert!(errors.contains("not real") && errors.contains("--no-formula"), "{errors}");
     let question = [&question[..], &["--no-formula"]].concat();
     let said = run(&[&["certify"], &question[..]].concat());
     let said = String::from_utf8_lossy(&said.stdout);
     let (file, document) = certified(&folder, &question);
     assert_eq!(document["formula"], Value::Null);
-    let checked = run(&[
-        "check",
-        file.to_str().expect("a path in text"),
-        "--tolerance",
-        "1e-9",
-    ]);
+    let checked = run(&["check", file.to_str().expect("a path in text"), "--tolerance", "1e-9"]);
     assert_eq!(checked.status.code(), Some(0));
     // pi/(2 K(sin(3/2))).
     for text in [said, String::from_utf8_lossy(&checked.stdout)] {
-        assert!(
-            text.contains("0.388918324690310") && text.contains("none is judged"),
-            "{text}"
-        );
+        assert!(text.contains("0.388918324690310") && text.contains("none is judged"), "{text}");
     }
 }
 
 #[test]
 fn what_certify_writes_of_a_cycle_check_proves() {
     let folder = folder("cycle");
-    let problem = format!(
-        "{}/examples/certify/van-der-pol.toml",
-        env!("CARGO_MANIFEST_DIR")
-    );
+    let problem = format!("{}/examples/certify/van-der-pol.toml", env!("CARGO_MANIFEST_DIR"));
     let (file, document) = certified(&folder, &[&problem]);
     assert_eq!(document["ode"], "x''+g(x)*x'+h(x)=0");
     let path = file.to_str().expect("a path in text");
     let checked = run(&["check", path]);
-    assert!(
-        checked.status.success(),
-        "{}",
-        String::from_utf8_lossy(&checked.stderr)
-    );
+    assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
     let text = String::from_utf8_lossy(&checked.stdout).into_owned();
-    for expected in [
-        "a limit cycle",
-        "attracts, proved",
-        "0.98472097664531065",
-        "5.31649e-6",
-    ] {
+    for expected in ["a limit cycle", "attracts, proved", "0.98472097664531065", "5.31649e-6"] {
         assert!(text.contains(expected), "{expected}: {text}");
     }
     let read: DampedCertificateDocument =
         serde_json::from_value(document.clone()).expect("a document");
     let certificate = read.read().expect("a certificate");
     assert_eq!(json::damped_certificate(&certificate), read);
-    assert_eq!(
-        run(&["check", path, "--tolerance", "1e-9"]).status.code(),
-        Some(3)
-    );
+    assert_eq!(run(&["check", path, "--tolerance", "1e-9"]).status.code(), Some(3));
     // Tampered with, it is no proof.
     for tamper in [
         (|document: &mut Value| document["g"] = json!(["-1/2", "0", "501/1000"])) as fn(&mut Value),
@@ -491,11 +394,7 @@ fn what_certify_writes_of_a_cycle_check_proves() {
         let mut changed = document.clone();
         tamper(&mut changed);
         std::fs::write(&file, changed.to_string()).expect("the document is written");
-        assert_eq!(
-            run(&["check", path]).status.code(),
-            Some(1),
-            "{changed:.80}"
-        );
+        assert_eq!(run(&["check", path]).status.code(), Some(1), "{changed:.80}");
     }
 }
 
@@ -520,12 +419,7 @@ fn hostile_certificates_are_refused() {
 fn are_refused(arguments: &[&str], is_proof: IsProof) {
     let folder = folder("hostile");
     let (file, document) = certified(&folder, arguments);
-    let keys: Vec<String> = document
-        .as_object()
-        .expect("an object")
-        .keys()
-        .cloned()
-        .collect();
+    let keys: Vec<String> = document.as_object().expect("an object").keys().cloned().collect();
     let mut tried = 0;
     let mut refuse = |changed: &Value| {
         tried += 1;
@@ -575,12 +469,7 @@ fn are_refused(arguments: &[&str], is_proof: IsProof) {
     ] {
         std::fs::write(&file, text).expect("a file");
         let checked = run(&["check", file.to_str().expect("a path in text")]);
-        assert_eq!(
-            checked.status.code(),
-            Some(1),
-            "{}",
-            String::from_utf8_lossy(&checked.stderr)
-        );
+        assert_eq!(checked.status.code(), Some(1), "{}", String::from_utf8_lossy(&checked.stderr));
         assert!(String::from_utf8_lossy(&checked.stderr).contains("no certificate"));
     }
 }
@@ -588,11 +477,7 @@ fn are_refused(arguments: &[&str], is_proof: IsProof) {
 #[test]
 fn what_is_asked_for_in_vain_is_said() {
     for (arguments, code, expected) in [
-        (
-            &["certify", "duffing", "--at", "A=1"][..],
-            1,
-            "values are needed for: eps",
-        ),
+        (&["certify", "duffing", "--at", "A=1"][..], 1, "values are needed for: eps"),
         (
             &["certify", "pendulum", "--at", "B=1"],
             2,
@@ -608,83 +493,38 @@ fn what_is_asked_for_in_vain_is_said() {
             1,
             "`mu*x'^3/3` is not linear in the velocity",
         ),
-        (
-            &["certify", "rayleigh", "--at", "mu=0.1"],
-            1,
-            "of the same frequency: certify that",
-        ),
+        (&["certify", "rayleigh", "--at", "mu=0.1"], 1, "of the same frequency: certify that"),
         (
             &["certify", "van-der-pol", "--at", "mu=0.1", "--range", "1:2"],
             1,
             "a limit cycle has one of its own",
         ),
-        (
-            &["certify", "pendulum", "--at", "A=4"],
-            1,
-            "no periodic motion about x = 0",
-        ),
-        (
-            &["certify", "pendulum", "--at", "A=1", "--omega-only"],
-            2,
-            "--omega-only leaves out",
-        ),
+        (&["certify", "pendulum", "--at", "A=4"], 1, "no periodic motion about x = 0"),
+        (&["certify", "pendulum", "--at", "A=1", "--omega-only"], 2, "--omega-only leaves out"),
         (
             &["certify", "pendulum", "--at", "A=1", "--plot", "proof.svg"],
             1,
             "a proof has no picture",
         ),
-        (
-            &["certify", "pendulum", "--at", "A=1", "--format", "csv"],
-            2,
-            "table",
-        ),
+        (&["certify", "pendulum", "--at", "A=1", "--format", "csv"], 2, "table"),
         (
             &["certify", "examples/forced-duffing.toml", "--no-formula"],
             1,
             "nothing to find a driven motion by",
         ),
         (
-            &[
-                "certify",
-                "pendulum",
-                "--at",
-                "A=1",
-                "--no-formula",
-                "--range",
-                "1:2",
-            ],
+            &["certify", "pendulum", "--at", "A=1", "--no-formula", "--range", "1:2"],
             2,
             "cannot be used with",
         ),
+        (&["certify", "pendulum", "--at", "A=1", "--range", "2:1"], 2, "the smaller one first"),
         (
-            &["certify", "pendulum", "--at", "A=1", "--range", "2:1"],
-            2,
-            "the smaller one first",
-        ),
-        (
-            &[
-                "certify", "pendulum", "--at", "A=1", "--range", "1:2", "--format", "json",
-            ],
+            &["certify", "pendulum", "--at", "A=1", "--range", "1:2", "--format", "json"],
             2,
             "--range is not in a certificate",
         ),
-        (
-            &["check", "no-such-file.json"],
-            1,
-            "cannot read no-such-file.json",
-        ),
-        (
-            &[
-                "certify",
-                "pendulum",
-                "--at",
-                "A=3/2",
-                "--tolerance",
-                "1e-4",
-            ],
-            3,
-            "",
-        ),
+        (&["check", "no-such-file.json"], 1, "cannot read no-such-file.json"),
+        (&["certify", "pendulum", "--at", "A=3/2", "--tolerance", "1e-4"], 3, ""),
     ] {
         let output = run(arguments);
         let errors = String::from_utf8_lossy(&output.stderr);
@@ -705,33 +545,15 @@ fn an_impact_is_proved_from_either_side() {
         proved.to_owned()
     };
     let right = numbers(&["--at", "gamma=1e6", "--at", "xc=0.323"]);
-    assert_eq!(
-        numbers(&["--at", "gamma=1e6", "--at", "xc=-0.323", "--left"]),
-        right
-    );
-    assert!(
-        right.contains("0.0121060270598") && right.contains("2.06440760858"),
-        "{right}"
-    );
+    assert_eq!(numbers(&["--at", "gamma=1e6", "--at", "xc=-0.323", "--left"]), right);
+    assert!(right.contains("0.0121060270598") && right.contains("2.06440760858"), "{right}");
     for (arguments, code, expected) in [
-        (
-            ["--certify", "--compare"].as_slice(),
-            2,
-            "cannot be used with",
-        ),
+        (["--certify", "--compare"].as_slice(), 2, "cannot be used with"),
         (&["--certify", "--plot", "proof.svg"], 2, "draws no picture"),
         (&["--certify", "--format", "json"], 2, "has no JSON"),
         (&["--certify", "--format", "csv"], 2, "table"),
-        (
-            &["--certify", "examples/impact-duffing.toml"],
-            2,
-            "an equation of its own",
-        ),
-        (
-            &["--certify", "examples/impact-restitution.toml"],
-            2,
-            "loses energy",
-        ),
+        (&["--certify", "examples/impact-duffing.toml"], 2, "an equation of its own"),
+        (&["--certify", "examples/impact-restitution.toml"], 2, "loses energy"),
         (&["--certify", "--at", "A=0.2"], 1, "within reach"),
         (&["--certify", "--order", "2", "--tolerance", "1e-4"], 3, ""),
         (&["--certify", "--tolerance", "0.001"], 0, ""),

@@ -44,16 +44,14 @@ fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
     let entries = std::fs::read_dir(folder).expect("a folder");
     let paths = entries.map(|entry| entry.expect("an entry").path());
-    let mut files: Vec<PathBuf> = paths
-        .filter(|path| path.to_string_lossy().ends_with(ending))
-        .collect();
+    let mut files: Vec<PathBuf> =
+        paths.filter(|path| path.to_string_lossy().ends_with(ending)).collect();
     files.sort();
     files
 }
 
 fn is_impact(file: &Path) -> bool {
-    file.file_name()
-        .is_some_and(|name| name.to_string_lossy().starts_with("impact"))
+    file.file_name().is_some_and(|name| name.to_string_lossy().starts_with("impact"))
 }
 
 /// The schemas of all kinds, as the program prints them.
@@ -69,15 +67,8 @@ impl Published {
         let index = |kind: Kind| {
             let schema =
                 serde_json::from_str(&output(&["schema", kind.name()])).expect("a schema is JSON");
-            compiler
-                .add_resource(kind.name(), schema)
-                .expect("a schema");
-            (
-                kind,
-                compiler
-                    .compile(kind.name(), &mut schemas)
-                    .expect("a schema of draft 2020-12"),
-            )
+            compiler.add_resource(kind.name(), schema).expect("a schema");
+            (kind, compiler.compile(kind.name(), &mut schemas).expect("a schema of draft 2020-12"))
         };
         let indices = Kind::ALL.map(index).into();
         Self { schemas, indices }
@@ -87,10 +78,7 @@ impl Published {
     fn refusal(&self, document: &Value) -> Option<String> {
         let of_kind = |(kind, _): &&(Kind, SchemaIndex)| document["schema"] == kind.schema();
         let (_, index) = self.indices.iter().find(of_kind).expect("a known kind");
-        self.schemas
-            .validate(document, *index)
-            .err()
-            .map(|error| format!("{error:#}"))
+        self.schemas.validate(document, *index).err().map(|error| format!("{error:#}"))
     }
 }
 
@@ -100,9 +88,7 @@ fn reads_back(document: &Value) {
         let typed: T = serde_json::from_value(document.clone()).expect("a document reads");
         serde_json::to_value(typed).expect("a document is written")
     }
-    let kind = Kind::ALL
-        .into_iter()
-        .find(|kind| document["schema"] == kind.schema());
+    let kind = Kind::ALL.into_iter().find(|kind| document["schema"] == kind.schema());
     let written = match kind.expect("a known kind") {
         Kind::Solution => again::<SolutionDocument>(document),
         Kind::Comparison => again::<ComparisonDocument>(document),
@@ -135,10 +121,7 @@ fn documents() -> Vec<(String, Value)> {
     let mut documents = Vec::new();
     let mut add = |arguments: &[&str]| documents.push((arguments.join(" "), document(arguments)));
     for file in files("examples", ".toml") {
-        add(&[
-            if is_impact(&file) { "impact" } else { "derive" },
-            &file.to_string_lossy(),
-        ]);
+        add(&[if is_impact(&file) { "impact" } else { "derive" }, &file.to_string_lossy()]);
     }
     for file in files("examples/compare", ".toml") {
         add(&["compare", &file.to_string_lossy()]);
@@ -170,45 +153,17 @@ fn documents() -> Vec<(String, Value)> {
     for file in files("examples/primary", ".toml") {
         add(&["simulate", &file.to_string_lossy(), "--sample", "1"]);
     }
-    add(&[
-        "simulate",
-        "examples/primary/driven.toml",
-        "--sweep",
-        "frequency=18:20:3",
-    ]);
+    add(&["simulate", "examples/primary/driven.toml", "--sweep", "frequency=18:20:3"]);
     let driven = ["simulate", "x'' + x'/5 + x = F*cos(t)", "--from", "x=1"];
-    add(&[
-        &driven[..],
-        &["--sweep", "F=0:1:3", "--every", "2*pi", "--after", "20"],
-    ]
-    .concat());
+    add(&[&driven[..], &["--sweep", "F=0:1:3", "--every", "2*pi", "--after", "20"]].concat());
     add(&[&driven[..], &["--at", "F=1", "--section", "x'"]].concat());
     let links = "examples/lagrange/double-pendulum.toml";
-    add(&[
-        "simulate",
-        links,
-        "--from",
-        "a=1.5,b=-0.5",
-        "--until",
-        "5",
-        "--integrator",
-        "both",
-    ]);
+    add(&["simulate", links, "--from", "a=1.5,b=-0.5", "--until", "5", "--integrator", "both"]);
     add(&["simulate", "x'' + x + x^3 = 0", "--from", "x=1"]);
     add(&["simulate", "--integrator", "both"]);
-    add(&[
-        "simulate",
-        "--sweep",
-        "zeta=0.1:0.2:2",
-        "--sweep",
-        "alpha=0:0.1:3",
-    ]);
+    add(&["simulate", "--sweep", "zeta=0.1:0.2:2", "--sweep", "alpha=0:0.1:3"]);
     let three = ["gamma=1e4:1e6:2:log", "zeta=0.1,0.3,0.2", "alpha=0.1:0:2"];
-    add(&[
-        &["simulate"],
-        three.map(|axis| ["--sweep", axis]).as_flattened(),
-    ]
-    .concat());
+    add(&[&["simulate"], three.map(|axis| ["--sweep", axis]).as_flattened()].concat());
     add(&["friction"]);
     add(&["friction", "--alpha", "0.02", "--speed", "0.01"]);
     add(&["catalog"]);
@@ -243,9 +198,7 @@ fn every_document_is_what_its_schema_says_and_reads_back() {
             map.shift_remove(&last);
         }),
         ("a key comes", |document| document["unheard_of"] = json!(1)),
-        ("a key comes inside", |document| {
-            innermost(document)["unheard_of"] = json!(1)
-        }),
+        ("a key comes inside", |document| innermost(document)["unheard_of"] = json!(1)),
         ("a text for what is none", |document| {
             let map = document.as_object_mut().expect("an object");
             *map.values_mut().next_back().expect("a value") = json!("text");
@@ -255,10 +208,7 @@ fn every_document_is_what_its_schema_says_and_reads_back() {
         for (what, change) in changes {
             let mut changed = document.clone();
             change(&mut changed);
-            assert!(
-                published.refusal(&changed).is_some(),
-                "{name}: {what}, and nobody minds"
-            );
+            assert!(published.refusal(&changed).is_some(), "{name}: {what}, and nobody minds");
         }
     }
 }
@@ -383,10 +333,7 @@ fn every_key_is_described_and_no_other_is_allowed() {
         let printed = output(&["schema", kind.name()]);
         assert_eq!(printed.trim_end(), kind.json_schema().trim_end());
         let schema: Value = serde_json::from_str(&printed).expect("a schema is JSON");
-        assert_eq!(
-            schema["$schema"],
-            "https://json-schema.org/draft/2020-12/schema"
-        );
+        assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema");
         let (mut found, mut keys) = (Vec::new(), 0);
         faults(kind.name(), &schema, &mut found, &mut keys);
         assert_eq!(found, Vec::<String>::new());
@@ -396,29 +343,14 @@ fn every_key_is_described_and_no_other_is_allowed() {
     let said = |kind: Kind, place: &str, words: &[&str]| {
         let schema: Value = serde_json::from_str(kind.json_schema()).expect("a schema is JSON");
         let description = schema.pointer(place).and_then(Value::as_str).expect(place);
-        assert!(
-            words.iter().all(|word| description.contains(word)),
-            "{place}: {description}"
-        );
+        assert!(words.iter().all(|word| description.contains(word)), "{place}: {description}");
     };
     let key = |name: &str| format!("/properties/{name}/description");
-    said(
-        Kind::Solution,
-        &key("frequency_squared"),
-        &["judged before `frequency`"],
-    );
+    said(Kind::Solution, &key("frequency_squared"), &["judged before `frequency`"]);
     said(Kind::Solution, &key("closed_form"), &["parameter m"]);
-    said(
-        Kind::Solution,
-        &key("displacement"),
-        &["equilibrium included"],
-    );
+    said(Kind::Solution, &key("displacement"), &["equilibrium included"]);
     said(Kind::Impact, "/$defs/Phase/description", &["s = t - clock"]);
-    said(
-        Kind::Impact,
-        "/$defs/Phase/properties/clock/description",
-        &["counts", "derived return"],
-    );
+    said(Kind::Impact, "/$defs/Phase/properties/clock/description", &["counts", "derived return"]);
 }
 
 #[test]
@@ -430,10 +362,7 @@ fn an_unknown_kind_is_refused_with_the_known_ones() {
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(2));
     assert!(output.stdout.is_empty());
-    assert!(
-        Kind::ALL.iter().all(|kind| message.contains(kind.name())),
-        "{message}"
-    );
+    assert!(Kind::ALL.iter().all(|kind| message.contains(kind.name())), "{message}");
 }
 
 #[test]
@@ -464,9 +393,7 @@ fn hostile_documents_are_refused() {
 
 /// Where Python is, if it is there at all: what starts it by that name may look for it each time.
 pub(super) fn python() -> Option<PathBuf> {
-    let asked = Command::new("python3")
-        .args(["-c", "import sys; print(sys.executable)"])
-        .output();
+    let asked = Command::new("python3").args(["-c", "import sys; print(sys.executable)"]).output();
     let output = asked.ok().filter(|output| output.status.success())?;
     Some(String::from_utf8(output.stdout).ok()?.trim().into())
 }
@@ -480,9 +407,7 @@ fn by_reader(
     document: &Value,
     times: &[f64],
 ) -> Vec<Vec<Value>> {
-    let reader = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("examples")
-        .join(reader);
+    let reader = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(reader);
     let file = folder.join("document.json");
     std::fs::write(&file, document.to_string()).expect("the document is written");
     let output = Command::new(python)
@@ -492,15 +417,9 @@ fn by_reader(
         .args(times.iter().map(f64::to_string))
         .output()
         .expect("Python starts");
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).expect("text");
-    text.lines()
-        .map(|line| serde_json::from_str(line).expect("a list"))
-        .collect()
+    text.lines().map(|line| serde_json::from_str(line).expect("a list")).collect()
 }
 
 /// Names and values.
@@ -572,11 +491,7 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
             let [line] = &by_reader("read_json.py", &python, &folder, &written, &times)[..] else {
                 panic!("{name}: one line");
             };
-            assert!(
-                near(&line[0], omega, omega),
-                "{name}: omega {} and {omega}",
-                line[0]
-            );
+            assert!(near(&line[0], omega, omega), "{name}: omega {} and {omega}", line[0]);
             for (t, x) in times.iter().zip(&line[1..]) {
                 let value = motion.evaluate(omega * t);
                 assert!(near(x, value, 1.0 + t), "{name}: x({t}) {x} and {value}");
@@ -594,20 +509,11 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
         }
         assert!(read >= least, "{equation}: only {read} methods");
     }
-    for file in files("examples", ".toml")
-        .into_iter()
-        .filter(|file| is_impact(file))
-    {
+    for file in files("examples", ".toml").into_iter().filter(|file| is_impact(file)) {
         let written = document(&["impact", &file.to_string_lossy()]);
         let impact: ImpactDocument = serde_json::from_value(written.clone()).expect("an impact");
         let derived = &impact.derived_phases;
-        let phases = || {
-            impact
-                .phases
-                .iter()
-                .chain(&impact.energy_phases)
-                .chain(derived)
-        };
+        let phases = || impact.phases.iter().chain(&impact.energy_phases).chain(derived);
         let middles: Vec<f64> = phases()
             .flat_map(|phase| {
                 [0.0, 0.3, 0.9].map(|part| phase.start + part * (phase.end - phase.start))
@@ -618,9 +524,7 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
         assert_eq!(derived.len(), 3, "{}", file.display());
         for (phase, line) in phases().map(json::impact::Phase::read).zip(lines) {
             assert_eq!(line[0], phase.name);
-            let inside = middles
-                .iter()
-                .filter(|t| (phase.start..=phase.end).contains(t));
+            let inside = middles.iter().filter(|t| (phase.start..=phase.end).contains(t));
             let expected: Vec<f64> = inside.map(|t| phase.at(*t).0).collect();
             assert_eq!(line.len(), 1 + expected.len());
             assert!(expected.len() >= 3);
@@ -635,9 +539,7 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
 
 #[test]
 fn a_reader_in_python_rebuilds_motions_whose_amplitude_changes_or_is_driven() {
-    let lines = include_str!("../../examples/read_slow_json.py")
-        .lines()
-        .count();
+    let lines = include_str!("../../examples/read_slow_json.py").lines().count();
     assert!(lines <= 40, "{lines} lines");
     let Some(python) = python() else {
         eprintln!("python3 is not here: the reader was not run");
@@ -646,31 +548,15 @@ fn a_reader_in_python_rebuilds_motions_whose_amplitude_changes_or_is_driven() {
     let folder = std::env::temp_dir().join(format!("lindstedt-slow-reader-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
     for (equation, at, method) in [
-        (
-            "x'' + 2*zeta*x' + x + x^3 = 0",
-            "A = 1, zeta = 1/20",
-            Method::Averaging,
-        ),
-        (
-            "x'' + 2*zeta*x' + x + x^3 = 0",
-            "A = 1, zeta = 1/20",
-            Method::MultipleScales,
-        ),
+        ("x'' + 2*zeta*x' + x + x^3 = 0", "A = 1, zeta = 1/20", Method::Averaging),
+        ("x'' + 2*zeta*x' + x + x^3 = 0", "A = 1, zeta = 1/20", Method::MultipleScales),
         (
             "x'' + 2*zeta*x' + g*sin(x)/L = 0",
             "A = 1, zeta = 1/20, g = 9.81, L = 2",
             Method::MultipleScales,
         ),
-        (
-            "x'' + 2*zeta*x' + sin(x) = 0",
-            "A = 1, zeta = 1/20",
-            Method::Averaging,
-        ),
-        (
-            "x'' - mu*(1 - x^2)*x' + x = 0",
-            "A = 1, mu = 1/10",
-            Method::Averaging,
-        ),
+        ("x'' + 2*zeta*x' + sin(x) = 0", "A = 1, zeta = 1/20", Method::Averaging),
+        ("x'' - mu*(1 - x^2)*x' + x = 0", "A = 1, mu = 1/10", Method::Averaging),
         (
             "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(w*t)",
             "F = 1/10, eps = 1/10, w = 9/10, zeta = 1/20",
@@ -679,18 +565,13 @@ fn a_reader_in_python_rebuilds_motions_whose_amplitude_changes_or_is_driven() {
     ] {
         let name = format!("{} on {equation} at {at}", method.name());
         let oscillator = Oscillator::parse(equation).expect("an equation");
-        let options = Options {
-            method: Some(method),
-            ..Options::default()
-        };
+        let options = Options { method: Some(method), ..Options::default() };
         let solution = solve(&oscillator, &options).expect(&name);
         let values: Values = at.parse().expect("values");
         let verification = judge(&oscillator, &solution, &values, 0.05).expect(&name);
         let written =
             serde_json::to_value(json::solution(&solution, Some(&verification))).expect("JSON");
-        let paths = motions(&oscillator, &solution, &values)
-            .expect(&name)
-            .expect(&name);
+        let paths = motions(&oscillator, &solution, &values).expect(&name).expect(&name);
         let samples = || {
             (0..5)
                 .map(|k| k * (paths.formula.len() - 1) / 4)
@@ -700,20 +581,11 @@ fn a_reader_in_python_rebuilds_motions_whose_amplitude_changes_or_is_driven() {
         let [line] = &by_reader("read_slow_json.py", &python, &folder, &written, &times)[..] else {
             panic!("{name}: one line");
         };
-        let size = paths
-            .truth
-            .iter()
-            .map(|sample| sample.1.abs())
-            .fold(0.0, f64::max);
+        let size = paths.truth.iter().map(|sample| sample.1.abs()).fold(0.0, f64::max);
         let deviation = verification.max_deviation.expect(&name);
         for ((formula, truth), x) in samples().zip(line) {
             let x = x.as_f64().expect("a number");
-            assert!(
-                (x - formula.1).abs() < 1e-7,
-                "{name}: x({}) {x} and {}",
-                formula.0,
-                formula.1
-            );
+            assert!((x - formula.1).abs() < 1e-7, "{name}: x({}) {x} and {}", formula.0, formula.1);
             // The motion followed by steps is as far as the verdict says.
             assert!(
                 (x - truth.1).abs() <= 1.01 * deviation * size,
@@ -729,24 +601,12 @@ fn a_reader_in_python_rebuilds_motions_whose_amplitude_changes_or_is_driven() {
 #[test]
 fn where_a_motion_settles_the_values_are_those_of_its_cycle() {
     let oscillator = Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0").expect("an equation");
-    let options = Options {
-        method: Some(Method::Averaging),
-        ..Options::default()
-    };
+    let options = Options { method: Some(Method::Averaging), ..Options::default() };
     let solution = solve(&oscillator, &options).expect("an answer");
-    let verification = judge(
-        &oscillator,
-        &solution,
-        &"mu = 1/10".parse().expect("values"),
-        0.01,
-    )
-    .expect("a verdict");
+    let verification = judge(&oscillator, &solution, &"mu = 1/10".parse().expect("values"), 0.01)
+        .expect("a verdict");
     let value = |name: &str| {
-        verification
-            .values
-            .iter()
-            .find(|entry| entry.0 == Symbol::new(name))
-            .map(|entry| entry.1)
+        verification.values.iter().find(|entry| entry.0 == Symbol::new(name)).map(|entry| entry.1)
     };
     assert_eq!((value("a"), value("A")), (Some(2.0), None));
 }

@@ -40,25 +40,13 @@ fn message(file: &Path) -> String {
         _ => run(&["derive", path], b""),
     };
     let text = String::from_utf8(output.stderr).expect("messages are text");
-    assert!(
-        matches!(output.status.code(), Some(1 | 2)),
-        "{path}: {:?} {text}",
-        output.status
-    );
+    assert!(matches!(output.status.code(), Some(1 | 2)), "{path}: {:?} {text}", output.status);
     assert!(output.stdout.is_empty(), "{path} printed a result");
     assert!(text.starts_with("error: "), "{path}: {text}");
-    for word in [
-        "panicked",
-        "internal error",
-        "stopped after",
-        "RUST_BACKTRACE",
-    ] {
+    for word in ["panicked", "internal error", "stopped after", "RUST_BACKTRACE"] {
         assert!(!text.contains(word), "{path}: {text}");
     }
-    format!(
-        "{text}exit code {}\n",
-        output.status.code().unwrap_or_default()
-    )
+    format!("{text}exit code {}\n", output.status.code().unwrap_or_default())
 }
 
 #[test]
@@ -70,13 +58,9 @@ fn every_wrong_input_gets_its_message() {
     // The folder of the checkout is nobody's business.
     settings.add_filter(concat!(env!("CARGO_MANIFEST_DIR"), "/"), "");
     settings.bind(|| {
-        insta::glob!(
-            concat!(env!("CARGO_MANIFEST_DIR"), "/tests/errors"),
-            "*.t*",
-            |file| {
-                insta::assert_snapshot!("error", message(file));
-            }
-        );
+        insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/errors"), "*.t*", |file| {
+            insta::assert_snapshot!("error", message(file));
+        });
     });
 }
 
@@ -93,12 +77,7 @@ fn strange_inputs_that_are_right_are_answered() {
     ] {
         let output = run(&["derive", "-"], input.as_bytes());
         let text = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert_eq!(
-            output.status.code(),
-            Some(0),
-            "{}: {text}",
-            &input[..input.len().min(60)]
-        );
+        assert_eq!(output.status.code(), Some(0), "{}: {text}", &input[..input.len().min(60)]);
         assert!(!output.stdout.is_empty() && text.is_empty(), "{text}");
     }
 }

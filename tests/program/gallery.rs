@@ -17,11 +17,7 @@ fn run(arguments: &[&str]) -> Output {
 /// Standard output of a run that must succeed.
 fn output(arguments: &[&str]) -> String {
     let output = run(arguments);
-    assert!(
-        output.status.success(),
-        "{arguments:?}: {}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     assert!(
         output.stderr.is_empty(),
         "{arguments:?} said {}",
@@ -40,9 +36,7 @@ fn snapshots(body: impl FnOnce()) {
 
 /// `impact` for a file of that name, `derive` for any other.
 fn command_for(file: &Path) -> &'static str {
-    let name = file
-        .file_name()
-        .map(|name| name.to_string_lossy().into_owned());
+    let name = file.file_name().map(|name| name.to_string_lossy().into_owned());
     match name.is_some_and(|name| name.starts_with("impact")) {
         true => "impact",
         false => "derive",
@@ -78,19 +72,12 @@ fn rounded(value: &mut Value) {
                 }
             }
             for (key, entry) in map.iter_mut() {
-                let noise = entry
-                    .as_f64()
-                    .map(f64::abs)
-                    .is_some_and(|size| match key.as_str() {
-                        "max_deviation" | "residual" => size < 1e-8,
-                        "cos" | "sin" => is_noise(entry) && size > 0.0,
-                        _ => key.ends_with("_error") && size < 1e-8,
-                    });
-                if noise {
-                    *entry = "noise".into()
-                } else {
-                    rounded(entry)
-                }
+                let noise = entry.as_f64().map(f64::abs).is_some_and(|size| match key.as_str() {
+                    "max_deviation" | "residual" => size < 1e-8,
+                    "cos" | "sin" => is_noise(entry) && size > 0.0,
+                    _ => key.ends_with("_error") && size < 1e-8,
+                });
+                if noise { *entry = "noise".into() } else { rounded(entry) }
             }
         }
         _ => {}
@@ -105,23 +92,19 @@ fn is_noise(value: &Value) -> bool {
 #[test]
 fn every_example_prints_what_it_printed() {
     snapshots(|| {
-        insta::glob!(
-            concat!(env!("CARGO_MANIFEST_DIR"), "/examples"),
-            "*.toml",
-            |file| {
-                let path = file.to_str().expect("a path in text");
-                insta::assert_snapshot!("text", output(&[command_for(file), path]));
-                insta::assert_snapshot!(
-                    "latex",
-                    output(&[command_for(file), path, "--format", "latex"])
-                );
-                let mut document: Value =
-                    serde_json::from_str(&output(&[command_for(file), path, "--format", "json"]))
-                        .expect("the output is JSON");
-                rounded(&mut document);
-                insta::assert_json_snapshot!("json", document);
-            }
-        );
+        insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/examples"), "*.toml", |file| {
+            let path = file.to_str().expect("a path in text");
+            insta::assert_snapshot!("text", output(&[command_for(file), path]));
+            insta::assert_snapshot!(
+                "latex",
+                output(&[command_for(file), path, "--format", "latex"])
+            );
+            let mut document: Value =
+                serde_json::from_str(&output(&[command_for(file), path, "--format", "json"]))
+                    .expect("the output is JSON");
+            rounded(&mut document);
+            insta::assert_json_snapshot!("json", document);
+        });
     });
 }
 
@@ -139,23 +122,19 @@ fn the_example_of_two_links_prints_what_it_printed() {
 #[test]
 fn every_comparison_prints_what_it_printed() {
     snapshots(|| {
-        insta::glob!(
-            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/compare"),
-            "*.toml",
-            |file| {
-                let path = file.to_str().expect("a path in text");
-                insta::assert_snapshot!("compare-text", output(&["compare", path]));
-                insta::assert_snapshot!(
-                    "compare-latex",
-                    output(&["compare", path, "--format", "latex"])
-                );
-                let mut document: Value =
-                    serde_json::from_str(&output(&["compare", path, "--format", "json"]))
-                        .expect("the output is JSON");
-                rounded(&mut document);
-                insta::assert_json_snapshot!("compare-json", document);
-            }
-        );
+        insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/compare"), "*.toml", |file| {
+            let path = file.to_str().expect("a path in text");
+            insta::assert_snapshot!("compare-text", output(&["compare", path]));
+            insta::assert_snapshot!(
+                "compare-latex",
+                output(&["compare", path, "--format", "latex"])
+            );
+            let mut document: Value =
+                serde_json::from_str(&output(&["compare", path, "--format", "json"]))
+                    .expect("the output is JSON");
+            rounded(&mut document);
+            insta::assert_json_snapshot!("compare-json", document);
+        });
     });
 }
 
@@ -164,19 +143,12 @@ fn every_comparison_prints_what_it_printed() {
 #[test]
 fn every_response_prints_what_it_printed() {
     snapshots(|| {
-        insta::glob!(
-            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/response"),
-            "*.toml",
-            |file| {
-                let path = file.to_str().expect("a path in text");
-                insta::assert_snapshot!("response-text", output(&["response", path]));
-            }
-        );
+        insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/response"), "*.toml", |file| {
+            let path = file.to_str().expect("a path in text");
+            insta::assert_snapshot!("response-text", output(&["response", path]));
+        });
         let path = "examples/response/duffing.toml";
-        insta::assert_snapshot!(
-            "response-latex",
-            output(&["response", path, "--format", "latex"])
-        );
+        insta::assert_snapshot!("response-latex", output(&["response", path, "--format", "latex"]));
         let table = output(&["response", path, "--format", "csv"]);
         let head: Vec<&str> = table.lines().take(2).collect();
         insta::assert_snapshot!("response-csv", head.join("\n"));
@@ -220,23 +192,16 @@ fn noisy(value: &mut Value) {
 #[test]
 fn every_audit_prints_what_it_printed() {
     snapshots(|| {
-        insta::glob!(
-            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/audit"),
-            "*.toml",
-            |file| {
-                let path = file.to_str().expect("a path in text");
-                insta::assert_snapshot!("audit-text", output(&["audit", path]));
-                insta::assert_snapshot!(
-                    "audit-latex",
-                    output(&["audit", path, "--format", "latex"])
-                );
-                let mut document: Value =
-                    serde_json::from_str(&output(&["audit", path, "--format", "json"]))
-                        .expect("the output is JSON");
-                rounded(&mut document);
-                insta::assert_json_snapshot!("audit-json", document);
-            }
-        );
+        insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/audit"), "*.toml", |file| {
+            let path = file.to_str().expect("a path in text");
+            insta::assert_snapshot!("audit-text", output(&["audit", path]));
+            insta::assert_snapshot!("audit-latex", output(&["audit", path, "--format", "latex"]));
+            let mut document: Value =
+                serde_json::from_str(&output(&["audit", path, "--format", "json"]))
+                    .expect("the output is JSON");
+            rounded(&mut document);
+            insta::assert_json_snapshot!("audit-json", document);
+        });
     });
 }
 
@@ -244,18 +209,14 @@ fn every_audit_prints_what_it_printed() {
 #[test]
 fn every_certificate_prints_what_it_printed() {
     snapshots(|| {
-        insta::glob!(
-            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/certify"),
-            "*.toml",
-            |file| {
-                let path = file.to_str().expect("a path in text");
-                insta::assert_snapshot!("certify-text", output(&["certify", path]));
-                insta::assert_snapshot!(
-                    "certify-latex",
-                    output(&["certify", path, "--format", "latex"])
-                );
-            }
-        );
+        insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/certify"), "*.toml", |file| {
+            let path = file.to_str().expect("a path in text");
+            insta::assert_snapshot!("certify-text", output(&["certify", path]));
+            insta::assert_snapshot!(
+                "certify-latex",
+                output(&["certify", path, "--format", "latex"])
+            );
+        });
         let cubic = "examples/certify/cubic-pendulum.toml";
         let range = ["certify", cubic, "--at", "A=1", "--range", "1/10:2.4"];
         insta::assert_snapshot!("certify-range", output(&range));
@@ -269,28 +230,21 @@ fn every_certificate_prints_what_it_printed() {
 #[test]
 fn every_mechanism_prints_what_it_printed() {
     snapshots(|| {
-        insta::glob!(
-            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/lagrange"),
-            "*.toml",
-            |file| {
-                let path = file.to_str().expect("a path in text");
-                insta::assert_snapshot!("lagrange-text", output(&["lagrange", path]));
-                insta::assert_snapshot!(
-                    "lagrange-latex",
-                    output(&["lagrange", path, "--format", "latex"])
-                );
-                let mut document: Value =
-                    serde_json::from_str(&output(&["lagrange", path, "--format", "json"]))
-                        .expect("the output is JSON");
-                rounded(&mut document);
-                insta::assert_json_snapshot!("lagrange-json", document);
-            }
-        );
+        insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/lagrange"), "*.toml", |file| {
+            let path = file.to_str().expect("a path in text");
+            insta::assert_snapshot!("lagrange-text", output(&["lagrange", path]));
+            insta::assert_snapshot!(
+                "lagrange-latex",
+                output(&["lagrange", path, "--format", "latex"])
+            );
+            let mut document: Value =
+                serde_json::from_str(&output(&["lagrange", path, "--format", "json"]))
+                    .expect("the output is JSON");
+            rounded(&mut document);
+            insta::assert_json_snapshot!("lagrange-json", document);
+        });
         insta::assert_snapshot!("lagrange-paper-text", output(&["lagrange"]));
-        insta::assert_snapshot!(
-            "lagrange-paper-latex",
-            output(&["lagrange", "--format", "latex"])
-        );
+        insta::assert_snapshot!("lagrange-paper-latex", output(&["lagrange", "--format", "latex"]));
         let mut document: Value = serde_json::from_str(&output(&["lagrange", "--format", "json"]))
             .expect("the output is JSON");
         rounded(&mut document);
@@ -302,14 +256,8 @@ fn every_mechanism_prints_what_it_printed() {
             "motion-csv",
             output(&[&course[..], &["--format", "csv", "--sample", "1"]].concat())
         );
-        let driven = [
-            "simulate",
-            "x'' + x'/5 - x + x^3 = F*cos(t)",
-            "--from",
-            "x=1",
-            "--until",
-            "60",
-        ];
+        let driven =
+            ["simulate", "x'' + x'/5 - x + x^3 = F*cos(t)", "--from", "x=1", "--until", "60"];
         let settled = ["--every", "2*pi", "--after", "20"];
         insta::assert_snapshot!(
             "section-text",
@@ -353,18 +301,14 @@ fn every_stability_prints_what_it_printed() {
 #[test]
 fn every_main_mass_prints_what_it_printed() {
     snapshots(|| {
-        insta::glob!(
-            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/primary"),
-            "*.toml",
-            |file| {
-                let path = file.to_str().expect("a path in text");
-                let text = output(&["simulate", path, "--sample", "10"]);
-                // What is lost to rounding differs from machine to machine.
-                let (kept, rest) = text.split_once("  unaccounted for").expect("an account");
-                let rest = rest.split_once('\n').expect("a line").1;
-                insta::assert_snapshot!("primary-text", format!("{kept}{rest}"));
-            }
-        );
+        insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/primary"), "*.toml", |file| {
+            let path = file.to_str().expect("a path in text");
+            let text = output(&["simulate", path, "--sample", "10"]);
+            // What is lost to rounding differs from machine to machine.
+            let (kept, rest) = text.split_once("  unaccounted for").expect("an account");
+            let rest = rest.split_once('\n').expect("a line").1;
+            insta::assert_snapshot!("primary-text", format!("{kept}{rest}"));
+        });
         let driven = "examples/primary/driven.toml";
         let swept = ["simulate", driven, "--sweep", "frequency=17:21:5"];
         insta::assert_snapshot!("primary-sweep-text", output(&swept));
@@ -396,10 +340,7 @@ fn every_study_of_materials_prints_what_it_printed() {
                 insta::assert_json_snapshot!("materials-json", document);
             }
         );
-        let table_2 = concat!(
-            env!("CARGO_MANIFEST_DIR"),
-            "/examples/materials/table-2.toml"
-        );
+        let table_2 = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/materials/table-2.toml");
         assert_eq!(output(&["materials"]), output(&["materials", table_2]));
     });
 }
@@ -410,20 +351,12 @@ fn every_study_of_materials_prints_what_it_printed() {
 #[test]
 fn every_search_prints_what_it_printed() {
     snapshots(|| {
-        insta::glob!(
-            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/optimize"),
-            "*.toml",
-            |file| {
-                let path = file.to_str().expect("a path in text");
-                insta::assert_snapshot!("optimize-text", output(&["optimize", path]));
-            }
-        );
-        let of = |name: &str| {
-            format!(
-                "{}/examples/optimize/{name}.toml",
-                env!("CARGO_MANIFEST_DIR")
-            )
-        };
+        insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/optimize"), "*.toml", |file| {
+            let path = file.to_str().expect("a path in text");
+            insta::assert_snapshot!("optimize-text", output(&["optimize", path]));
+        });
+        let of =
+            |name: &str| format!("{}/examples/optimize/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         let materials = of("materials");
         insta::assert_snapshot!(
             "optimize-latex",
@@ -450,10 +383,7 @@ fn every_search_prints_what_it_printed() {
 /// narrow terminal.
 #[test]
 fn every_method_on_one_impact_prints_what_it_printed() {
-    let preloaded = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/examples/impact-preloaded.toml"
-    );
+    let preloaded = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/impact-preloaded.toml");
     let of_own = [
         "impact",
         "x'' + x + x^2 = 0",
@@ -467,10 +397,7 @@ fn every_method_on_one_impact_prints_what_it_printed() {
     ];
     let refused = run(&["impact", preloaded, "--compare"]);
     let words = String::from_utf8_lossy(&refused.stderr);
-    assert!(
-        refused.status.code() == Some(2) && words.contains("leave out --method"),
-        "{words}"
-    );
+    assert!(refused.status.code() == Some(2) && words.contains("leave out --method"), "{words}");
     snapshots(|| {
         insta::assert_snapshot!("impact-compare-text", output(&["impact", "--compare"]));
         insta::assert_snapshot!("impact-compare-own", output(&of_own));
@@ -516,17 +443,9 @@ fn every_example_reads_back_to_the_same_solution() {
         .filter_map(Result::ok)
         .map(|entry| entry.path());
     let mut count = 0;
-    for file in files.filter(|file| {
-        file.extension()
-            .is_some_and(|extension| extension == "toml")
-    }) {
+    for file in files.filter(|file| file.extension().is_some_and(|extension| extension == "toml")) {
         let command = command_for(&file);
-        let text = output(&[
-            command,
-            file.to_str().expect("a path in text"),
-            "--format",
-            "json",
-        ]);
+        let text = output(&[command, file.to_str().expect("a path in text"), "--format", "json"]);
         let mut document: Value = serde_json::from_str(&text).expect("the output is JSON");
         if command == "derive" {
             let read = read_solution(&document).expect("a solution");
@@ -537,25 +456,16 @@ fn every_example_reads_back_to_the_same_solution() {
             let phases = read_phases(&document).expect("three phases");
             assert_eq!(phases.len(), 3);
             let list = |key: &str| document[key].as_array().expect("a list").clone();
-            let entries = if list("phases").is_empty() {
-                list("derived_phases")
-            } else {
-                list("phases")
-            };
+            let entries =
+                if list("phases").is_empty() { list("derived_phases") } else { list("phases") };
             for (phase, entry) in phases.iter().zip(&entries) {
-                assert_eq!(
-                    phase.closed_form(),
-                    entry["closed_form"].as_str().expect("text")
-                );
+                assert_eq!(phase.closed_form(), entry["closed_form"].as_str().expect("text"));
                 let (x, velocity) = phase.at(phase.end);
                 assert_eq!(Some(x), entry["end_state"]["x"].as_f64());
                 assert_eq!(Some(velocity), entry["end_state"]["velocity"].as_f64());
             }
             for law in [&document["law"], &document["derived_law"]["law"]] {
-                assert!(
-                    law.is_null() || read_solution(law).is_ok(),
-                    "the law is a solution"
-                );
+                assert!(law.is_null() || read_solution(law).is_ok(), "the law is a solution");
             }
         }
         count += 1;
@@ -593,140 +503,30 @@ fn no_command_is_the_impact_of_the_paper() {
 #[test]
 fn exit_codes_are_those_of_the_manual() {
     for (arguments, code) in [
-        (
-            vec![
-                "derive",
-                "x'' + sin(x) = 0",
-                "--at",
-                "A=1.5",
-                "--tolerance",
-                "0.01",
-            ],
-            0,
-        ),
-        (
-            vec![
-                "derive",
-                "x'' + sin(x) = 0",
-                "--at",
-                "A=1.5",
-                "--tolerance",
-                "1e-6",
-            ],
-            3,
-        ),
-        (
-            vec![
-                "derive",
-                "damped-pendulum",
-                "--method",
-                "lindstedt-poincare",
-            ],
-            1,
-        ),
+        (vec!["derive", "x'' + sin(x) = 0", "--at", "A=1.5", "--tolerance", "0.01"], 0),
+        (vec!["derive", "x'' + sin(x) = 0", "--at", "A=1.5", "--tolerance", "1e-6"], 3),
+        (vec!["derive", "damped-pendulum", "--method", "lindstedt-poincare"], 1),
         (vec!["derive", "x'' + eps*x^3 + x", "--at", "A=1"], 1),
         (vec!["derive", "x'' + sin(x) = 0", "--at", "B=1"], 2),
         (vec!["derive", "x'' + sin(x) = 0", "--method", "magic"], 2),
         (vec!["compare", "pendulum", "--at", "A=1.5"], 0),
-        (
-            vec![
-                "compare",
-                "pendulum",
-                "--at",
-                "A=1.5",
-                "--tolerance",
-                "0.01",
-            ],
-            3,
-        ),
-        (
-            vec!["compare", "pendulum", "--at", "A=1", "--tolerance", "0.01"],
-            0,
-        ),
+        (vec!["compare", "pendulum", "--at", "A=1.5", "--tolerance", "0.01"], 3),
+        (vec!["compare", "pendulum", "--at", "A=1", "--tolerance", "0.01"], 0),
         (vec!["compare", "pendulum", "--at", "A=4"], 1),
         (vec!["compare", "duffing", "--at", "A=1"], 1),
         (vec!["compare", "duffing", "--at", "B=1"], 2),
-        (
-            vec![
-                "compare",
-                "magnetic-wire",
-                "--at",
-                "A=0.1",
-                "--at",
-                "lambda=0.1",
-            ],
-            0,
-        ),
-        (
-            vec![
-                "derive",
-                "magnetic-wire",
-                "--at",
-                "A=0.1",
-                "--at",
-                "lambda=0.1",
-            ],
-            0,
-        ),
+        (vec!["compare", "magnetic-wire", "--at", "A=0.1", "--at", "lambda=0.1"], 0),
+        (vec!["derive", "magnetic-wire", "--at", "A=0.1", "--at", "lambda=0.1"], 0),
         (vec!["compare", "x'' + x + tanh(x') = 0", "--at", "A=1"], 1),
-        (
-            vec!["derive", "duffing", "--method", "pade", "--order", "3,2"],
-            0,
-        ),
-        (
-            vec!["derive", "duffing", "--method", "pade", "--order", "3"],
-            2,
-        ),
+        (vec!["derive", "duffing", "--method", "pade", "--order", "3,2"], 0),
+        (vec!["derive", "duffing", "--method", "pade", "--order", "3"], 2),
         (vec!["derive", "duffing", "--order", "3,2"], 2),
-        (
-            vec![
-                "derive",
-                "duffing",
-                "--method",
-                "hermite-pade",
-                "--order",
-                "2,2,2",
-            ],
-            0,
-        ),
-        (
-            vec![
-                "derive",
-                "duffing",
-                "--method",
-                "hermite-pade",
-                "--order",
-                "2,2",
-            ],
-            2,
-        ),
-        (
-            vec!["derive", "duffing", "--method", "pade", "--order", "2,2,2"],
-            2,
-        ),
-        (
-            vec![
-                "derive",
-                "duffing",
-                "--method",
-                "homotopy-analysis",
-                "--hbar",
-                "-1",
-            ],
-            0,
-        ),
+        (vec!["derive", "duffing", "--method", "hermite-pade", "--order", "2,2,2"], 0),
+        (vec!["derive", "duffing", "--method", "hermite-pade", "--order", "2,2"], 2),
+        (vec!["derive", "duffing", "--method", "pade", "--order", "2,2,2"], 2),
+        (vec!["derive", "duffing", "--method", "homotopy-analysis", "--hbar", "-1"], 0),
         (vec!["derive", "duffing", "--hbar", "-1"], 2),
-        (
-            vec![
-                "derive",
-                "duffing",
-                "--method",
-                "homotopy-analysis",
-                "--hbar",
-                "x",
-            ],
-            2,
-        ),
+        (vec!["derive", "duffing", "--method", "homotopy-analysis", "--hbar", "x"], 2),
         (vec!["impact", "--tolerance", "0.1"], 0),
         (vec!["impact", "--tolerance", "0.001"], 0),
         (vec!["impact", "--order", "2", "--tolerance", "0.01"], 3),
@@ -737,16 +537,8 @@ fn exit_codes_are_those_of_the_manual() {
     ] {
         let output = run(&arguments);
         assert_eq!(output.status.code(), Some(code), "{arguments:?}");
-        assert_eq!(
-            output.stdout.is_empty(),
-            code == 1 || code == 2,
-            "{arguments:?}"
-        );
-        assert_eq!(
-            output.stderr.is_empty(),
-            code == 0 || code == 3,
-            "{arguments:?}"
-        );
+        assert_eq!(output.stdout.is_empty(), code == 1 || code == 2, "{arguments:?}");
+        assert_eq!(output.stderr.is_empty(), code == 0 || code == 3, "{arguments:?}");
     }
 }
 
@@ -758,16 +550,10 @@ fn latex_documents() -> Vec<(String, String)> {
         .filter_map(Result::ok)
         .map(|entry| entry.path());
     let mut documents: Vec<(String, String)> = files
-        .filter(|file| {
-            file.extension()
-                .is_some_and(|extension| extension == "toml")
-        })
+        .filter(|file| file.extension().is_some_and(|extension| extension == "toml"))
         .map(|file| {
             let path = file.to_str().expect("a path in text");
-            (
-                path.to_owned(),
-                output(&[command_for(&file), path, "--format", "latex"]),
-            )
+            (path.to_owned(), output(&[command_for(&file), path, "--format", "latex"]))
         })
         .collect();
     for method in ["lindstedt-poincare", "homotopy-perturbation"] {
@@ -786,10 +572,8 @@ fn latex_documents() -> Vec<(String, String)> {
     }
     for problem in ["duffing", "pendulum", "quadratic"] {
         let path = format!("{folder}/compare/{problem}.toml");
-        documents.push((
-            format!("compare {problem}"),
-            output(&["compare", &path, "--format", "latex"]),
-        ));
+        documents
+            .push((format!("compare {problem}"), output(&["compare", &path, "--format", "latex"])));
     }
     for method in [
         "harmonic-balance",
@@ -801,9 +585,8 @@ fn latex_documents() -> Vec<(String, String)> {
         "homotopy-analysis",
     ] {
         for equation in ["pendulum", "duffing"] {
-            let arguments = [
-                "derive", equation, "--method", method, "--steps", "--format", "latex",
-            ];
+            let arguments =
+                ["derive", equation, "--method", method, "--steps", "--format", "latex"];
             documents.push((format!("{method} {equation}"), output(&arguments)));
         }
     }
@@ -814,10 +597,7 @@ fn latex_documents() -> Vec<(String, String)> {
             output(&["materials", &path, "--format", "latex"]),
         ));
     }
-    documents.push((
-        "catalog".to_owned(),
-        output(&["catalog", "--format", "latex"]),
-    ));
+    documents.push(("catalog".to_owned(), output(&["catalog", "--format", "latex"])));
     documents.sort();
     documents
 }
@@ -885,10 +665,7 @@ fn latex_is_balanced_and_uses_known_commands_only() {
         "chi",
     ];
     for (name, document) in latex_documents() {
-        let lines: Vec<&str> = document
-            .lines()
-            .filter(|line| !line.starts_with('%'))
-            .collect();
+        let lines: Vec<&str> = document.lines().filter(|line| !line.starts_with('%')).collect();
         let text = lines.join("\n");
         let (mut depth, mut delimiters) = (0_i32, 0_i32);
         for letter in text.chars() {
@@ -897,23 +674,14 @@ fn latex_is_balanced_and_uses_known_commands_only() {
         }
         assert_eq!(depth, 0, "{name}: braces");
         for command in text.split('\\').skip(1) {
-            let word: String = command
-                .chars()
-                .take_while(char::is_ascii_alphabetic)
-                .collect();
-            assert!(
-                word.is_empty() || COMMANDS.contains(&word.as_str()),
-                "{name}: \\{word}"
-            );
+            let word: String = command.chars().take_while(char::is_ascii_alphabetic).collect();
+            assert!(word.is_empty() || COMMANDS.contains(&word.as_str()), "{name}: \\{word}");
             delimiters += i32::from(word == "left") - i32::from(word == "right");
             assert!(delimiters >= 0, "{name}: \\right without \\left");
         }
         assert_eq!(delimiters, 0, "{name}: \\left without \\right");
         let aligned = text.contains("\\begin{align*}");
-        assert!(
-            aligned || name == "catalog" || name.starts_with("compare"),
-            "{name}"
-        );
+        assert!(aligned || name == "catalog" || name.starts_with("compare"), "{name}");
         assert!(text.matches("\\begin{").count() == text.matches("\\end{").count());
     }
 }
@@ -927,10 +695,7 @@ fn latex_compiles_where_latex_is() {
     }
     let folder = std::env::temp_dir().join(format!("lindstedt-latex-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
-    let bodies: Vec<String> = latex_documents()
-        .into_iter()
-        .map(|(_, document)| document)
-        .collect();
+    let bodies: Vec<String> = latex_documents().into_iter().map(|(_, document)| document).collect();
     let head = "\\documentclass{article}\n\\usepackage{amsmath}\n\\begin{document}\n";
     std::fs::write(
         folder.join("all.tex"),
@@ -943,11 +708,7 @@ fn latex_compiles_where_latex_is() {
         .current_dir(&folder)
         .output()
         .expect("pdflatex starts");
-    assert!(
-        run.status.success(),
-        "{}",
-        String::from_utf8_lossy(&run.stdout)
-    );
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stdout));
     std::fs::remove_dir_all(folder).expect("the folder goes");
 }
 
@@ -969,11 +730,7 @@ fn pictures_are_drawn_and_the_same_on_every_run() {
             std::fs::read_to_string(path).expect("the picture was written")
         };
         let picture = draw("first.svg");
-        let truth = if arguments[0] == "compare" {
-            "true motion"
-        } else {
-            "Runge-Kutta"
-        };
+        let truth = if arguments[0] == "compare" { "true motion" } else { "Runge-Kutta" };
         assert!(picture.contains("<svg") && picture.contains(truth));
         assert_eq!(picture, draw("second.svg"));
     }

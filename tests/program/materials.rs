@@ -56,30 +56,14 @@ fn the_first_contact_is_that_of_hertz_where_nothing_is_lost() {
             let [depth, duration] = hertz(design.mass, stiffness, first.speed);
             // Gravity acts in the contact as well.
             let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-3;
-            assert!(
-                near(first.penetration, depth),
-                "{}: {depth}",
-                row.material.name
-            );
-            assert!(
-                near(first.duration, duration),
-                "{}: {duration}",
-                row.material.name
-            );
+            assert!(near(first.penetration, depth), "{}: {depth}", row.material.name);
+            assert!(near(first.duration, duration), "{}: {duration}", row.material.name);
             let force = stiffness * depth.powf(1.5);
-            assert!(
-                near(first.peak_force, force),
-                "{}: {force}",
-                row.material.name
-            );
+            assert!(near(first.peak_force, force), "{}: {force}", row.material.name);
             let modulus = row.material.modulus.value();
             let pressure =
                 (6.0 * force * modulus.powi(2) / (PI.powi(3) * design.radius.powi(2))).cbrt();
-            assert!(
-                near(first.peak_pressure, pressure),
-                "{}: {pressure}",
-                row.material.name
-            );
+            assert!(near(first.peak_pressure, pressure), "{}: {pressure}", row.material.name);
         }
     }
 }
@@ -96,22 +80,12 @@ fn the_restitution_is_that_of_hunt_and_crossley() {
         // sign: gravity and zeta act in the contact as well.
         let (x, e) = (lambda * first.speed, first.restitution);
         let missing = |e: f64| x * (1.0 + e) - (x.ln_1p() - (-x * e).ln_1p());
-        assert!(
-            missing(e - 1e-3) * missing(e + 1e-3) < 0.0,
-            "{}: {e}",
-            row.material.name
-        );
+        assert!(missing(e - 1e-3) * missing(e + 1e-3) < 0.0, "{}: {e}", row.material.name);
         // The greatest force comes on the way in, before the greatest depth.
-        let (speed, ratio) = (
-            first.speed / study.units.speed(),
-            row.dissipation.mu_over_gamma,
-        );
+        let (speed, ratio) = (first.speed / study.units.speed(), row.dissipation.mu_over_gamma);
         let contact = HuntCrossley::new(1.5, row.gamma, ratio, speed).expect("a contact");
         let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 2e-3;
-        assert!(near(
-            first.peak_force,
-            study.units.force() * contact.peak_force
-        ));
+        assert!(near(first.peak_force, study.units.force() * contact.peak_force));
         assert!(near(first.duration, study.units.time() * contact.duration));
         assert!(near(first.penetration, study.units.length * contact.depth));
         let swing = row.course.energies[0];
@@ -124,26 +98,14 @@ fn the_restitution_is_that_of_hunt_and_crossley() {
 fn the_rest_time_is_that_of_runge_kutta() {
     let study = study("[damping]\nzeta = 0.03\nalpha = 0.002\n[contact]\nrestitution = 0.7");
     for row in &study.rows {
-        let model = Model {
-            gamma: row.gamma,
-            mu: row.dissipation.mu,
-            ..study.model
-        };
-        let settings = Settings {
-            duration: 150.0,
-            ..Settings::default()
-        };
+        let model = Model { gamma: row.gamma, mu: row.dissipation.mu, ..study.model };
+        let settings = Settings { duration: 150.0, ..Settings::default() };
         let judge =
             simulate(&model, study.start, Integrator::RungeKutta, &settings).expect("a motion");
-        let (rest, judged) = (
-            row.course.rest_time.expect("rest"),
-            judge.rest().time.expect("rest"),
-        );
+        let (rest, judged) =
+            (row.course.rest_time.expect("rest"), judge.rest().time.expect("rest"));
         assert!((rest / judged - 1.0).abs() < 1e-7, "{rest} and {judged}");
-        let before = judge
-            .impacts
-            .iter()
-            .filter(|impact| impact.entry_time < judged);
+        let before = judge.impacts.iter().filter(|impact| impact.entry_time < judged);
         assert_eq!(before.count(), row.course.impacts.len());
     }
 }
@@ -151,16 +113,8 @@ fn the_rest_time_is_that_of_runge_kutta() {
 #[test]
 fn known_rest_times_are_found_again() {
     let rest = |gamma: f64, mu: f64| {
-        let model = Model {
-            zeta: 0.01,
-            gamma,
-            mu,
-            ..Model::default()
-        };
-        let settings = Settings {
-            duration: 400.0,
-            ..Settings::default()
-        };
+        let model = Model { zeta: 0.01, gamma, mu, ..Model::default() };
+        let settings = Settings { duration: 400.0, ..Settings::default() };
         let found =
             course(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
         found.rest_time.expect("rest")
@@ -184,39 +138,22 @@ fn two_families_of_what_is_held_fixed() {
         "[contact]\ndamping = 5e5\n[damping]\nviscous = 0.002\n[[material]]\nname = \"Cork\"\nmodulus = 2e7",
     );
     let held = |form: &str| {
-        let found = study
-            .held_fixed
-            .iter()
-            .find(|held| held.damping.form().name() == form);
+        let found = study.held_fixed.iter().find(|held| held.damping.form().name() == form);
         found.expect("a form")
     };
-    assert_eq!(
-        study.held_fixed[0].damping,
-        ContactDamping::Coefficient(5e5)
-    );
+    assert_eq!(study.held_fixed[0].damping, ContactDamping::Coefficient(5e5));
     assert_eq!(study.held_fixed.len(), 5);
-    for (one, other) in [
-        ("mu", "damping"),
-        ("lambda", "mu_over_gamma"),
-        ("lambda", "restitution"),
-    ] {
+    for (one, other) in [("mu", "damping"), ("lambda", "mu_over_gamma"), ("lambda", "restitution")]
+    {
         for (one, other) in held(one).ratios.iter().zip(&held(other).ratios) {
             assert!((one / other - 1.0).abs() < 1e-10, "{one} and {other}");
         }
     }
     // mu/gamma is as 1/E where mu is fixed.
     let moduli = study.rows.iter().map(|row| row.material.modulus.value());
-    let products: Vec<f64> = held("mu")
-        .ratios
-        .iter()
-        .zip(moduli)
-        .map(|(ratio, modulus)| ratio * modulus)
-        .collect();
-    assert!(
-        products
-            .iter()
-            .all(|product| (product / products[0] - 1.0).abs() < 1e-12)
-    );
+    let products: Vec<f64> =
+        held("mu").ratios.iter().zip(moduli).map(|(ratio, modulus)| ratio * modulus).collect();
+    assert!(products.iter().all(|product| (product / products[0] - 1.0).abs() < 1e-12));
     assert_eq!(study.order(held("mu")), Some(true));
     assert!(held("mu").spread() > held("lambda").spread());
 }
@@ -234,19 +171,12 @@ fn numbers_in_si_units_come_out_again() {
         assert!(near(damping.contact.damping, 5e5), "{damping:?}");
         assert!(near(damping.viscous.viscous, 0.002) && near(damping.friction.torque, 1e-5));
         let lambda = damping.contact.lambda.expect("units");
-        assert!(near(
-            Some(lambda * (9.81_f64 * 0.2).sqrt()),
-            damping.contact.mu_over_gamma
-        ));
+        assert!(near(Some(lambda * (9.81_f64 * 0.2).sqrt()), damping.contact.mu_over_gamma));
     }
     // The coefficient over the stiffness is lambda: F = k (1 + lambda d') d^(3/2).
     for row in &document.materials {
         let stiffness = 4.0 / 3.0 * row.modulus * 0.0096_f64.sqrt();
-        assert!(
-            near(row.dissipation.contact.lambda, 5e5 / stiffness),
-            "{}",
-            row.name
-        );
+        assert!(near(row.dissipation.contact.lambda, 5e5 / stiffness), "{}", row.name);
     }
 }
 
@@ -255,21 +185,11 @@ fn numbers_in_si_units_come_out_again() {
 #[test]
 fn a_barrier_beyond_all_hardness_is_a_barrier_still() {
     for modulus in ["1e20", "1e60", "1e300", "1e-3"] {
-        let study = study(&format!(
-            "[[material]]\nname = \"Strange\"\nmodulus = {modulus}"
-        ));
+        let study = study(&format!("[[material]]\nname = \"Strange\"\nmodulus = {modulus}"));
         let row = study.rows.last().expect("a row");
         let Some(first) = row.first else { continue };
-        let numbers = [
-            first.duration,
-            first.penetration,
-            first.peak_force,
-            first.peak_pressure,
-        ];
-        assert!(
-            numbers.iter().all(|number| *number > 0.0),
-            "{modulus}: {first:?}"
-        );
+        let numbers = [first.duration, first.penetration, first.peak_force, first.peak_pressure];
+        assert!(numbers.iter().all(|number| *number > 0.0), "{modulus}: {first:?}");
         let said = text::materials(&study, 120);
         assert!(!said.contains(" inf") && !said.contains("NaN"), "{said}");
     }
@@ -308,31 +228,15 @@ fn the_page_prints_what_is_found() {
             first.peak_pressure,
             first.restitution,
         ];
-        format!(
-            "| {} | {} |",
-            row.material.name,
-            numbers.map(decimal).join(" | ")
-        )
+        format!("| {} | {} |", row.material.name, numbers.map(decimal).join(" | "))
     };
     let held = study.held_fixed.iter().map(|held| {
-        let [first, last] = held
-            .extremes()
-            .expect("rest")
-            .map(|row| held.rest_times[row].expect("rest"));
+        let [first, last] =
+            held.extremes().expect("rest").map(|row| held.rest_times[row].expect("rest"));
         let form = held.damping.form();
-        let words = format!(
-            "{} = {} {}",
-            form.name(),
-            decimal(held.damping.value()),
-            form.unit()
-        );
+        let words = format!("{} = {} {}", form.name(), decimal(held.damping.value()), form.unit());
         let apart = lindstedt::export::significant(100.0 * (last / first - 1.0), 3);
-        format!(
-            "| {} | {} | {} | {apart} % |",
-            words.trim_end(),
-            decimal(first),
-            decimal(last)
-        )
+        format!("| {} | {} | {} | {apart} % |", words.trim_end(), decimal(first), decimal(last))
     });
     for row in study.rows.iter().map(contact).chain(held) {
         assert!(page.contains(&row), "{row}");
@@ -340,9 +244,7 @@ fn the_page_prints_what_is_found() {
     let none = decimal(study.no_barrier.expect("rest"));
     let lossless = decimal(study.rows[0].lossless.expect("rest"));
     assert!(
-        page.contains(&format!(
-            "rests at {none}; at a barrier without loss at {lossless} (steel)"
-        )),
+        page.contains(&format!("rests at {none}; at a barrier without loss at {lossless} (steel)")),
         "{none} {lossless}"
     );
 }
@@ -352,10 +254,7 @@ fn a_study_of_nothing_is_refused() {
     let output = run(&["materials", "--only-own"]);
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1));
-    assert!(
-        output.stdout.is_empty() && message.contains("there is no material"),
-        "{message}"
-    );
+    assert!(output.stdout.is_empty() && message.contains("there is no material"), "{message}");
 }
 
 #[test]
@@ -364,23 +263,14 @@ fn a_table_has_a_row_for_each_material() {
     let file = folder.path().join("own.toml");
     let text = "[[material]]\nname = \"Cork, \\\"fine\\\"\"\nmodulus = 2e7\n[run]\nduration = 3";
     std::fs::write(&file, text).expect("a file");
-    let output = run(&[
-        "materials",
-        file.to_str().expect("text"),
-        "--only-own",
-        "--format",
-        "csv",
-    ]);
+    let output = run(&["materials", file.to_str().expect("text"), "--only-own", "--format", "csv"]);
     let table = String::from_utf8(output.stdout).expect("text");
     let lines: Vec<&str> = table.lines().collect();
     assert_eq!(lines.len(), 3, "{table}");
     let columns = |line: &str| line.split(',').count();
     assert_eq!(columns(lines[0]), columns(lines[1]));
     // Its name has a comma; it does not rest in so short a run.
-    assert!(
-        lines[2].starts_with("\"Cork, \"\"fine\"\"\",20000000,"),
-        "{table}"
-    );
+    assert!(lines[2].starts_with("\"Cork, \"\"fine\"\"\",20000000,"), "{table}");
     assert_eq!(columns(lines[2]), columns(lines[1]) + 1);
     assert!(lines[2].contains(",,,"), "{table}");
 }
@@ -390,18 +280,9 @@ fn a_table_has_a_row_for_each_material() {
 fn a_picture_shows_what_is_held_fixed() {
     let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/materials");
     for (name, words) in [
-        (
-            "table-2",
-            ["Swing, lambda held fixed", "Decay, mu held fixed"],
-        ),
-        (
-            "own-mu",
-            ["Swing, mu held fixed", "Decay, mu_over_gamma held fixed"],
-        ),
-        (
-            "never-rests",
-            ["Decay, mu_over_gamma held fixed", "no barrier"],
-        ),
+        ("table-2", ["Swing, lambda held fixed", "Decay, mu held fixed"]),
+        ("own-mu", ["Swing, mu held fixed", "Decay, mu_over_gamma held fixed"]),
+        ("never-rests", ["Decay, mu_over_gamma held fixed", "no barrier"]),
     ] {
         let file = format!("{examples}/{name}.toml");
         let folder = tempfile::tempdir().expect("a folder");
@@ -416,10 +297,7 @@ fn a_picture_shows_what_is_held_fixed() {
 #[test]
 fn the_chain_tells_the_same_of_the_materials() {
     let study = |integrator| {
-        let question = MaterialQuestion {
-            integrator,
-            ..MaterialQuestion::default()
-        };
+        let question = MaterialQuestion { integrator, ..MaterialQuestion::default() };
         study_materials(question).expect("a study")
     };
     let [chain, truth] = [Integrator::Chain, Integrator::Taylor].map(study);

@@ -14,11 +14,7 @@ fn run(arguments: &[&str]) -> std::process::Output {
 
 fn result(arguments: &[&str]) -> String {
     let output = run(arguments);
-    assert!(
-        output.status.success(),
-        "{arguments:?}: {}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
     String::from_utf8(output.stdout).expect("text")
 }
 
@@ -32,10 +28,7 @@ fn elements(page: &str) -> Vec<String> {
     let (mut open, mut found) = (Vec::new(), Vec::new());
     for piece in page.split('<').skip(1) {
         let (tag, text) = piece.split_once('>').expect("a tag has an end");
-        assert!(
-            !text.contains('>') || open.last().is_some_and(|own| own == "style"),
-            "{text}"
-        );
+        assert!(!text.contains('>') || open.last().is_some_and(|own| own == "style"), "{text}");
         let name: String = tag
             .trim_start_matches('/')
             .chars()
@@ -56,11 +49,7 @@ fn elements(page: &str) -> Vec<String> {
 fn check(page: &str) {
     assert!(page.starts_with("<!doctype html>\n") && page.ends_with("</html>\n"));
     let elements = elements(page);
-    assert!(
-        !elements
-            .iter()
-            .any(|name| name == "script" || name == "link" || name == "img")
-    );
+    assert!(!elements.iter().any(|name| name == "script" || name == "link" || name == "img"));
     for outside in [" src=", " href=", "url(http", "@import"] {
         assert!(!page.contains(outside), "{outside}");
     }
@@ -74,58 +63,18 @@ fn every_command_has_a_page() {
     let commands: [(&[&str], bool); 19] = [
         (&["derive", "pendulum", "--at", "A=3/2"], true),
         (&["derive", "x'' + k*x + eps*x^3 = 0"], false),
-        (
-            &[
-                "derive",
-                "van-der-pol",
-                "--order",
-                "3",
-                "--at",
-                "mu=1/2",
-                "--steps",
-            ],
-            true,
-        ),
+        (&["derive", "van-der-pol", "--order", "3", "--at", "mu=1/2", "--steps"], true),
         (&["derive", "examples/forced-duffing.toml"], true),
-        (
-            &["compare", "duffing", "--at", "A=1", "--at", "eps=1"],
-            true,
-        ),
+        (&["compare", "duffing", "--at", "A=1", "--at", "eps=1"], true),
         (&["impact"], true),
         (&["impact", "examples/impact-units.toml"], true),
         (&["impact", "examples/impact-contact-laws.toml"], true),
         (&["impact", "--compare"], false),
         (&["simulate", "examples/simulate/paper.toml"], true),
-        (
-            &[
-                "simulate",
-                "examples/simulate/paper.toml",
-                "--sweep",
-                "zeta=0.01,0.02",
-            ],
-            true,
-        ),
-        (
-            &[
-                "simulate",
-                "x'' + sin(x) = 0",
-                "--from",
-                "x=1,v=0",
-                "--until",
-                "5",
-            ],
-            true,
-        ),
+        (&["simulate", "examples/simulate/paper.toml", "--sweep", "zeta=0.01,0.02"], true),
+        (&["simulate", "x'' + sin(x) = 0", "--from", "x=1,v=0", "--until", "5"], true),
         (&["response", "examples/response/duffing.toml"], true),
-        (
-            &[
-                "stability",
-                "examples/stability/mathieu.toml",
-                "--at",
-                "eps=1",
-            ],
-            true,
-        ),
+        (&["stability", "examples/stability/mathieu.toml", "--at", "eps=1"], true),
         (&["friction"], true),
         (&["materials"], true),
         (&["lagrange"], false),
@@ -145,19 +94,14 @@ fn every_command_has_a_page() {
 fn the_formulas_of_every_example_are_set() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     let files = |folder: PathBuf| -> Vec<String> {
-        let entries = std::fs::read_dir(folder)
-            .expect("a folder")
-            .filter_map(Result::ok);
+        let entries = std::fs::read_dir(folder).expect("a folder").filter_map(Result::ok);
         let paths = entries.map(|entry| entry.path().to_str().expect("a path in text").to_owned());
         let mut files: Vec<String> = paths.filter(|path| path.ends_with(".toml")).collect();
         files.sort();
         files
     };
     for file in files(folder.clone()) {
-        let name = Path::new(&file)
-            .file_stem()
-            .and_then(|name| name.to_str())
-            .unwrap_or_default();
+        let name = Path::new(&file).file_stem().and_then(|name| name.to_str()).unwrap_or_default();
         if name.starts_with("impact") || name == "pressed-contact" {
             continue;
         }
@@ -180,10 +124,7 @@ fn a_page_has_the_numbers_of_the_text_and_the_picture_of_the_plot() {
     let (_, judged) = text.split_once("Judged against").expect("a verdict");
     let mut lines = 0;
     for line in judged.lines().skip(1).filter(|line| line.len() > 22) {
-        let words = line[22..]
-            .replace('&', "&amp;")
-            .replace('<', "&lt;")
-            .replace('>', "&gt;");
+        let words = line[22..].replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
         // The verdict has a colour.
         let words = words.strip_prefix("pass").unwrap_or(&words);
         assert!(page.contains(words), "{words}");
@@ -198,10 +139,7 @@ fn a_page_has_the_numbers_of_the_text_and_the_picture_of_the_plot() {
     std::fs::remove_file(&file).expect("the picture is removed");
     assert_eq!(picture, plotted);
     let (_, drawing) = plotted.split_once('\n').expect("lines");
-    assert!(
-        page.contains(drawing.trim_end()),
-        "the picture of the page is that of --plot"
-    );
+    assert!(page.contains(drawing.trim_end()), "the picture of the page is that of --plot");
     // Only its frame may shrink.
     assert!(page.contains("<svg viewBox=\"0 0 "));
 }
@@ -215,20 +153,11 @@ fn a_page_says_how_it_was_made_and_reads_nothing_as_html() {
     let page = page(&["audit", file.to_str().expect("a path in text")]);
     std::fs::remove_file(&file).expect("the claims are removed");
     check(&page);
-    assert!(
-        page.contains("&lt;b&gt;here&lt;/b&gt;") && !page.contains("<script"),
-        "{page}"
-    );
+    assert!(page.contains("&lt;b&gt;here&lt;/b&gt;") && !page.contains("<script"), "{page}");
     let page = self::page(&["derive", "x'' + x + eps*x^3 = 0", "--order", "1"]);
     let command = "lindstedt derive &quot;x'' + x + eps*x^3 = 0&quot; --order 1";
-    assert!(
-        page.contains(&format!("<title>{command}</title>")),
-        "{page}"
-    );
-    assert!(
-        page.contains(&format!("<code>{command} --format html</code>")),
-        "{page}"
-    );
+    assert!(page.contains(&format!("<title>{command}</title>")), "{page}");
+    assert!(page.contains(&format!("<code>{command} --format html</code>")), "{page}");
 }
 
 #[test]
@@ -278,21 +207,11 @@ fn the_name_of_the_output_decides_where_no_format_is_given() {
         assert_eq!(written(name, &[]), asked, "{name}");
     }
     check(&written("LAW.HTML", &[]));
-    assert_eq!(
-        written("text.json", &["--format", "text"]),
-        result(&question)
-    );
+    assert_eq!(written("text.json", &["--format", "text"]), result(&question));
     let place = folder.join("impact.c");
-    let refused = run(&[
-        "impact",
-        "--output",
-        place.to_str().expect("a path in text"),
-    ]);
+    let refused = run(&["impact", "--output", place.to_str().expect("a path in text")]);
     let message = String::from_utf8_lossy(&refused.stderr).into_owned();
     assert_eq!(refused.status.code(), Some(2));
-    assert!(
-        message.contains("--format text writes text there"),
-        "{message}"
-    );
+    assert!(message.contains("--format text writes text there"), "{message}");
     std::fs::remove_dir_all(&folder).expect("the folder is removed");
 }

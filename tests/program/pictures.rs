@@ -22,9 +22,7 @@ impl Panel {
     /// The first curve of a colour.
     fn curve(&self, colour: &str) -> &[(f64, f64)] {
         let found = self.curves.iter().find(|(own, _)| own == colour);
-        &found
-            .unwrap_or_else(|| panic!("no {colour} in {}", self.title))
-            .1
+        &found.unwrap_or_else(|| panic!("no {colour} in {}", self.title)).1
     }
 }
 
@@ -64,10 +62,7 @@ fn scale(ticks: &[(f64, f64)]) -> impl Fn(f64) -> f64 + use<> {
 
 fn panels(svg: &str) -> Vec<Panel> {
     let groups = svg.split("<g transform=\"translate(").skip(1);
-    groups
-        .filter(|group| group.contains("clip-path"))
-        .map(panel)
-        .collect()
+    groups.filter(|group| group.contains("clip-path")).map(panel).collect()
 }
 
 fn panel(group: &str) -> Panel {
@@ -79,9 +74,7 @@ fn panel(group: &str) -> Panel {
         if line.starts_with("<line") {
             tick = line;
         }
-        let Some((_, text)) = line
-            .strip_prefix("<text")
-            .and_then(|rest| rest.split_once('>'))
+        let Some((_, text)) = line.strip_prefix("<text").and_then(|rest| rest.split_once('>'))
         else {
             continue;
         };
@@ -90,11 +83,7 @@ fn panel(group: &str) -> Panel {
             logarithmic |= power_of_ten(&text).is_some();
             power_of_ten(&text).map(f64::from)
         });
-        match (
-            attribute(line, "font-size"),
-            attribute(line, "text-anchor"),
-            value,
-        ) {
+        match (attribute(line, "font-size"), attribute(line, "text-anchor"), value) {
             (Some("11"), Some("middle"), Some(value)) => x_ticks.push((number(tick, "x1"), value)),
             (Some("11"), Some("end"), Some(value)) => y_ticks.push((number(tick, "y1"), value)),
             (Some("12"), ..) => labels.push(text),
@@ -110,30 +99,18 @@ fn panel(group: &str) -> Panel {
     };
     let units = [unit(&labels[0]), unit(&labels[1])];
     let (x, y) = (scale(&x_ticks), scale(&y_ticks));
-    let curves = group
-        .lines()
-        .map(str::trim)
-        .filter(|line| line.starts_with("<path"));
+    let curves = group.lines().map(str::trim).filter(|line| line.starts_with("<path"));
     let curves = curves.map(|line| {
         let colour = attribute(line, "stroke").expect("a colour").to_owned();
-        let path = attribute(line, "d")
-            .expect("points")
-            .split(['M', 'L'])
-            .skip(1);
+        let path = attribute(line, "d").expect("points").split(['M', 'L']).skip(1);
         let point = |pair: &str| {
-            let mut pair = pair
-                .split_whitespace()
-                .map(|text| text.parse().expect("a number"));
+            let mut pair = pair.split_whitespace().map(|text| text.parse().expect("a number"));
             let (left, down) = (pair.next().expect("a place"), pair.next().expect("a place"));
             (units[0] * x(left), units[1] * y(down))
         };
         (colour, path.map(point).collect())
     });
-    Panel {
-        curves: curves.filter(|(colour, _)| colour != GUIDE).collect(),
-        title,
-        logarithmic,
-    }
+    Panel { curves: curves.filter(|(colour, _)| colour != GUIDE).collect(), title, logarithmic }
 }
 
 /// The picture and the document of one command.
@@ -146,12 +123,7 @@ fn picture(name: &str, arguments: &[&str]) -> (String, Value) {
     let path = std::env::temp_dir().join(format!("lindstedt-{name}-{}.svg", std::process::id()));
     let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
         .args(arguments)
-        .args([
-            "--format",
-            "json",
-            "--plot",
-            path.to_str().expect("a path in text"),
-        ])
+        .args(["--format", "json", "--plot", path.to_str().expect("a path in text")])
         .output()
         .expect("the program starts");
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -162,47 +134,29 @@ fn picture(name: &str, arguments: &[&str]) -> (String, Value) {
 }
 
 fn float(value: &Value) -> f64 {
-    value
-        .as_f64()
-        .unwrap_or_else(|| panic!("{value} is no number"))
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
 }
 
 /// As near as pixels with two digits behind the point show it.
 fn close(found: f64, expected: f64, range: f64) {
-    assert!(
-        (found - expected).abs() < 2e-4 * range,
-        "{found} {expected}"
-    );
+    assert!((found - expected).abs() < 2e-4 * range, "{found} {expected}");
 }
 
 fn extreme(points: &[(f64, f64)], fold: fn(f64, f64) -> f64) -> f64 {
-    points
-        .iter()
-        .map(|point| point.1)
-        .reduce(fold)
-        .expect("points")
+    points.iter().map(|point| point.1).reduce(fold).expect("points")
 }
 
 /// The ordinate at an abscissa, between the points.
 fn at(points: &[(f64, f64)], x: f64) -> f64 {
-    let pair = points
-        .windows(2)
-        .find(|pair| pair[0].0 <= x && x <= pair[1].0)
-        .expect("within the curve");
+    let pair =
+        points.windows(2).find(|pair| pair[0].0 <= x && x <= pair[1].0).expect("within the curve");
     pair[0].1 + (pair[1].1 - pair[0].1) * (x - pair[0].0) / (pair[1].0 - pair[0].0)
 }
 
 #[test]
 fn a_derived_motion_and_the_truth() {
     for (amplitude, value) in [("3/2", 1.5), ("-5/2", -2.5_f64)] {
-        let arguments = [
-            "derive",
-            "pendulum",
-            "--order",
-            "2",
-            "--at",
-            &format!("A={amplitude}"),
-        ];
+        let arguments = ["derive", "pendulum", "--order", "2", "--at", &format!("A={amplitude}")];
         let (panels, document) = drawn("motion", &arguments);
         let verification = &document["verification"];
         let period = std::f64::consts::TAU / float(&verification["true_frequency"]);
@@ -218,20 +172,14 @@ fn a_derived_motion_and_the_truth() {
         }
         close(truth[truth.len() - 1].1, value, 5.0);
         close(truth[truth.len() / 2].1, -value, 5.0);
-        let apart = truth
-            .iter()
-            .zip(formula)
-            .map(|(truth, formula)| (truth.0, formula.1 - truth.1));
+        let apart =
+            truth.iter().zip(formula).map(|(truth, formula)| (truth.0, formula.1 - truth.1));
         let apart: Vec<(f64, f64)> = apart.collect();
         let below = difference.curve("#0072b2");
         for (index, point) in below.iter().enumerate().step_by(50) {
             close(point.1, apart[index].1, 10.0);
         }
-        close(
-            extreme(below, f64::max).max(-extreme(below, f64::min)),
-            deviation,
-            3.0 * deviation,
-        );
+        close(extreme(below, f64::max).max(-extreme(below, f64::min)), deviation, 3.0 * deviation);
         // Energy is conserved along the true orbit; the formula has its own frequency.
         for &(x, v) in orbit.curve(TRUTH) {
             close(0.5 * v * v + 1.0 - x.cos(), 1.0 - value.cos(), 10.0);
@@ -262,11 +210,7 @@ fn frequencies_against_the_amplitude() {
     let rows = document["methods"].as_array().expect("methods");
     let first = &rows[0];
     assert_eq!(first["method"], "lindstedt-poincare");
-    close(
-        at(&frequency.curves[1].1, 1.25),
-        float(&first["frequency"]),
-        3.0,
-    );
+    close(at(&frequency.curves[1].1, 1.25), float(&first["frequency"]), 3.0);
     let percent = (100.0 * float(&first["relative_error"]).abs()).log10();
     assert!((at(&error.curves[0].1, 1.25) - percent).abs() < 0.02);
 }
@@ -278,21 +222,14 @@ fn an_impact_by_both_columns_and_by_runge_kutta() {
         panic!("{} panels", panels.len());
     };
     let (amplitude, barrier) = (1.5_f64, 0.323);
-    for (colour, column) in [
-        (TRUTH, "runge_kutta"),
-        (FORMULA, "paper"),
-        (SECOND_FORMULA, "energy"),
-    ] {
+    for (colour, column) in [(TRUTH, "runge_kutta"), (FORMULA, "paper"), (SECOND_FORMULA, "energy")]
+    {
         let [depth, duration] =
             ["penetration", "duration"].map(|name| float(&document["contact"][name][column]));
         let (time, enlarged) = (motion.curve(colour), contact.curve(colour));
         close(time[0].1, -amplitude, 3.0);
         close(extreme(time, f64::max), barrier + depth, 3.0);
-        close(
-            time[time.len() - 1].0,
-            float(&document["period"][column]),
-            5.0,
-        );
+        close(time[time.len() - 1].0, float(&document["period"][column]), 5.0);
         close(enlarged[0].1, 0.0, depth);
         close(extreme(enlarged, f64::max), depth, 2.0 * depth);
         close(enlarged[enlarged.len() - 1].0, duration, 2.0 * duration);
@@ -315,10 +252,7 @@ fn an_impact_by_both_columns_and_by_runge_kutta() {
 
 #[test]
 fn a_simulated_motion_and_where_its_energy_goes() {
-    let file = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/examples/simulate/everything.toml"
-    );
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulate/everything.toml");
     let (panels, document) = drawn("simulation", &["simulate", file, "--sample", "0"]);
     let [motion, orbit, energy] = &panels[..] else {
         panic!("{} panels", panels.len());
@@ -343,15 +277,7 @@ fn a_simulated_motion_and_where_its_energy_goes() {
     ];
     for (colour, name) in curves {
         let (first, last) = ends(energy.curve(colour));
-        close(
-            first.1,
-            if name == "end" {
-                float(&book["start"])
-            } else {
-                0.0
-            },
-            4.0,
-        );
+        close(first.1, if name == "end" { float(&book["start"]) } else { 0.0 }, 4.0);
         close(last.1, float(&book[name]), 4.0);
     }
 }
@@ -367,10 +293,7 @@ fn a_sweep_is_drawn_as_its_rows_say() {
         ("Deepest penetration", "penetration"),
         ("Energy lost in contact", "energy_lost"),
     ] {
-        let panel = panels
-            .iter()
-            .find(|panel| panel.title == title)
-            .expect(title);
+        let panel = panels.iter().find(|panel| panel.title == title).expect(title);
         let points = &panel.curves[0].1;
         assert_eq!(points.len(), rows.len());
         let values: Vec<f64> = rows.iter().map(|row| float(&row[key])).collect();
@@ -386,15 +309,9 @@ fn a_sweep_is_drawn_as_its_rows_say() {
 fn a_map_keeps_its_quantity_where_some_motions_lack_it() {
     let path = std::env::temp_dir().join(format!("lindstedt-map-{}.svg", std::process::id()));
     let problem = path.with_extension("toml");
-    std::fs::write(
-        &problem,
-        "[pendulum]\namplitude = 0.5\n[run]\nduration = 40\n",
-    )
-    .expect("a file");
-    let (name, file) = (
-        path.to_str().expect("text"),
-        problem.to_str().expect("text"),
-    );
+    std::fs::write(&problem, "[pendulum]\namplitude = 0.5\n[run]\nduration = 40\n")
+        .expect("a file");
+    let (name, file) = (path.to_str().expect("text"), problem.to_str().expect("text"));
     let arguments = ["--sweep", "zeta=0.01:0.2:6", "--sweep", "mu=1e5:1e6:3"];
     let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
         .args(["simulate", file, "--format", "json", "--plot", name])
@@ -407,10 +324,7 @@ fn a_map_keeps_its_quantity_where_some_motions_lack_it() {
     let restless = rows.iter().filter(|row| row["rest_time"].is_null()).count();
     assert!(restless > 0 && restless < rows.len(), "{restless}");
     let svg = std::fs::read_to_string(&path).expect("the picture");
-    let cells: Vec<&str> = svg
-        .lines()
-        .filter(|line| line.starts_with("    <rect"))
-        .collect();
+    let cells: Vec<&str> = svg.lines().filter(|line| line.starts_with("    <rect")).collect();
     assert_eq!(cells.len(), rows.len());
     let grey = cells.iter().filter(|cell| cell.contains("#c8c8c8")).count();
     assert_eq!(grey, restless);
@@ -445,11 +359,7 @@ fn the_energy_is_drawn_as_closely_as_the_motion() {
     };
     let motion = motion.curves[0].1.len();
     for (colour, points) in &energy.curves {
-        assert!(
-            points.len() >= motion,
-            "{colour}: {} points beside {motion}",
-            points.len()
-        );
+        assert!(points.len() >= motion, "{colour}: {} points beside {motion}", points.len());
     }
     std::fs::remove_file(path).expect("the file goes");
 }
@@ -457,42 +367,22 @@ fn the_energy_is_drawn_as_closely_as_the_motion() {
 #[test]
 fn the_cells_of_a_map_stand_at_their_parameters() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulate/damper.toml");
-    let axes = [
-        "--sweep",
-        "zeta=0.01:0.03:3",
-        "--sweep",
-        "barrier=0.2:0.5:4",
-    ];
+    let axes = ["--sweep", "zeta=0.01:0.03:3", "--sweep", "barrier=0.2:0.5:4"];
     let (svg, document) = picture("map", &[&["simulate", file], &axes[..]].concat());
-    let inside = svg
-        .split_once("clip-path=")
-        .expect("cells")
-        .1
-        .split_once("</g>")
-        .expect("cells")
-        .0;
-    let cells: Vec<&str> = inside
-        .lines()
-        .filter(|line| line.contains("<rect"))
-        .collect();
+    let inside =
+        svg.split_once("clip-path=").expect("cells").1.split_once("</g>").expect("cells").0;
+    let cells: Vec<&str> = inside.lines().filter(|line| line.contains("<rect")).collect();
     let rows = document["rows"].as_array().expect("rows");
     assert_eq!(cells.len(), rows.len());
     // Every tick stands at the middle of a cell that has its value, or between two.
     let ticks = |anchor: &str, place: &str| -> Vec<(f64, f64)> {
-        let texts = svg
-            .lines()
-            .map(str::trim)
-            .filter(|line| line.starts_with("<text"));
+        let texts = svg.lines().map(str::trim).filter(|line| line.starts_with("<text"));
         let own = texts.filter(|line| {
             attribute(line, "text-anchor") == Some(anchor)
                 && attribute(line, "font-size") == Some("12")
         });
         own.map(|line| {
-            let text = line
-                .split_once('>')
-                .expect("a text")
-                .1
-                .trim_end_matches("</text>");
+            let text = line.split_once('>').expect("a text").1.trim_end_matches("</text>");
             (number(line, place), text.parse().expect("a number"))
         })
         .collect()
@@ -509,24 +399,13 @@ fn the_cells_of_a_map_stand_at_their_parameters() {
         ("#fde725", values.iter().copied().fold(f64::MIN, f64::max)),
         ("#440154", values.iter().copied().fold(f64::MAX, f64::min)),
     ] {
-        let cell = cells
-            .iter()
-            .find(|cell| attribute(cell, "fill") == Some(colour))
-            .expect("a cell");
-        let row = values
-            .iter()
-            .position(|known| *known == value)
-            .expect("a row");
+        let cell =
+            cells.iter().find(|cell| attribute(cell, "fill") == Some(colour)).expect("a cell");
+        let row = values.iter().position(|known| *known == value).expect("a row");
         let expected = &rows[row]["values"];
         let (zeta, barrier) = place(cell);
         // The text of a tick stands a little below it.
-        assert!(
-            (zeta - float(&expected[0])).abs() < 1e-3,
-            "{zeta} {expected}"
-        );
-        assert!(
-            (barrier - float(&expected[1])).abs() < 2e-3,
-            "{barrier} {expected}"
-        );
+        assert!((zeta - float(&expected[0])).abs() < 1e-3, "{zeta} {expected}");
+        assert!((barrier - float(&expected[1])).abs() < 2e-3, "{barrier} {expected}");
     }
 }

@@ -65,12 +65,7 @@ impl Case {
                     *own.unwrap_or_else(|| panic!("{}: {name}", self.name))
                 }
             };
-            Some(
-                arguments(&self.texts[0], routine)?
-                    .into_iter()
-                    .map(value)
-                    .collect(),
-            )
+            Some(arguments(&self.texts[0], routine)?.into_iter().map(value).collect())
         };
         let mut calls = vec![(ROUTINES[0], list(ROUTINES[0], 0.0).expect("a frequency"))];
         if self.motion.is_some() {
@@ -90,19 +85,14 @@ impl Case {
     fn check(&self, language: Language, found: &[f64]) {
         let name = format!("{} in {}", self.name, language.name());
         let near = |found: f64, value: f64, size: f64, what: &str| {
-            assert!(
-                (found - value).abs() <= size,
-                "{name}: {what} {found} and {value}"
-            );
+            assert!((found - value).abs() <= size, "{name}: {what} {found} and {value}");
         };
         // At a small amplitude terms may cancel: then there is a value to half of the digits, or
         // none.
         let cancels = self.texts[0].contains("rounding takes the digits")
-            && ["A", "a"].iter().any(|name| {
-                self.values
-                    .get(*name)
-                    .is_some_and(|value| value.abs() < 0.1)
-            });
+            && ["A", "a"]
+                .iter()
+                .any(|name| self.values.get(*name).is_some_and(|value| value.abs() < 0.1));
         let tolerance = if cancels { 1e-6 } else { 1e-12 };
         if !(cancels && found[0].is_nan()) {
             near(found[0], self.omega, tolerance * self.omega, "omega");
@@ -113,19 +103,9 @@ impl Case {
             if cancels && found.iter().all(|value| value.is_nan()) {
                 continue;
             }
-            near(
-                found[0],
-                motion(t),
-                tolerance * size * (1.0 + self.omega * t),
-                "x",
-            );
+            near(found[0], motion(t), tolerance * size * (1.0 + self.omega * t), "x");
             let difference = (found[3] - found[2]) / (2.0 * STEP);
-            near(
-                found[1],
-                difference,
-                1e-6 * size * self.omega * (1.0 + self.omega.powi(2)),
-                "v",
-            );
+            near(found[1], difference, 1e-6 * size * self.omega * (1.0 + self.omega.powi(2)), "v");
         }
     }
 }
@@ -138,9 +118,7 @@ fn examples() -> Vec<Case> {
         .map(|entry| entry.expect("an entry").path())
         .filter(|path| path.extension().is_some_and(|ending| ending == "toml"))
         .filter(|path| {
-            !path
-                .file_name()
-                .is_some_and(|name| name.to_string_lossy().starts_with("impact"))
+            !path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("impact"))
         })
         .collect();
     files.sort();
@@ -155,9 +133,7 @@ fn examples() -> Vec<Case> {
         let mut at: Vec<String> = vec![];
         if solution["verification"].is_null() {
             let parameters = solution["parameters"].as_array().expect("a list").iter();
-            let names: Vec<&str> = parameters
-                .map(|name| name.as_str().expect("a name"))
-                .collect();
+            let names: Vec<&str> = parameters.map(|name| name.as_str().expect("a name")).collect();
             at.extend(
                 names
                     .iter()
@@ -169,11 +145,7 @@ fn examples() -> Vec<Case> {
             }
             // Without any symbol there is nothing to give values to.
             let at: Vec<&str> = at.iter().flat_map(|value| ["--at", value]).collect();
-            let at = if at.is_empty() {
-                vec!["--tolerance", "1"]
-            } else {
-                at
-            };
+            let at = if at.is_empty() { vec!["--tolerance", "1"] } else { at };
             solution = document(&at);
         }
         let at: Vec<&str> = at.iter().flat_map(|value| ["--at", value]).collect();
@@ -201,23 +173,17 @@ fn examples() -> Vec<Case> {
         let omega = number(&verification["frequency"]);
         let phase = number(&verification["phase"]);
         let waves = verification["motion"].as_array().expect("a motion").iter();
-        let waves: Vec<[f64; 3]> = waves
-            .map(|wave| ["harmonic", "cos", "sin"].map(|key| number(&wave[key])))
-            .collect();
+        let waves: Vec<[f64; 3]> =
+            waves.map(|wave| ["harmonic", "cos", "sin"].map(|key| number(&wave[key]))).collect();
         let values = verification["values"].as_object().expect("values").iter();
         cases.push(Case {
             name: file,
             texts,
-            values: values
-                .map(|(name, value)| (name.clone(), number(value)))
-                .collect(),
+            values: values.map(|(name, value)| (name.clone(), number(value))).collect(),
             omega,
             motion: Some(Box::new(move |t| {
                 let theta = omega * t + phase;
-                waves
-                    .iter()
-                    .map(|[k, c, s]| c * (k * theta).cos() + s * (k * theta).sin())
-                    .sum()
+                waves.iter().map(|[k, c, s]| c * (k * theta).cos() + s * (k * theta).sin()).sum()
             })),
         });
     }
@@ -238,11 +204,7 @@ const EQUATIONS: [(&str, &str, usize); 16] = [
     ("x'' + x + x*abs(x) = 0", "A = -1/2", 10),
     ("x'' + x + x^2 = 0", "A = -3/10", 8),
     ("x'' + x - x^3 + 2*x^5 = 0", "A = -6/5", 12),
-    (
-        "x'' + lambda*x + gamma*x^(1/3) = 0",
-        "A = 2/5, gamma = 1/3, lambda = 3",
-        8,
-    ),
+    ("x'' + lambda*x + gamma*x^(1/3) = 0", "A = 2/5, gamma = 1/3, lambda = 3", 8),
     ("x'' + exp(x) - 1 = 0", "A = 2/5", 7),
     ("x'' + exp(x) - 1 = 0", "A = -2/5", 7),
     ("x'' + sgn(x)*abs(x)^p = 0", "A = -2/5, p = 3/2", 6),
@@ -266,33 +228,21 @@ fn methods() -> Vec<Case> {
             };
             let of_harmonic = solution.amplitude == AmplitudeConvention::FirstHarmonic
                 && solution.limit_cycle.is_none();
-            let at = if of_harmonic {
-                at.replace("A =", "a =")
-            } else {
-                at.to_owned()
-            };
+            let at = if of_harmonic { at.replace("A =", "a =") } else { at.to_owned() };
             let name = format!("{} on {equation} at {at}", method.name());
             let values: Values = at.parse().expect("values");
             let verification = judge(&oscillator, &solution, &values, 0.01).expect(&name);
-            let numbers: BTreeMap<Symbol, f64> = values
-                .iter()
-                .filter_map(|(name, _)| Some((name, values.get(name)?)))
-                .collect();
+            let numbers: BTreeMap<Symbol, f64> =
+                values.iter().filter_map(|(name, _)| Some((name, values.get(name)?))).collect();
             let own = evaluate(&oscillator, &solution, &numbers).expect(&name);
             let omega = own.frequency_squared.sqrt();
             let text = |language| {
                 code::solution(&oscillator, &solution, Some(&verification), 0.01, language)
                     .expect(&name)
             };
-            let mut values: BTreeMap<String, f64> = numbers
-                .iter()
-                .map(|(name, value)| (name.to_string(), *value))
-                .collect();
-            values.extend(
-                own.chosen
-                    .iter()
-                    .map(|(name, value)| (name.to_string(), *value)),
-            );
+            let mut values: BTreeMap<String, f64> =
+                numbers.iter().map(|(name, value)| (name.to_string(), *value)).collect();
+            values.extend(own.chosen.iter().map(|(name, value)| (name.to_string(), *value)));
             cases.push(Case {
                 texts: LANGUAGES.map(text),
                 values,
@@ -303,11 +253,7 @@ fn methods() -> Vec<Case> {
                 name,
             });
         }
-        assert!(
-            cases.len() - before >= least,
-            "{equation}: only {} methods",
-            cases.len() - before
-        );
+        assert!(cases.len() - before >= least, "{equation}: only {} methods", cases.len() - before);
     }
     cases
 }
@@ -315,15 +261,9 @@ fn methods() -> Vec<Case> {
 /// The numbers that a command prints, a line each.
 fn numbers(command: &mut Command) -> Vec<f64> {
     let output = command.output().expect("it starts");
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).expect("text");
-    text.lines()
-        .map(|line| line.parse().expect("a number"))
-        .collect()
+    text.lines().map(|line| line.parse().expect("a number")).collect()
 }
 
 /// Whether a program of this name is here.
@@ -338,10 +278,7 @@ fn is_here(program: &str) -> bool {
 
 /// All programs of a language in one go: the numbers of every case, one after the other.
 fn run_all(language: Language, cases: &[Case], folder: &Path) -> Option<Vec<f64>> {
-    let index = LANGUAGES
-        .iter()
-        .position(|other| *other == language)
-        .expect("a language");
+    let index = LANGUAGES.iter().position(|other| *other == language).expect("a language");
     let ending = ["py", "c", "rs"][index];
     for (k, case) in cases.iter().enumerate() {
         std::fs::write(folder.join(format!("case{k}.{ending}")), &case.texts[index])
@@ -377,9 +314,7 @@ def show(name, *values):\n    try:\n        print(repr(float(case[name](*values)
             }
             let file = folder.join("driver.py");
             std::fs::write(&file, driver).expect("a file");
-            Some(numbers(
-                Command::new("python3").args(["-I", "-S"]).arg(file),
-            ))
+            Some(numbers(Command::new("python3").args(["-I", "-S"]).arg(file)))
         }
         Language::C => {
             if !is_here("cc") {
@@ -407,13 +342,8 @@ def show(name, *values):\n    try:\n        print(repr(float(case[name](*values)
                 for name in NAMES {
                     let _ = writeln!(driver, "#undef {name}\n#define {name} {name}_{k}");
                 }
-                let _ = writeln!(
-                    driver,
-                    "#include \"case{k}.c\"\nstatic void show_{k}(void)\n{{"
-                );
-                driver += &calls(k, "", &|call| {
-                    format!("    printf(\"%.17g\\n\", {call});\n")
-                });
+                let _ = writeln!(driver, "#include \"case{k}.c\"\nstatic void show_{k}(void)\n{{");
+                driver += &calls(k, "", &|call| format!("    printf(\"%.17g\\n\", {call});\n"));
                 driver += "}\n";
             }
             driver += "int main(void)\n{\n";
@@ -437,11 +367,7 @@ def show(name, *values):\n    try:\n        print(repr(float(case[name](*values)
                 ])
                 .output()
                 .expect("the compiler starts");
-            assert!(
-                compiled.status.success(),
-                "{}",
-                String::from_utf8_lossy(&compiled.stderr)
-            );
+            assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
             Some(numbers(&mut Command::new(folder.join("driver-c"))))
         }
         Language::Rust => {
@@ -473,11 +399,7 @@ def show(name, *values):\n    try:\n        print(repr(float(case[name](*values)
                 ])
                 .output()
                 .expect("the compiler starts");
-            assert!(
-                compiled.status.success(),
-                "{}",
-                String::from_utf8_lossy(&compiled.stderr)
-            );
+            assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
             Some(numbers(&mut Command::new(folder.join("driver-rust"))))
         }
         _ => None,
@@ -526,10 +448,7 @@ fn rounding_noise_is_no_harmonic_of_a_program() {
                 || text.contains(&format!("({k}.0*theta)"))
         };
         assert!(["3", "5", "7"].iter().all(|k| has(k)), "{text}");
-        assert!(
-            !["2", "4", "6", "17", "21", "63"].iter().any(|k| has(k)),
-            "{text}"
-        );
+        assert!(!["2", "4", "6", "17", "21", "63"].iter().any(|k| has(k)), "{text}");
     }
 }
 
@@ -552,12 +471,7 @@ fn what_is_no_formula_is_refused_with_a_way_forward() {
             "JSON",
         ),
         (
-            [
-                "derive",
-                "x'' + x + eps*x^3 = F*cos(Omega*t)",
-                "--method",
-                "averaging",
-            ],
+            ["derive", "x'' + x + eps*x^3 = F*cos(Omega*t)", "--method", "averaging"],
             "a drive holds the motion",
             "JSON",
         ),
@@ -582,10 +496,7 @@ fn what_is_no_formula_is_refused_with_a_way_forward() {
         let refused = run(&arguments);
         let said = String::from_utf8_lossy(&refused.stderr);
         assert_eq!(refused.status.code(), Some(2), "{command}: {said}");
-        assert!(
-            said.contains("--format julia belongs to `lindstedt derive`"),
-            "{command}: {said}"
-        );
+        assert!(said.contains("--format julia belongs to `lindstedt derive`"), "{command}: {said}");
     }
 }
 
@@ -602,26 +513,13 @@ fn programs_look_as_they_looked() {
             let name = language.name();
             let file = ["derive", "examples/condenser.toml", "--format", name];
             insta::assert_snapshot!(format!("program-condenser-{name}"), output(&file));
-            let iterate = [
-                "derive",
-                "pendulum",
-                "--method",
-                "iteration-perturbation",
-                "--format",
-                name,
-            ];
+            let iterate =
+                ["derive", "pendulum", "--method", "iteration-perturbation", "--format", name];
             insta::assert_snapshot!(format!("program-iterate-{name}"), output(&iterate));
         }
-        let balance = [
-            "derive",
-            "examples/harmonic-balance-duffing.toml",
-            "--format",
-            "python",
-        ];
+        let balance = ["derive", "examples/harmonic-balance-duffing.toml", "--format", "python"];
         insta::assert_snapshot!("program-balance-python", output(&balance));
-        let exact = [
-            "derive", "pendulum", "--method", "exact", "--format", "python",
-        ];
+        let exact = ["derive", "pendulum", "--method", "exact", "--format", "python"];
         insta::assert_snapshot!("program-exact-python", output(&exact));
     });
 }
@@ -630,26 +528,17 @@ fn programs_look_as_they_looked() {
 #[test]
 fn a_derivation_stands_in_every_format() {
     let first = "fixes               W1 = 3*eps*A^2/4";
-    let json: Value = serde_json::from_str(&output(&[
-        "derive", "duffing", "--steps", "--format", "json",
-    ]))
-    .expect("JSON");
+    let json: Value =
+        serde_json::from_str(&output(&["derive", "duffing", "--steps", "--format", "json"]))
+            .expect("JSON");
     let lines = json["derivation"].as_array().expect("lines");
-    assert!(
-        lines
-            .iter()
-            .any(|line| line.as_str().is_some_and(|line| line.trim() == first))
-    );
+    assert!(lines.iter().any(|line| line.as_str().is_some_and(|line| line.trim() == first)));
     let plain: Value =
         serde_json::from_str(&output(&["derive", "duffing", "--format", "json"])).expect("JSON");
     assert!(plain.get("derivation").is_none());
-    for (language, prefix) in [
-        ("rust", "// "),
-        ("c", "// "),
-        ("python", "# "),
-        ("julia", "# "),
-        ("matlab", "% "),
-    ] {
+    for (language, prefix) in
+        [("rust", "// "), ("c", "// "), ("python", "# "), ("julia", "# "), ("matlab", "% ")]
+    {
         let text = output(&["derive", "duffing", "--steps", "--format", language]);
         let line = format!("{prefix}    {first}\n");
         assert!(text.contains(&line), "{language}: {text}");

@@ -25,10 +25,7 @@ fn run_for(seconds: &str, arguments: &[&str]) -> Output {
 fn output(arguments: &[&str]) -> String {
     let output = run(arguments);
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(
-        output.status.success() && message.is_empty(),
-        "{arguments:?}: {message}"
-    );
+    assert!(output.status.success() && message.is_empty(), "{arguments:?}: {message}");
     String::from_utf8(output.stdout).expect("the output is text")
 }
 
@@ -39,10 +36,7 @@ fn json(arguments: &[&str]) -> Value {
 
 /// The lines of a table of comma-separated values that are no comments.
 fn rows(table: &str) -> Vec<&str> {
-    table
-        .lines()
-        .filter(|line| !line.starts_with('#'))
-        .collect()
+    table.lines().filter(|line| !line.starts_with('#')).collect()
 }
 
 fn example(name: &str) -> String {
@@ -69,9 +63,7 @@ fn rounded(value: &mut Value) {
             let number = number.as_f64().unwrap_or_default();
             *value = match number {
                 _ if number.abs() < 1e-9 => "noise".into(),
-                _ => format!("{number:.6e}")
-                    .parse::<f64>()
-                    .map_or(Value::Null, Value::from),
+                _ => format!("{number:.6e}").parse::<f64>().map_or(Value::Null, Value::from),
             };
         }
         Value::Array(list) => list.iter_mut().for_each(rounded),
@@ -83,20 +75,16 @@ fn rounded(value: &mut Value) {
 #[test]
 fn every_example_prints_what_it_printed() {
     settings().bind(|| {
-        insta::glob!(
-            concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulate"),
-            "*.toml",
-            |file| {
-                let path = file.to_str().expect("a path in text");
-                insta::assert_snapshot!(
-                    "simulate-text",
-                    output(&[path, "--sample", "12.5", "--sample", "40"])
-                );
-                let mut document = json(&[path, "--sample", "12.5"]);
-                rounded(&mut document);
-                insta::assert_json_snapshot!("simulate-json", document);
-            }
-        );
+        insta::glob!(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/simulate"), "*.toml", |file| {
+            let path = file.to_str().expect("a path in text");
+            insta::assert_snapshot!(
+                "simulate-text",
+                output(&[path, "--sample", "12.5", "--sample", "40"])
+            );
+            let mut document = json(&[path, "--sample", "12.5"]);
+            rounded(&mut document);
+            insta::assert_json_snapshot!("simulate-json", document);
+        });
     });
 }
 
@@ -106,10 +94,7 @@ fn every_example_prints_what_it_printed() {
 fn a_chain_prints_what_it_printed_and_is_judged() {
     let file = format!("{EXAMPLES}/damper.toml");
     settings().bind(|| {
-        insta::assert_snapshot!(
-            "simulate-chain-text@damper.toml",
-            output(&[&file, "--chain"])
-        );
+        insta::assert_snapshot!("simulate-chain-text@damper.toml", output(&[&file, "--chain"]));
         insta::assert_snapshot!(
             "simulate-chain-latex@damper.toml",
             output(&[&file, "--chain", "--format", "latex"])
@@ -142,11 +127,8 @@ fn a_chain_prints_what_it_printed_and_is_judged() {
 fn a_sweep_has_the_baseline_of_every_row() {
     let file = format!("{EXAMPLES}/damper.toml");
     for route in [vec![], vec!["--chain"]] {
-        let swept = [
-            vec![file.as_str(), "--sweep", "zeta=0.01,0.03", "--baseline"],
-            route.clone(),
-        ]
-        .concat();
+        let swept = [vec![file.as_str(), "--sweep", "zeta=0.01,0.03", "--baseline"], route.clone()]
+            .concat();
         let document = json(&swept);
         let row = &document["rows"][0];
         let single = json(&[vec![file.as_str()], route].concat());
@@ -156,10 +138,7 @@ fn a_sweep_has_the_baseline_of_every_row() {
             ("rest_lossless", "lossless_barrier"),
         ] {
             let (found, wanted) = (row[of_row].as_f64(), single["baseline"][of_run].as_f64());
-            assert!(
-                found.is_some() && found == wanted,
-                "{of_row}: {found:?} {wanted:?}"
-            );
+            assert!(found.is_some() && found == wanted, "{of_row}: {found:?} {wanted:?}");
         }
         let table = output(&[swept.as_slice(), &["--format", "csv"]].concat());
         assert!(
@@ -171,16 +150,9 @@ fn a_sweep_has_the_baseline_of_every_row() {
 
 #[test]
 fn every_example_agrees_with_the_judge() {
-    for file in std::fs::read_dir(EXAMPLES)
-        .expect("examples/simulate")
-        .filter_map(Result::ok)
-    {
+    for file in std::fs::read_dir(EXAMPLES).expect("examples/simulate").filter_map(Result::ok) {
         let path = file.path();
-        let document = json(&[
-            path.to_str().expect("a path in text"),
-            "--integrator",
-            "both",
-        ]);
+        let document = json(&[path.to_str().expect("a path in text"), "--integrator", "both"]);
         let judge = &document["judge"];
         let difference = judge["max_difference"]["x"].as_f64().expect("a number");
         assert!(difference < 1e-6, "{}: {difference}", path.display());
@@ -188,11 +160,7 @@ fn every_example_agrees_with_the_judge() {
             judge["impacts"].as_u64(),
             document["impacts"].as_array().map(|list| list.len() as u64)
         );
-        assert!(
-            document["energy_residual"]
-                .as_f64()
-                .is_some_and(|residual| residual < 1e-9)
-        );
+        assert!(document["energy_residual"].as_f64().is_some_and(|residual| residual < 1e-9));
     }
 }
 
@@ -214,21 +182,12 @@ fn every_wrong_input_gets_its_message() {
 fn refusal(arguments: &[&str]) -> String {
     let output = run(arguments);
     let text = String::from_utf8(output.stderr).expect("messages are text");
-    assert!(
-        matches!(output.status.code(), Some(1 | 2)),
-        "{arguments:?}: {text}"
-    );
-    assert!(
-        output.stdout.is_empty() && text.starts_with("error: "),
-        "{text}"
-    );
+    assert!(matches!(output.status.code(), Some(1 | 2)), "{arguments:?}: {text}");
+    assert!(output.stdout.is_empty() && text.starts_with("error: "), "{text}");
     for word in ["panicked", "internal error", "stopped after"] {
         assert!(!text.contains(word), "{text}");
     }
-    format!(
-        "{text}exit code {}\n",
-        output.status.code().unwrap_or_default()
-    )
+    format!("{text}exit code {}\n", output.status.code().unwrap_or_default())
 }
 
 #[test]
@@ -240,31 +199,15 @@ fn wrong_arguments_get_theirs() {
         (vec!["--sweep", "zeta=0:1:1"], "whole number from 2"),
         (vec!["--sweep", "zeta=nan:1:3"], "no finite number"),
         (vec!["--sweep", "zeta=-1:1:3"], "zeta must not be negative"),
-        (
-            vec!["--sweep", "barrier=-2:0.3:3"],
-            "inside the right barrier",
-        ),
-        (
-            vec!["--sweep", "duration=1:2:3"],
-            "the same for all motions",
-        ),
-        (
-            vec!["--sweep", "zeta=0:1:3", "--sweep", "zeta=0:1:3"],
-            "swept twice",
-        ),
+        (vec!["--sweep", "barrier=-2:0.3:3"], "inside the right barrier"),
+        (vec!["--sweep", "duration=1:2:3"], "the same for all motions"),
+        (vec!["--sweep", "zeta=0:1:3", "--sweep", "zeta=0:1:3"], "swept twice"),
         (
             vec!["--sweep", "zeta=0:1:2000", "--sweep", "mu=0:1:2000"],
             "2000 * 2000 = 4000000 motions, more than 1000000 motions",
         ),
         (
-            vec![
-                "--sweep",
-                "zeta=0:1:3",
-                "--sweep",
-                "mu=0:1:3",
-                "--sweep",
-                "zeta=5:6:3",
-            ],
+            vec!["--sweep", "zeta=0:1:3", "--sweep", "mu=0:1:3", "--sweep", "zeta=5:6:3"],
             "`zeta` is swept twice",
         ),
         (
@@ -280,28 +223,13 @@ fn wrong_arguments_get_theirs() {
             ],
             "--plot draws curves over one parameter or a map over two",
         ),
-        (
-            vec!["--sweep", "mu=0:1e5:3:log"],
-            "two ends of one sign, neither of them zero",
-        ),
-        (
-            vec!["--sweep", "speed=-1:1:3:log"],
-            "two ends of one sign, neither of them zero",
-        ),
-        (
-            vec!["--sweep", "zeta=0.01:0.1:3:logg"],
-            "did you mean `log`?",
-        ),
+        (vec!["--sweep", "mu=0:1e5:3:log"], "two ends of one sign, neither of them zero"),
+        (vec!["--sweep", "speed=-1:1:3:log"], "two ends of one sign, neither of them zero"),
+        (vec!["--sweep", "zeta=0.01:0.1:3:logg"], "did you mean `log`?"),
         (vec!["--sweep", "zeta=0.01,x"], "`x` is no finite number"),
         (vec!["--sweep", "zeta=0.01"], "NAME=a,b,c"),
-        (
-            vec!["--sweep", "zeta=0.1,0.2,0.1"],
-            "`zeta` takes the value 0.1 twice",
-        ),
-        (
-            vec!["--sweep", "zeta=0.1:0.1:3"],
-            "`zeta` takes the value 0.1 twice",
-        ),
+        (vec!["--sweep", "zeta=0.1,0.2,0.1"], "`zeta` takes the value 0.1 twice"),
+        (vec!["--sweep", "zeta=0.1:0.1:3"], "`zeta` takes the value 0.1 twice"),
         (vec!["--sweep", "zeta=0:1:3", "--sample", "1"], "leave out"),
         (vec!["--sample", "1e9"], "lies beyond the duration"),
         (vec!["--sample", "-1"], "sample"),
@@ -319,29 +247,19 @@ fn wrong_arguments_get_theirs() {
 
 #[test]
 fn a_barrier_out_of_reach_leaves_the_plain_pendulum_and_says_so() {
-    let path = std::env::temp_dir().join(format!(
-        "lindstedt-out-of-reach-{}.toml",
-        std::process::id()
-    ));
+    let path =
+        std::env::temp_dir().join(format!("lindstedt-out-of-reach-{}.toml", std::process::id()));
     std::fs::write(&path, "[pendulum]\nbarrier = 2.0\n").expect("a file");
     let file = path.to_str().expect("a path in text");
     assert!(output(&[file]).contains("no contact: the motion never reaches the barrier at 2"));
     let document = json(&[file]);
     assert_eq!(document["impacts"].as_array().map(Vec::len), Some(0));
-    assert!(
-        document["notes"][0]
-            .as_str()
-            .is_some_and(|note| note.contains("plain pendulum"))
-    );
+    assert!(document["notes"][0].as_str().is_some_and(|note| note.contains("plain pendulum")));
     // A quarter of the period after half a period: cn(K) = 0.
     let quarter = ellip::ellipk(0.75_f64.sin().powi(2)).expect("m < 1");
     let sample = format!("{}", 3.0 * quarter);
     let document = json(&[file, "--sample", &sample]);
-    assert!(
-        document["samples"][0]["x"]
-            .as_f64()
-            .is_some_and(|x| x.abs() < 1e-9)
-    );
+    assert!(document["samples"][0]["x"].as_f64().is_some_and(|x| x.abs() < 1e-9));
     std::fs::remove_file(path).expect("the file goes");
 }
 
@@ -376,10 +294,7 @@ fn steps_and_seconds_are_limits_that_are_said() {
     let output = run(&[file, "--format", "json"]);
     assert_eq!(output.status.code(), Some(4));
     let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    assert_eq!(
-        (&document["complete"], &document["steps"]),
-        (&json!(false), &json!(500))
-    );
+    assert_eq!((&document["complete"], &document["steps"]), (&json!(false), &json!(500)));
     let stopped = document["stopped"].as_str().expect("a reason");
     assert!(stopped.contains("step_limit"), "{stopped}");
     let swept = run(&[file, "--sweep", "zeta=0:0.1:3", "--format", "csv"]);
@@ -390,22 +305,17 @@ fn steps_and_seconds_are_limits_that_are_said() {
             .all(|row| row.ends_with(",false,step limit"))
     );
     let note = String::from_utf8_lossy(&swept.stderr);
-    assert!(
-        note.contains("warning: 3 of 3 motions stopped early"),
-        "{note}"
-    );
+    assert!(note.contains("warning: 3 of 3 motions stopped early"), "{note}");
 
     std::fs::write(&path, "[run]\nduration = 1e9\nstep_limit = 10000000\n").expect("a file");
     // A busy machine is given more time, until the barrier has been touched.
-    let touched = ["0.2", "2", "20", "200", "2000"]
-        .into_iter()
-        .find_map(|seconds| {
-            let output = run_for(seconds, &[file, "--format", "json"]);
-            assert_eq!(output.status.code(), Some(4));
-            let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
-            let impacts = document["impacts"].as_array().map_or(0, Vec::len);
-            (impacts > 0).then_some(document)
-        });
+    let touched = ["0.2", "2", "20", "200", "2000"].into_iter().find_map(|seconds| {
+        let output = run_for(seconds, &[file, "--format", "json"]);
+        assert_eq!(output.status.code(), Some(4));
+        let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+        let impacts = document["impacts"].as_array().map_or(0, Vec::len);
+        (impacts > 0).then_some(document)
+    });
     let document = touched.expect("an impact");
     assert_eq!(document["complete"], false);
     let stopped = document["stopped"].as_str().expect("a reason");
@@ -417,41 +327,25 @@ fn steps_and_seconds_are_limits_that_are_said() {
 fn results_go_to_whole_files_or_nowhere() {
     let folder = std::env::temp_dir().join(format!("lindstedt-files-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder");
-    let place = |name: &str| {
-        folder
-            .join(name)
-            .to_str()
-            .expect("a path in text")
-            .to_owned()
-    };
+    let place = |name: &str| folder.join(name).to_str().expect("a path in text").to_owned();
     let code = |arguments: &[&str]| run(arguments).status.code();
     let (result, picture) = (place("result.txt"), place("picture.svg"));
     assert_eq!(code(&["--output", &result, "--plot", &picture]), Some(0));
     let printed = run(&[]).stdout;
     assert_eq!(std::fs::read(&result).expect("a result"), printed);
-    assert!(
-        std::fs::read_to_string(&picture)
-            .expect("a picture")
-            .starts_with("<svg")
-    );
+    assert!(std::fs::read_to_string(&picture).expect("a picture").starts_with("<svg"));
     // Nothing else is left beside them.
     assert_eq!(std::fs::read_dir(&folder).expect("a folder").count(), 2);
 
     let problem = place("problem.toml");
     std::fs::write(&problem, "[run]\nduration = 5.0\n").expect("a file");
     assert_eq!(code(&[&problem, "--output", &problem]), Some(2));
-    assert_eq!(
-        std::fs::read_to_string(&problem).expect("as it was"),
-        "[run]\nduration = 5.0\n"
-    );
+    assert_eq!(std::fs::read_to_string(&problem).expect("as it was"), "[run]\nduration = 5.0\n");
     assert_eq!(code(&["--output", &picture, "--plot", &picture]), Some(2));
     assert_eq!(code(&["--plot", &place("picture.png")]), Some(2));
     assert_eq!(code(&["--plot", "-"]), Some(2));
     assert_eq!(code(&["--output", &place("nowhere/result.txt")]), Some(1));
-    assert_eq!(
-        code(&["--output", folder.to_str().expect("a path in text")]),
-        Some(1)
-    );
+    assert_eq!(code(&["--output", folder.to_str().expect("a path in text")]), Some(1));
     let drawn = run(&["--plot", "-", "--output", &result]);
     assert!(drawn.stdout.starts_with(b"<svg"));
     std::fs::remove_dir_all(folder).expect("the folder goes");
@@ -478,26 +372,16 @@ fn extreme_numbers_end_in_time() {
             1,
             "",
         ),
-        (
-            "[damping]\nzeta = 1e30\nalpha = 1e8",
-            0,
-            "At t = 50: x = -1.5, x' = 0\n",
-        ),
+        ("[damping]\nzeta = 1e30\nalpha = 1e8", 0, "At t = 50: x = -1.5, x' = 0\n"),
         ("[contact]\ngamma = 1e300\nmu = 1e300", 0, "Impacts: 10\n"),
         ("[pendulum]\nspeed = 1e300", 4, "no finite value"),
-        (
-            "[excitation]\nbeta = 1e300\nfrequency_ratio = 1.0",
-            4,
-            "no finite value",
-        ),
+        ("[excitation]\nbeta = 1e300\nfrequency_ratio = 1.0", 4, "no finite value"),
     ]
     .into_iter()
     .enumerate()
     {
-        let path = std::env::temp_dir().join(format!(
-            "lindstedt-extreme-{}-{number}.toml",
-            std::process::id()
-        ));
+        let path = std::env::temp_dir()
+            .join(format!("lindstedt-extreme-{}-{number}.toml", std::process::id()));
         std::fs::write(&path, text).expect("a file");
         let output = run(&[path.to_str().expect("a path in text"), "--quiet"]);
         let printed = String::from_utf8_lossy(&output.stdout).into_owned();
@@ -524,12 +408,7 @@ fn the_table_of_the_trajectory() {
         assert!(number(1) > 0.323 - 1e-12 || fields[3] == "free", "{line}");
     }
     assert!(last == 200.0 && contacts > 100);
-    assert_eq!(
-        output(&[&file, "--format", "csv", "--sample", "3"])
-            .lines()
-            .count(),
-        2
-    );
+    assert_eq!(output(&[&file, "--format", "csv", "--sample", "3"]).lines().count(), 2);
 }
 
 #[test]
@@ -544,13 +423,8 @@ fn a_row_of_the_trajectory_is_a_state_and_its_energy() {
             .lines()
             .skip(1)
             .map(|line| {
-                let fields = line
-                    .split(',')
-                    .enumerate()
-                    .filter(|(column, _)| *column != 3);
-                fields
-                    .map(|(_, field)| field.parse().expect("a number"))
-                    .collect()
+                let fields = line.split(',').enumerate().filter(|(column, _)| *column != 3);
+                fields.map(|(_, field)| field.parse().expect("a number")).collect()
             })
             .collect();
         for pair in rows.windows(2) {
@@ -576,10 +450,7 @@ fn a_row_of_the_trajectory_is_a_state_and_its_energy() {
             let left = side("left").map_or(0.0, |barrier| (barrier - x).max(0.0));
             let elastic = 0.4 * gamma * (right.powf(2.5) + left.powf(2.5));
             let expected = 0.5 * v * v + 1.0 - x.cos() + elastic;
-            assert!(
-                (energy - expected).abs() < 1e-9 * (1.0 + expected),
-                "{row:?}: {expected}"
-            );
+            assert!((energy - expected).abs() < 1e-9 * (1.0 + expected), "{row:?}: {expected}");
         }
     }
 }
@@ -607,16 +478,9 @@ fn a_row_of_a_sweep_sums_up_its_motion() {
         let single = json(&[file]);
         let impacts = single["impacts"].as_array().expect("a list");
         let float = |value: &Value| value.as_f64().expect("a number");
-        let largest = |key: &str| {
-            impacts
-                .iter()
-                .map(|impact| float(&impact[key]))
-                .fold(0.0, f64::max)
-        };
-        let lost: f64 = impacts
-            .iter()
-            .map(|impact| float(&impact["energy_lost"]))
-            .sum();
+        let largest =
+            |key: &str| impacts.iter().map(|impact| float(&impact[key])).fold(0.0, f64::max);
+        let lost: f64 = impacts.iter().map(|impact| float(&impact["energy_lost"])).sum();
         assert!(impacts.len() > 3 && lost > 0.1, "{} {lost}", impacts.len());
         let expected = [
             ("barrier", barrier),
@@ -631,12 +495,8 @@ fn a_row_of_a_sweep_sums_up_its_motion() {
         ];
         let entry = &document["rows"][row];
         let fields: Vec<&str> = rows(&table)[row + 1].split(',').collect();
-        let words: Vec<&str> = text
-            .lines()
-            .nth(row + 1)
-            .expect("a line")
-            .split_whitespace()
-            .collect();
+        let words: Vec<&str> =
+            text.lines().nth(row + 1).expect("a line").split_whitespace().collect();
         for (column, (key, value)) in expected.into_iter().enumerate() {
             let found = match key {
                 "barrier" => &entry["values"][0],
@@ -654,10 +514,7 @@ fn a_row_of_a_sweep_sums_up_its_motion() {
                 fields[place]
             );
             if let Some(word) = words.get(column).filter(|_| column < 6) {
-                assert!(
-                    same(word.parse().expect("a number"), 1e-5),
-                    "{key}: {word} {value}"
-                );
+                assert!(same(word.parse().expect("a number"), 1e-5), "{key}: {word} {value}");
             }
         }
     }
@@ -676,20 +533,14 @@ fn long_lists_are_cut_and_a_last_impact_may_be_open() {
     let sides = text.lines().filter(|line| line.contains(" right "));
     let numbers: Vec<usize> = sides
         .map(|line| {
-            line.split_whitespace()
-                .next()
-                .and_then(|word| word.parse().ok())
-                .expect("a number")
+            line.split_whitespace().next().and_then(|word| word.parse().ok()).expect("a number")
         })
         .collect();
     // The first of them, and the last.
     let last = numbers.len() - 1;
     assert!(impacts.len() > numbers.len() && numbers[..last].iter().copied().eq(1..=last));
     assert_eq!(numbers[last], impacts.len());
-    assert!(
-        text.contains(&format!("... {} more", impacts.len() - numbers.len())),
-        "{text}"
-    );
+    assert!(text.contains(&format!("... {} more", impacts.len() - numbers.len())), "{text}");
     assert_eq!(document["notes"].as_array().map(Vec::len), Some(0));
 
     let float = |value: &Value| value.as_f64().expect("a number");
@@ -699,16 +550,11 @@ fn long_lists_are_cut_and_a_last_impact_may_be_open() {
     assert_eq!(document["impacts"].as_array().map(Vec::len), Some(3));
     assert_eq!(document["impacts"][2]["exit_time"], Value::Null);
     let note = document["notes"][0].as_str().expect("a note");
-    assert!(
-        note.contains("the run ends in contact") && output(&[file]).contains(note),
-        "{note}"
-    );
+    assert!(note.contains("the run ends in contact") && output(&[file]).contains(note), "{note}");
 
     // A state beyond an early end is not known.
     std::fs::write(&path, "[run]\nduration = 1e4\nstep_limit = 500\n").expect("a file");
-    let output = run(&[
-        file, "--sample", "9000", "--sample", "1", "--format", "json",
-    ]);
+    let output = run(&[file, "--sample", "9000", "--sample", "1", "--format", "json"]);
     let document: Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(document["samples"][0]["x"], Value::Null);
     assert!(document["samples"][1]["x"].is_f64());
@@ -735,19 +581,11 @@ fn samples_and_final_state_agree_whatever_the_format() {
 #[test]
 fn a_sweep_prints_the_same_on_any_number_of_threads() {
     let file = example("damper");
-    let axes = [
-        "--sweep",
-        "zeta=0.01:0.05:9",
-        "--sweep",
-        "barrier=0.1:0.6:31",
-    ];
+    let axes = ["--sweep", "zeta=0.01:0.05:9", "--sweep", "barrier=0.1:0.6:31"];
     for format in ["text", "csv", "json"] {
         let on = |jobs: &str| {
-            let arguments = [
-                &[file.as_str(), "--format", format, "--jobs", jobs],
-                &axes[..],
-            ]
-            .concat();
+            let arguments =
+                [&[file.as_str(), "--format", format, "--jobs", jobs], &axes[..]].concat();
             output(&arguments)
         };
         let one = on("1");
@@ -759,10 +597,7 @@ fn a_sweep_prints_the_same_on_any_number_of_threads() {
     assert_eq!(table.len(), 1 + 9 * 31);
     // A row is the motion that its parameters give.
     let single = output(&[&file, "--format", "csv", "--sweep", "barrier=0.1:0.6:31"]);
-    assert_eq!(
-        table[1].split_once(',').map(|fields| fields.1),
-        Some(rows(&single)[1])
-    );
+    assert_eq!(table[1].split_once(',').map(|fields| fields.1), Some(rows(&single)[1]));
 }
 
 /// Three parameters, each with its own spacing: every combination, the last fastest, in all
@@ -800,19 +635,12 @@ fn a_sweep_of_many_parameters_names_every_column_and_its_unit() {
     });
     assert_eq!(starts, expected.concat());
     let document = json(&axes);
-    let spacings: Vec<&Value> = document["axes"]
-        .as_array()
-        .expect("axes")
-        .iter()
-        .map(|axis| &axis["spacing"])
-        .collect();
+    let spacings: Vec<&Value> =
+        document["axes"].as_array().expect("axes").iter().map(|axis| &axis["spacing"]).collect();
     assert_eq!(spacings, ["logarithmic", "linear", "list"]);
     assert_eq!(document["axes"][0]["values"], json!([1e4, 1e6, 1e8]));
     let columns = document["columns"].as_array().expect("columns");
-    let names: Vec<&str> = columns
-        .iter()
-        .filter_map(|column| column["name"].as_str())
-        .collect();
+    let names: Vec<&str> = columns.iter().filter_map(|column| column["name"].as_str()).collect();
     assert_eq!(names.join(","), rows[0]);
     // Every column is a value or a key of a row.
     for column in &columns[3..] {
@@ -822,22 +650,13 @@ fn a_sweep_of_many_parameters_names_every_column_and_its_unit() {
             !row[name].is_null() || !row["final_state"][name].is_null() || name == "rest_time",
             "{name}"
         );
-        assert!(
-            column["meaning"]
-                .as_str()
-                .is_some_and(|words| words.len() > 10)
-        );
+        assert!(column["meaning"].as_str().is_some_and(|words| words.len() > 10));
     }
     // In text, a block for each gamma, and columns that do not run together.
     let text = output(&axes);
     let blocks: Vec<&str> = text.split("\n\n").collect();
     assert_eq!(blocks.len(), 3, "{text}");
-    let words: Vec<&str> = text
-        .lines()
-        .next()
-        .expect("a header")
-        .split_whitespace()
-        .collect();
+    let words: Vec<&str> = text.lines().next().expect("a header").split_whitespace().collect();
     assert_eq!(words[..4], ["gamma", "frequency_ratio", "beta", "impacts"]);
 }
 
@@ -845,63 +664,33 @@ fn a_sweep_of_many_parameters_names_every_column_and_its_unit() {
 /// what there is to vary is listed.
 #[test]
 fn a_main_mass_is_swept_over_any_of_its_numbers() {
-    let file = concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/examples/primary/stick-slip.toml"
-    );
-    let axes = [
-        file,
-        "--sweep",
-        "barrier=0.1:0.2:2",
-        "--sweep",
-        "displacement=0.01,0.02",
-    ];
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/primary/stick-slip.toml");
+    let axes = [file, "--sweep", "barrier=0.1:0.2:2", "--sweep", "displacement=0.01,0.02"];
     let document = json(&axes);
     let swept = document["rows"].as_array().expect("rows");
     let values: Vec<&Value> = swept.iter().map(|row| &row["values"]).collect();
-    assert_eq!(
-        json!(values),
-        json!([[0.1, 0.01], [0.1, 0.02], [0.2, 0.01], [0.2, 0.02]])
-    );
+    assert_eq!(json!(values), json!([[0.1, 0.01], [0.1, 0.02], [0.2, 0.01], [0.2, 0.02]]));
     // The last of them is the file itself.
     let alone = json(&[file]);
     assert_eq!(swept[3]["rest_time"], alone["rest_time"]);
     assert_eq!(swept[3]["rest_locked"], alone["locked"]["rest_time"]);
-    assert_eq!(
-        swept[3]["all_impacts"],
-        json!(alone["impacts"].as_array().expect("impacts").len())
-    );
+    assert_eq!(swept[3]["all_impacts"], json!(alone["impacts"].as_array().expect("impacts").len()));
     let table = output(&[&axes[..], &["--format", "csv"]].concat());
-    assert!(
-        table.starts_with("# units: barrier rad, displacement m, "),
-        "{table}"
-    );
+    assert!(table.starts_with("# units: barrier rad, displacement m, "), "{table}");
     assert_eq!(table.lines().count(), 6);
     let text = output(&axes);
-    assert!(
-        text.contains("come to rest") && text.contains("barrier: the place"),
-        "{text}"
-    );
+    assert!(text.contains("come to rest") && text.contains("barrier: the place"), "{text}");
     for (sweep, said) in [
-        (
-            "gap=1:2:2",
-            "choose one of primary.mass, mass_ratio, stiffness, ",
-        ),
+        ("gap=1:2:2", "choose one of primary.mass, mass_ratio, stiffness, "),
         ("damping=1:2:2", "write primary.damping or contact.damping"),
         ("frequncy=1:2:2", "did you mean `frequency`?"),
         ("duration=1:2:2", "give it in [run]"),
         ("frequency=1:2:2", "[primary] force"),
-        (
-            "stiffness=-1:2:2",
-            "[primary] stiffness must be a positive number",
-        ),
+        ("stiffness=-1:2:2", "[primary] stiffness must be a positive number"),
     ] {
         let output = run(&[file, "--sweep", sweep]);
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(
-            output.stdout.is_empty() && message.contains(said),
-            "{sweep}: {message}"
-        );
+        assert!(output.stdout.is_empty() && message.contains(said), "{sweep}: {message}");
     }
     let output = run(&["x'' + k*x = 0", "--from", "x=1", "--sweep", "j=1:2:2"]);
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -911,10 +700,7 @@ fn a_main_mass_is_swept_over_any_of_its_numbers() {
 #[test]
 fn exit_codes_follow_the_verdict() {
     let file = example("paper");
-    for (arguments, code) in [
-        (vec!["--tolerance", "1e-8"], 0),
-        (vec!["--tolerance", "1e-14"], 3),
-    ] {
+    for (arguments, code) in [(vec!["--tolerance", "1e-8"], 0), (vec!["--tolerance", "1e-14"], 3)] {
         let output = run(&[&[file.as_str()], arguments.as_slice()].concat());
         assert_eq!(output.status.code(), Some(code), "{arguments:?}");
         assert!(!output.stdout.is_empty());
@@ -931,10 +717,7 @@ fn pictures_are_drawn_and_the_same_on_every_run() {
         (vec![], "Phase plane"),
         (vec!["--integrator", "both"], "Runge-Kutta"),
         (vec!["--sweep", "zeta=0:0.1:8"], "Impacts"),
-        (
-            vec!["--sweep", "zeta=0:0.1:5", "--sweep", "alpha=0:0.1:6"],
-            "Impacts",
-        ),
+        (vec!["--sweep", "zeta=0:0.1:5", "--sweep", "alpha=0:0.1:6"], "Impacts"),
     ] {
         let draw = |name: &str| {
             let path = folder.join(name);
@@ -943,10 +726,7 @@ fn pictures_are_drawn_and_the_same_on_every_run() {
             std::fs::read_to_string(path).expect("the picture was written")
         };
         let picture = draw("first.svg");
-        assert!(
-            picture.contains("<svg") && picture.contains(words),
-            "{arguments:?}"
-        );
+        assert!(picture.contains("<svg") && picture.contains(words), "{arguments:?}");
         assert_eq!(picture, draw("second.svg"));
     }
     std::fs::remove_dir_all(folder).expect("the folder goes");
@@ -968,16 +748,11 @@ fn output_of_help() -> String {
 #[test]
 fn the_examples_are_the_ones_the_readme_names() {
     let readme = include_str!("../../README.md");
-    let named: Vec<&str> = readme
-        .split_whitespace()
-        .filter(|word| word.starts_with("examples/simulate/"))
-        .collect();
+    let named: Vec<&str> =
+        readme.split_whitespace().filter(|word| word.starts_with("examples/simulate/")).collect();
     assert!(!named.is_empty());
     for name in named {
-        assert!(
-            Path::new(env!("CARGO_MANIFEST_DIR")).join(name).exists(),
-            "{name}"
-        );
+        assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join(name).exists(), "{name}");
     }
 }
 
@@ -1004,24 +779,10 @@ fn a_place_without_digits_is_refused() {
         &["simulate", &start],
         &["impact", &amplitude],
         &["materials", &amplitude],
-        &[
-            "simulate",
-            "x'' + sin(x) = 0",
-            "--from",
-            "x=1e17",
-            "--until",
-            "1",
-        ],
+        &["simulate", "x'' + sin(x) = 0", "--from", "x=1e17", "--until", "1"],
         &["derive", "x'' + x*(2 + sin(x)) = 0", "--at", "A=1e17"],
         &["compare", "x'' + x*(2 + cos(x)) = 0", "--at", "A=1e17"],
-        &[
-            "derive",
-            "x'' + x*(2 + cos(1e17*x)) = 0",
-            "--method",
-            "exact",
-            "--at",
-            "A=1",
-        ],
+        &["derive", "x'' + x*(2 + cos(1e17*x)) = 0", "--method", "exact", "--at", "A=1"],
     ];
     for arguments in refused {
         let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
@@ -1034,36 +795,12 @@ fn a_place_without_digits_is_refused() {
             (Some(1), 0),
             "{arguments:?}: {message}"
         );
-        assert!(
-            message.contains("no digits left"),
-            "{arguments:?}: {message}"
-        );
+        assert!(message.contains("no digits left"), "{arguments:?}: {message}");
     }
     let answered: [&[&str]; 3] = [
-        &[
-            "derive",
-            "x'' + x + sin(x) = 0",
-            "--method",
-            "exact",
-            "--at",
-            "A=1e15",
-        ],
-        &[
-            "derive",
-            "x'' + x^3 = 0",
-            "--method",
-            "exact",
-            "--at",
-            "A=1e30",
-        ],
-        &[
-            "simulate",
-            "x'' + exp(x) - 1 = 0",
-            "--from",
-            "x=1e-12",
-            "--until",
-            "1",
-        ],
+        &["derive", "x'' + x + sin(x) = 0", "--method", "exact", "--at", "A=1e15"],
+        &["derive", "x'' + x^3 = 0", "--method", "exact", "--at", "A=1e30"],
+        &["simulate", "x'' + exp(x) - 1 = 0", "--from", "x=1e-12", "--until", "1"],
     ];
     for arguments in answered {
         let output = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
@@ -1071,9 +808,6 @@ fn a_place_without_digits_is_refused() {
             .output()
             .expect("the program starts");
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(
-            !message.contains("no digits left"),
-            "{arguments:?}: {message}"
-        );
+        assert!(!message.contains("no digits left"), "{arguments:?}: {message}");
     }
 }

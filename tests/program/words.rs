@@ -4,10 +4,7 @@ use std::process::{Command, Output};
 
 fn run(arguments: &[&str], columns: Option<usize>) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lindstedt"));
-    command
-        .args(arguments)
-        .args(["--timeout", "3600"])
-        .env_remove("COLUMNS");
+    command.args(arguments).args(["--timeout", "3600"]).env_remove("COLUMNS");
     if let Some(columns) = columns {
         command.env("COLUMNS", columns.to_string());
     }
@@ -27,12 +24,7 @@ fn a_comparison_fits_its_terminal() {
         printed(&run(&arguments, None)),
         printed(&run(&arguments, Some(80))),
     );
-    let longest = |text: &str| {
-        text.lines()
-            .map(|line| line.chars().count())
-            .max()
-            .unwrap_or(0)
-    };
+    let longest = |text: &str| text.lines().map(|line| line.chars().count()).max().unwrap_or(0);
     assert!(longest(&wide) > 120 && !wide.contains("Formulas"));
     assert!(longest(&file) <= 120, "{file}");
     assert!(longest(&narrow) <= 80, "{narrow}");
@@ -60,36 +52,16 @@ fn mistakes_on_the_command_line_are_helped() {
             2,
             "`-1` is negative; an order is a whole number such as 2",
         ),
-        (
-            &["derive", "duffing", "--method", "Lindstedt"],
-            2,
-            "did you mean `lindstedt-poincare`?",
-        ),
+        (&["derive", "duffing", "--method", "Lindstedt"], 2, "did you mean `lindstedt-poincare`?"),
         (
             &["derive", "duffing", "--method", "homotopy"],
             2,
             "did you mean `homotopy-perturbation` or `homotopy-analysis`?",
         ),
-        (
-            &["derive", "duffing", "--method", "max_min"],
-            2,
-            "did you mean `max-min`?",
-        ),
-        (
-            &["derive", "duffing", "--at", "A=1,eps=1"],
-            2,
-            "help: --at A=1 --at eps=1",
-        ),
-        (
-            &["derive", "duffing", "--taylor", "-3"],
-            2,
-            "expected a whole number, 1 or more",
-        ),
-        (
-            &["compare", "duffing", "--tolerance", "-1"],
-            2,
-            "expected a positive number",
-        ),
+        (&["derive", "duffing", "--method", "max_min"], 2, "did you mean `max-min`?"),
+        (&["derive", "duffing", "--at", "A=1,eps=1"], 2, "help: --at A=1 --at eps=1"),
+        (&["derive", "duffing", "--taylor", "-3"], 2, "expected a whole number, 1 or more"),
+        (&["compare", "duffing", "--tolerance", "-1"], 2, "expected a positive number"),
         (&["derive", "dufing"], 1, "did you mean `duffing`?"),
     ] {
         let output = run(arguments, None);
@@ -120,41 +92,25 @@ fn a_large_file_is_refused_at_once() {
 #[test]
 fn a_failed_impact_says_why() {
     let text = printed(&run(&["impact"], None));
-    let why: Vec<&str> = text
-        .lines()
-        .skip_while(|line| !line.contains("verdict"))
-        .skip(1)
-        .collect();
+    let why: Vec<&str> =
+        text.lines().skip_while(|line| !line.contains("verdict")).skip(1).collect();
     assert!(text.contains("paper fail, energy fail"));
     assert!(
-        why.iter()
-            .any(|line| line.contains("paper") && line.contains("speed -6.26 %")),
+        why.iter().any(|line| line.contains("paper") && line.contains("speed -6.26 %")),
         "{text}"
     );
     assert!(
-        why.iter()
-            .any(|line| line.contains("energy") && line.contains("duration +1.64 %")),
+        why.iter().any(|line| line.contains("energy") && line.contains("duration +1.64 %")),
         "{text}"
     );
-    assert!(
-        !why.iter()
-            .any(|line| line.contains("energy") && line.contains(" speed ")),
-        "{text}"
-    );
+    assert!(!why.iter().any(|line| line.contains("energy") && line.contains(" speed ")), "{text}");
 }
 
 /// One row beyond the tolerance fails a table; where all hold, it succeeds.
 #[test]
 fn a_table_fails_with_its_worst_row() {
     for (tolerance, code) in [("0.5", 0), ("1e-3", 3)] {
-        let arguments = [
-            "compare",
-            "x'' + x + x^3 = 0",
-            "--at",
-            "A=1",
-            "--tolerance",
-            tolerance,
-        ];
+        let arguments = ["compare", "x'' + x + x^3 = 0", "--at", "A=1", "--tolerance", tolerance];
         let output = run(&arguments, None);
         assert_eq!(output.status.code(), Some(code), "{}", printed(&output));
         assert_eq!(printed(&output).contains(" fail "), code == 3);
@@ -172,14 +128,7 @@ fn an_overflow_is_called_one() {
         ("x'' + sinh(x) = 0", "1000", "1e3", "sinh(x)"),
     ] {
         let output = run(
-            &[
-                "derive",
-                equation,
-                "--method",
-                "exact",
-                "--at",
-                &format!("A={amplitude}"),
-            ],
+            &["derive", equation, "--method", "exact", "--at", &format!("A={amplitude}")],
             None,
         );
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -188,34 +137,13 @@ fn an_overflow_is_called_one() {
         );
         assert!(message.contains(&expected), "{equation}: {message}");
     }
-    let table = printed(&run(
-        &["compare", "x'' + x + x^99 = 0", "--at", "A=1e30"],
-        Some(400),
-    ));
-    assert!(
-        table.contains("not known: the force overflows at x = 1e30: `x^99`"),
-        "{table}"
-    );
-    assert!(
-        table.contains("w0 is beyond the range of double precision"),
-        "{table}"
-    );
-    assert!(
-        !table.contains("the force ends") && !table.contains("pole"),
-        "{table}"
-    );
+    let table = printed(&run(&["compare", "x'' + x + x^99 = 0", "--at", "A=1e30"], Some(400)));
+    assert!(table.contains("not known: the force overflows at x = 1e30: `x^99`"), "{table}");
+    assert!(table.contains("w0 is beyond the range of double precision"), "{table}");
+    assert!(!table.contains("the force ends") && !table.contains("pole"), "{table}");
     // What escapes is not too stiff.
-    let soft = [
-        "compare",
-        "x'' - mu*(1 - x^2)*x' + x + eps*x^3 = 0",
-        "--at",
-        "mu=0.1",
-        "--at",
-        "eps=-5",
-    ];
+    let soft =
+        ["compare", "x'' - mu*(1 - x^2)*x' + x + eps*x^3 = 0", "--at", "mu=0.1", "--at", "eps=-5"];
     let table = printed(&run(&soft, Some(400)));
-    assert!(
-        table.contains("the motion escapes") && !table.contains("stiff"),
-        "{table}"
-    );
+    assert!(table.contains("the motion escapes") && !table.contains("stiff"), "{table}");
 }

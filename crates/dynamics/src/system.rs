@@ -164,19 +164,12 @@ pub struct Event {
 impl Event {
     /// An event that is only listed.
     pub fn record(expression: Expr) -> Self {
-        Self {
-            expression,
-            stops: false,
-            rising: None,
-        }
+        Self { expression, stops: false, rising: None }
     }
 
     /// An event that ends the path.
     pub fn stop(expression: Expr) -> Self {
-        Self {
-            stops: true,
-            ..Self::record(expression)
-        }
+        Self { stops: true, ..Self::record(expression) }
     }
 
     /// Counts only where the expression grows through zero.
@@ -194,19 +187,13 @@ impl Event {
     /// ```
     #[must_use]
     pub fn rising(self) -> Self {
-        Self {
-            rising: Some(true),
-            ..self
-        }
+        Self { rising: Some(true), ..self }
     }
 
     /// Counts only where the expression falls through zero.
     #[must_use]
     pub fn falling(self) -> Self {
-        Self {
-            rising: Some(false),
-            ..self
-        }
+        Self { rising: Some(false), ..self }
     }
 
     /// Whether a crossing in this direction counts.
@@ -245,6 +232,9 @@ pub enum End {
     /// Somebody asked for it.
     Interrupted,
 }
+
+/// The relative tolerances of a step that can be asked for.
+const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-16..=0.1;
 
 /// No state is followed farther: doubles end at 1.8e308, and sums and products within a step need
 /// room.
@@ -408,10 +398,7 @@ impl Solver {
         };
         Some(Self {
             expansion: Some(Ok(expansion.with_numbers(numbers)?)),
-            system: System {
-                numbers: numbers.clone(),
-                ..self.system.clone()
-            },
+            system: System { numbers: numbers.clone(), ..self.system.clone() },
             events: self.events.clone(),
             options: self.options,
         })
@@ -420,10 +407,7 @@ impl Solver {
     /// Its equations with other critical times.
     #[must_use]
     pub fn with_critical_times(self, times: &[f64]) -> Self {
-        Self {
-            system: self.system.with_critical_times(times),
-            ..self
-        }
+        Self { system: self.system.with_critical_times(times), ..self }
     }
 
     /// As [`System::solve`].
@@ -434,14 +418,9 @@ impl Solver {
         self.system.check(start, values, end, &self.options)?;
         let (system, events, options) = (&self.system, &self.events, &self.options);
         match &self.expansion {
-            Some(expansion) => taylor::follow(
-                system,
-                [start, end],
-                values,
-                events,
-                options,
-                expansion.clone()?,
-            ),
+            Some(expansion) => {
+                taylor::follow(system, [start, end], values, events, options, expansion.clone()?)
+            }
             None => runge_kutta::follow(system, [start, end], values, events, options),
         }
     }
@@ -454,18 +433,10 @@ impl System {
     /// # Errors
     /// [`SystemError`].
     pub fn parse(equations: &[(&str, &str)], numbers: &[(&str, f64)]) -> Result<Self, SystemError> {
-        let states: Vec<Symbol> = equations
-            .iter()
-            .map(|(state, _)| Symbol::new(state))
-            .collect();
-        let right: Result<Vec<Expr>, ParseError> = equations
-            .iter()
-            .map(|(_, right)| parse_expression(right))
-            .collect();
-        let numbers = numbers
-            .iter()
-            .map(|(name, value)| (Symbol::new(name), *value))
-            .collect();
+        let states: Vec<Symbol> = equations.iter().map(|(state, _)| Symbol::new(state)).collect();
+        let right: Result<Vec<Expr>, ParseError> =
+            equations.iter().map(|(_, right)| parse_expression(right)).collect();
+        let numbers = numbers.iter().map(|(name, value)| (Symbol::new(name), *value)).collect();
         Self::new(&states, "t".into(), &right?, &numbers)
     }
 
@@ -480,10 +451,7 @@ impl System {
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, SystemError> {
         if state.len() != right.len() {
-            return Err(SystemError::Length {
-                states: state.len(),
-                right_sides: right.len(),
-            });
+            return Err(SystemError::Length { states: state.len(), right_sides: right.len() });
         }
         if let Some(part) = right.iter().find_map(jump_in_corner) {
             return Err(SystemError::JumpInCorner(part));
@@ -505,11 +473,8 @@ impl System {
     /// number is left out.
     #[must_use]
     pub fn with_critical_times(self, times: &[f64]) -> Self {
-        let mut critical: Vec<f64> = times
-            .iter()
-            .copied()
-            .filter(|time| time.is_finite())
-            .collect();
+        let mut critical: Vec<f64> =
+            times.iter().copied().filter(|time| time.is_finite()).collect();
         critical.sort_by(f64::total_cmp);
         Self { critical, ..self }
     }
@@ -558,16 +523,15 @@ impl System {
 
     /// This system ready to be followed many times with these events.
     pub fn solver(self, events: &[Event], options: &Options) -> Solver {
+        // A tolerance out of range has no order; the runs refuse it.
+        let has_order = TOLERANCES.contains(&options.tolerance);
         let expansion = match options.integrator {
-            Integrator::Taylor => Some(taylor::expansion(&self, events, options.tolerance)),
-            Integrator::RungeKutta => None,
+            Integrator::Taylor if has_order => {
+                Some(taylor::expansion(&self, events, options.tolerance))
+            }
+            Integrator::Taylor | Integrator::RungeKutta => None,
         };
-        Solver {
-            system: self,
-            events: events.to_vec(),
-            options: *options,
-            expansion,
-        }
+        Solver { system: self, events: events.to_vec(), options: *options, expansion }
     }
 
     /// Whether it can be followed from these values between these times.
@@ -580,21 +544,14 @@ impl System {
     ) -> Result<(), SystemError> {
         let size = self.state.len();
         if values.len() != size {
-            return Err(SystemError::Length {
-                states: size,
-                right_sides: values.len(),
-            });
+            return Err(SystemError::Length { states: size, right_sides: values.len() });
         }
         let finite =
             start.is_finite() && end.is_finite() && values.iter().all(|value| value.is_finite());
-        if !finite || end < start || !(1e-16..=0.1).contains(&options.tolerance) {
+        if !finite || end < start || !TOLERANCES.contains(&options.tolerance) {
             return Err(SystemError::Bounds);
         }
-        let large = self
-            .state
-            .iter()
-            .zip(values)
-            .find(|(_, value)| value.abs() > LARGEST);
+        let large = self.state.iter().zip(values).find(|(_, value)| value.abs() > LARGEST);
         if let Some((state, value)) = large {
             return Err(SystemError::Large(*state, *value));
         }

@@ -56,19 +56,13 @@ pub fn rounded_to(value: f64, digits: usize) -> Rational {
 /// The fraction of a decimal in the notation of `{:e}`.
 fn parsed(text: &str) -> Rational {
     let (mantissa, exponent) = text.split_once('e').unwrap_or((text, "0"));
-    let decimals = mantissa
-        .split_once('.')
-        .map_or(0, |(_, decimals)| decimals.len());
+    let decimals = mantissa.split_once('.').map_or(0, |(_, decimals)| decimals.len());
     let digits: Integer = mantissa.replace('.', "").parse().unwrap_or_default();
     let power = exponent.parse::<i32>().unwrap_or(0) - decimals as i32;
     let ten = Rational::from_integer(10.into());
     let scale = num_traits::pow(ten, power.unsigned_abs() as usize);
     let digits = Rational::from_integer(digits);
-    if power < 0 {
-        digits / scale
-    } else {
-        digits * scale
-    }
+    if power < 0 { digits / scale } else { digits * scale }
 }
 
 /// So many significant digits of a fraction, as a fraction, however large or small it is.
@@ -144,16 +138,14 @@ pub fn not_above_typed(value: f64) -> f64 {
 /// digits.
 pub fn exact_decimal(value: &Rational) -> Option<String> {
     const MOST: usize = 40;
-    (1..=MOST)
-        .find(|digits| neighbours(value, *digits)[0] == *value)
-        .map(|digits| {
-            let (mantissa, power) = scientific(value, digits);
-            let exponent = power + digits as i32 - 1;
-            match (-4..15).contains(&exponent) {
-                true => fixed(value, usize::try_from(-power).unwrap_or(0)),
-                false => in_powers(value, &mantissa, power),
-            }
-        })
+    (1..=MOST).find(|digits| neighbours(value, *digits)[0] == *value).map(|digits| {
+        let (mantissa, power) = scientific(value, digits);
+        let exponent = power + digits as i32 - 1;
+        match (-4..15).contains(&exponent) {
+            true => fixed(value, usize::try_from(-power).unwrap_or(0)),
+            false => in_powers(value, &mantissa, power),
+        }
+    })
 }
 
 /// A fraction with so many decimals at most, without zeros at the end; of what is very large or
@@ -182,10 +174,7 @@ fn has_plain_decimals(value: &Rational) -> bool {
 
 fn fixed(value: &Rational, decimals: usize) -> String {
     let unit = Integer::from(10).pow(decimals as u32);
-    let digits = (value.abs() * Rational::from_integer(unit))
-        .round()
-        .to_integer()
-        .to_string();
+    let digits = (value.abs() * Rational::from_integer(unit)).round().to_integer().to_string();
     let digits = format!("{digits:0>width$}", width = decimals + 1);
     let (whole, fraction) = digits.split_at(digits.len() - decimals);
     let fraction = fraction.trim_end_matches('0');
@@ -253,21 +242,14 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
         (whole, fraction) => format!("{whole}.{fraction}"),
     };
     let text = match exponent {
-        -4..0 => format!(
-            "0.{}{digits}",
-            "0".repeat(exponent.unsigned_abs() as usize - 1)
-        ),
+        -4..0 => format!("0.{}{digits}", "0".repeat(exponent.unsigned_abs() as usize - 1)),
         0.. if decimals >= 0 && (exponent as usize) < WRITTEN_OUT => {
             with_point(&digits, exponent as usize + 1)
         }
         _ => format!("{}e{exponent}", with_point(&digits, 1)),
     };
     let fraction = value.abs().to_string().len();
-    let longest = if value.is_integer() {
-        WRITTEN_OUT
-    } else {
-        SHORT
-    };
+    let longest = if value.is_integer() { WRITTEN_OUT } else { SHORT };
     let sign = if value.is_negative() { "-" } else { "" };
     (fraction > longest && text.len() < fraction).then(|| format!("{sign}{text}"))
 }
@@ -336,10 +318,7 @@ mod tests {
         }
         assert_eq!(rounded_fraction(&Rational::zero(), 15), Rational::zero());
         assert_eq!(significant_fraction(&third, 6), "0.333333");
-        assert_eq!(
-            significant_fraction(&(-&third * ten(500)), 6),
-            "-3.33333e499"
-        );
+        assert_eq!(significant_fraction(&(-&third * ten(500)), 6), "-3.33333e499");
         assert_eq!(significant_fraction(&ten(-400), 6), "1e-400");
         let long = Rational::new(10_i64.pow(17).into(), (3 * 10_i64.pow(16)).into());
         assert_eq!(plain_decimal(&-long, 20), "-3.33333333333333333333");

@@ -12,9 +12,7 @@ pub fn each<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec
     let results: Vec<Mutex<Option<T>>> = items.iter().map(|_| Mutex::new(None)).collect();
     run(items.len(), &|number| {
         let result = work(&items[number]);
-        *results[number]
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner) = Some(result);
+        *results[number].lock().unwrap_or_else(PoisonError::into_inner) = Some(result);
     });
     let results = results.into_iter();
     results

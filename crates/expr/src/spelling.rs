@@ -23,9 +23,7 @@ pub fn nearest<'a>(typed: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
 /// A text from a file as it may be shown: what would steer a terminal, or turn the order of the
 /// letters, stands as its code, `\u{1b}`. Line ends and tabs stay.
 pub fn printable(text: &str) -> String {
-    escaped(text, |letter| {
-        !matches!(letter, '\n' | '\t') && is_invisible(letter)
-    })
+    escaped(text, |letter| !matches!(letter, '\n' | '\t') && is_invisible(letter))
 }
 
 /// A text from a file in one line, line ends and tabs as codes too.
@@ -57,10 +55,7 @@ mod tests {
 
     #[test]
     fn finds_what_was_meant_and_nothing_far_fetched() {
-        assert_eq!(
-            nearest("bariers", ["amplitude", "barrier"]),
-            Some("barrier")
-        );
+        assert_eq!(nearest("bariers", ["amplitude", "barrier"]), Some("barrier"));
         assert_eq!(nearest("velocity", ["amplitude", "barrier"]), None);
     }
 }

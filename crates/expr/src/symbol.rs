@@ -84,11 +84,7 @@ impl Symbol {
     /// The symbol of another name that is apart where this one is.
     fn with_name(self, name: &str) -> Self {
         let symbol = Self::new(name);
-        if self.is_apart() {
-            symbol.apart()
-        } else {
-            symbol
-        }
+        if self.is_apart() { symbol.apart() } else { symbol }
     }
 
     /// The time derivative of a coordinate: one more prime.
@@ -103,9 +99,7 @@ impl Symbol {
 
     /// Whether the name is that of a Greek letter, with an index or without.
     pub fn is_greek(self) -> bool {
-        let stem = self
-            .name()
-            .trim_end_matches(|letter: char| letter.is_ascii_digit());
+        let stem = self.name().trim_end_matches(|letter: char| letter.is_ascii_digit());
         GREEK.contains(&stem.trim_end_matches('_'))
     }
 
@@ -168,11 +162,7 @@ pub fn fresh_stem(wanted: &str, taken: &[Symbol]) -> String {
 /// ```
 pub fn phase_beside(taken: &[Symbol]) -> Symbol {
     let theta = Symbol::new("theta");
-    if taken.contains(&theta) {
-        fresh("phi", taken)
-    } else {
-        theta
-    }
+    if taken.contains(&theta) { fresh("phi", taken) } else { theta }
 }
 
 impl fmt::Display for Symbol {

@@ -63,17 +63,10 @@ impl Values {
     /// A value with symbols in it, one that is not finite, or a second value for the same name.
     pub fn insert(&mut self, name: Symbol, value: Expr) -> Result<(), ValueError> {
         if let Some(symbol) = value.symbols().into_iter().next() {
-            return Err(ValueError::NotANumber {
-                name,
-                value: value.to_string(),
-                symbol,
-            });
+            return Err(ValueError::NotANumber { name, value: value.to_string(), symbol });
         }
         if value.evaluate(&BTreeMap::new()).is_err() {
-            return Err(ValueError::NotFinite {
-                name,
-                value: value.to_string(),
-            });
+            return Err(ValueError::NotFinite { name, value: value.to_string() });
         }
         match self.0.insert(name, value) {
             None => Ok(()),
@@ -95,19 +88,13 @@ impl Values {
     /// The value of a symbol as a floating-point number.
     pub fn get(&self, name: Symbol) -> Option<f64> {
         let value = self.0.get(&name)?;
-        value
-            .as_number()
-            .map(to_f64)
-            .or_else(|| value.evaluate(&BTreeMap::new()).ok())
+        value.as_number().map(to_f64).or_else(|| value.evaluate(&BTreeMap::new()).ok())
     }
 
     /// The values of `names`, and the others.
     pub fn split(&self, names: &[Symbol]) -> (BTreeMap<Symbol, Expr>, Self) {
-        let (those, others) = self
-            .0
-            .clone()
-            .into_iter()
-            .partition(|(name, _)| names.contains(name));
+        let (those, others) =
+            self.0.clone().into_iter().partition(|(name, _)| names.contains(name));
         (those, Self(others))
     }
 
@@ -130,17 +117,11 @@ impl FromStr for Values {
 
     fn from_str(text: &str) -> Result<Self, ValueError> {
         let mut values = Self::default();
-        for part in text
-            .split(',')
-            .map(str::trim)
-            .filter(|part| !part.is_empty())
-        {
+        for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
             let form = || ValueError::Form(part.to_owned());
             let (name, value) = part.split_once('=').ok_or_else(form)?;
-            let name = parse_expression(name)
-                .ok()
-                .and_then(|name| name.as_symbol())
-                .ok_or_else(form)?;
+            let name =
+                parse_expression(name).ok().and_then(|name| name.as_symbol()).ok_or_else(form)?;
             values.insert(name, parse_expression(value).map_err(|_| form())?)?;
         }
         Ok(values)

@@ -45,18 +45,12 @@ pub struct Counter {
 impl Counter {
     /// Nothing is known yet.
     pub const fn new() -> Self {
-        Self {
-            done: AtomicU64::new(0),
-            all: AtomicU64::new(0),
-        }
+        Self { done: AtomicU64::new(0), all: AtomicU64::new(0) }
     }
 
     /// How many parts are done, of how many; of none before the work has begun.
     pub fn read(&self) -> (u64, u64) {
-        (
-            self.done.load(Ordering::Relaxed),
-            self.all.load(Ordering::Relaxed),
-        )
+        (self.done.load(Ordering::Relaxed), self.all.load(Ordering::Relaxed))
     }
 }
 

@@ -36,10 +36,7 @@ pub struct Step {
 impl Step {
     /// What drives `y_n` beside the secular term: `y_n'' + y_n`.
     pub fn right_side(&self) -> FourierSeries<Polynomials> {
-        self.displacement
-            .derivative()
-            .derivative()
-            .sum(&self.displacement)
+        self.displacement.derivative().derivative().sum(&self.displacement)
     }
 }
 
@@ -132,18 +129,12 @@ pub enum Formula {
 impl Line {
     /// Words alone.
     pub fn words(words: impl Into<String>) -> Self {
-        Self {
-            words: words.into(),
-            equal: vec![],
-        }
+        Self { words: words.into(), equal: vec![] }
     }
 
     /// Formulas that are equal.
     pub fn equal(formulas: impl IntoIterator<Item = Formula>) -> Self {
-        Self {
-            words: String::new(),
-            equal: formulas.into_iter().collect(),
-        }
+        Self { words: String::new(), equal: formulas.into_iter().collect() }
     }
 
     /// An equation between two expressions.
@@ -157,11 +148,7 @@ impl Line {
     pub fn with_numbers(&self, change: &dyn Fn(&Rational) -> Rational) -> Self {
         Self {
             words: self.words.clone(),
-            equal: self
-                .equal
-                .iter()
-                .map(|formula| formula.with_numbers(change))
-                .collect(),
+            equal: self.equal.iter().map(|formula| formula.with_numbers(change)).collect(),
         }
     }
 
@@ -179,10 +166,7 @@ impl Line {
 
     /// The same line with words in front of it.
     pub fn because(self, words: impl Into<String>) -> Self {
-        Self {
-            words: words.into(),
-            ..self
-        }
+        Self { words: words.into(), ..self }
     }
 
     /// The names in its formulas.
@@ -194,9 +178,7 @@ impl Line {
 impl Formula {
     fn with_numbers(&self, change: &dyn Fn(&Rational) -> Rational) -> Self {
         let changed = |expression: &Expr| {
-            expression
-                .with_numbers(change)
-                .unwrap_or_else(|_| expression.clone())
+            expression.with_numbers(change).unwrap_or_else(|_| expression.clone())
         };
         match self {
             Self::Expression(expression) => Self::Expression(changed(expression)),
@@ -204,17 +186,10 @@ impl Formula {
                 series: series.map(POLYNOMIALS, |coefficient, _| coefficient.map(change)),
                 phase: *phase,
             },
-            Self::Oscillator { of, square } => Self::Oscillator {
-                of: *of,
-                square: changed(square),
-            },
-            Self::Integral {
-                factor,
-                from,
-                to,
-                integrand,
-                variable,
-            } => Self::Integral {
+            Self::Oscillator { of, square } => {
+                Self::Oscillator { of: *of, square: changed(square) }
+            }
+            Self::Integral { factor, from, to, integrand, variable } => Self::Integral {
                 factor: changed(factor),
                 from: changed(from),
                 to: changed(to),
@@ -224,11 +199,9 @@ impl Formula {
             Self::OverRoot(numerator, inside) => {
                 Self::OverRoot(changed(numerator), Box::new(inside.with_numbers(change)))
             }
-            Self::Slope { factor, of, by } => Self::Slope {
-                factor: changed(factor),
-                of: *of,
-                by: *by,
-            },
+            Self::Slope { factor, of, by } => {
+                Self::Slope { factor: changed(factor), of: *of, by: *by }
+            }
             Self::AtZero { .. } => self.clone(),
         }
     }
@@ -242,21 +215,13 @@ impl Formula {
             }
             Self::Oscillator { of, square } => square.symbols().into_iter().chain([*of]).collect(),
             Self::AtZero { of, .. } => [*of].into(),
-            Self::Integral {
-                factor,
-                from,
-                to,
-                integrand,
-                variable,
-            } => {
+            Self::Integral { factor, from, to, integrand, variable } => {
                 let ends = [factor, from, to].into_iter().flat_map(Expr::symbols);
                 ends.chain(integrand.symbols()).chain([*variable]).collect()
             }
-            Self::OverRoot(numerator, inside) => numerator
-                .symbols()
-                .into_iter()
-                .chain(inside.symbols())
-                .collect(),
+            Self::OverRoot(numerator, inside) => {
+                numerator.symbols().into_iter().chain(inside.symbols()).collect()
+            }
             Self::Slope { factor, of, by } => {
                 factor.symbols().into_iter().chain([*of, *by]).collect()
             }
@@ -297,10 +262,7 @@ impl From<&Polynomial> for Formula {
 
 impl From<FourierSeries<Polynomials>> for Formula {
     fn from(series: FourierSeries<Polynomials>) -> Self {
-        Self::Waves {
-            series,
-            phase: Symbol::new("theta"),
-        }
+        Self::Waves { series, phase: Symbol::new("theta") }
     }
 }
 
@@ -343,13 +305,7 @@ impl fmt::Display for Formula {
             Self::AtZero { of, derivatives } => {
                 write!(formatter, "{of}{}(0)", "'".repeat(*derivatives))
             }
-            Self::Integral {
-                factor,
-                from,
-                to,
-                integrand,
-                variable,
-            } => {
+            Self::Integral { factor, from, to, integrand, variable } => {
                 let end = |end: &Expr| match end.symbols().is_empty() && end.terms().len() < 2
                     || end.as_symbol().is_some()
                 {

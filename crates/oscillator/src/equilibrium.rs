@@ -102,11 +102,8 @@ pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, 
         return Ok(Centred::at_origin(oscillator));
     };
     // What drives the motion does not decide where it swings.
-    let (driving, quiet): (Vec<Expr>, Vec<Expr>) = expanded
-        .terms()
-        .iter()
-        .cloned()
-        .partition(|term| term.contains(t));
+    let (driving, quiet): (Vec<Expr>, Vec<Expr>) =
+        expanded.terms().iter().cloned().partition(|term| term.contains(t));
     let mut free = oscillator.clone();
     free.force = Expr::sum(quiet);
     if !free.force.contains(oscillator.coordinate) {
@@ -128,10 +125,7 @@ pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, 
 fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, OscillatorError> {
     let position = oscillator.coordinate;
     // Where the force has no value at rest the methods refuse it.
-    let Ok(still) = oscillator
-        .force
-        .substitute(oscillator.velocity(), &Expr::zero())
-    else {
+    let Ok(still) = oscillator.force.substitute(oscillator.velocity(), &Expr::zero()) else {
         return Ok(Centred::at_origin(oscillator));
     };
     if let Some(asked) = &oscillator.about {
@@ -189,11 +183,9 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
         stable.retain(|found| pull.is_none() || found.position.abs() > 1e-100);
         let nearest = stable.iter().find(|found| found.reachable);
         return match (nearest, stable.is_empty()) {
-            (Some(nearest), _) => seen_from(
-                oscillator,
-                &force.exact_or_rounded(nearest.position),
-                degree,
-            ),
+            (Some(nearest), _) => {
+                seen_from(oscillator, &force.exact_or_rounded(nearest.position), degree)
+            }
             (None, true) => Err(no_equilibrium()),
             (None, false) => Err(OscillatorError::BeyondPole {
                 force: force.at_rest(&at_zero),
@@ -203,19 +195,14 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
         };
     }
     if let Some(sides) = rests_beside_corners(&still, position)? {
-        return Ok(Centred {
-            sides,
-            ..Centred::at_origin(oscillator)
-        });
+        return Ok(Centred { sides, ..Centred::at_origin(oscillator) });
     }
     if !still.contains(position) {
         return Err(OscillatorError::NoEquilibrium(force.at_rest(&at_zero)));
     }
     match force.stable_closed_form() {
         Some(found) => seen_from(oscillator, &found, degree),
-        None => Err(OscillatorError::SymbolicEquilibrium(
-            force.at_rest(&at_zero),
-        )),
+        None => Err(OscillatorError::SymbolicEquilibrium(force.at_rest(&at_zero))),
     }
 }
 
@@ -249,11 +236,7 @@ pub fn with_numbers_where_needed(
         Err(error) => return Err(error),
         Ok(centred) => Some(centred),
     };
-    if !oscillator
-        .parameters
-        .iter()
-        .all(|name| numbers.contains_key(name))
-    {
+    if !oscillator.parameters.iter().all(|name| numbers.contains_key(name)) {
         return Ok(None);
     }
     let numerical = oscillator.with_values(numbers)?;
@@ -276,13 +259,10 @@ pub fn with_numbers_where_needed(
             value.is_ok_and(|value| value > 0.0)
         })
     };
-    let same = in_symbols
-        .filter(beside)
-        .filter(hilltop)
-        .is_some_and(|in_symbols| {
-            let (symbolic, number) = (place(&in_symbols), place(&in_numbers));
-            matches!((symbolic, number), (Some(a), Some(b)) if (a - b).abs() <= 1e-9 * b.abs())
-        });
+    let same = in_symbols.filter(beside).filter(hilltop).is_some_and(|in_symbols| {
+        let (symbolic, number) = (place(&in_symbols), place(&in_numbers));
+        matches!((symbolic, number), (Some(a), Some(b)) if (a - b).abs() <= 1e-9 * b.abs())
+    });
     Ok((!same).then_some(numerical))
 }
 
@@ -353,30 +333,20 @@ fn about_zero_of_force(
     if !stable && cross_well.is_none() {
         return Ok(None);
     }
-    Ok(Some(Centred {
-        cross_well,
-        ..seen_from(oscillator, &Place::Exact(place.clone()), degree)?
-    }))
+    Ok(Some(Centred { cross_well, ..seen_from(oscillator, &Place::Exact(place.clone()), degree)? }))
 }
 
 /// The refusal of an equilibrium that was asked for because it is no stable one.
 pub fn no_bottom(oscillator: &Oscillator) -> OscillatorError {
     let asked = oscillator.about.clone().unwrap_or_else(Expr::zero);
     let stable = Force::new(&oscillator.force, oscillator.coordinate).stable_equilibria();
-    OscillatorError::NoSuchEquilibrium {
-        coordinate: oscillator.coordinate,
-        asked,
-        stable,
-    }
+    OscillatorError::NoSuchEquilibrium { coordinate: oscillator.coordinate, asked, stable }
 }
 
 /// That `x = 0` is unstable, where the stable equilibria have letters in them: what the numbers put
 /// in for these decide. `None` where there are none.
 pub(crate) fn stable_elsewhere(oscillator: &Oscillator) -> Option<OscillatorError> {
-    let still = oscillator
-        .force
-        .substitute(oscillator.velocity(), &Expr::zero())
-        .ok()?;
+    let still = oscillator.force.substitute(oscillator.velocity(), &Expr::zero()).ok()?;
     if still.contains(Symbol::new("t")) {
         return None;
     }
@@ -454,9 +424,7 @@ fn seen_from(
         .force
         .substitute(oscillator.velocity(), &Expr::zero())?
         .substitute(coordinate, &written)?;
-    let force = oscillator
-        .force
-        .substitute(coordinate, &(Expr::from(coordinate) + &written))?;
+    let force = oscillator.force.substitute(coordinate, &(Expr::from(coordinate) + &written))?;
     centred.oscillator.force = force - at_rest;
     centred.written = written;
     centred.definition = Some(Definition { symbol, meaning });
@@ -484,25 +452,18 @@ fn rounded_force(
         constants.insert(symbol, constant.clone());
         Some(symbol)
     };
-    let moved = oscillator.force.substitute(
-        position,
-        &(Expr::from(position) + Expr::number(centre.clone())),
-    )?;
+    let moved = oscillator
+        .force
+        .substitute(position, &(Expr::from(position) + Expr::number(centre.clone())))?;
     let polynomial = match moved.to_polynomial(&mut name)? {
         Some(polynomial)
-            if polynomial
-                .exponent_range(position)
-                .is_none_or(|range| range.0 >= 0) =>
+            if polynomial.exponent_range(position).is_none_or(|range| range.0 >= 0) =>
         {
             polynomial
         }
         _ => {
             let point = [(position, centre), (velocity, Rational::zero())];
-            let point = if oscillator.force.contains(velocity) {
-                &point[..]
-            } else {
-                &point[..1]
-            };
+            let point = if oscillator.force.contains(velocity) { &point[..] } else { &point[..1] };
             let sum = Expr::sum(taylor(&oscillator.force, point, degree)?);
             let polynomial = sum.to_polynomial(&mut name)?;
             polynomial.ok_or_else(|| OscillatorError::NotPolynomial(sum.clone().into()))?
@@ -528,11 +489,7 @@ fn rounded_force(
                 (None, None) => rest = rest.product(&Monomial::power_of(symbol, exponent)),
             }
         }
-        let powers = (
-            monomial.exponent(position),
-            monomial.exponent(velocity),
-            rest,
-        );
+        let powers = (monomial.exponent(position), monomial.exponent(velocity), rest);
         let entry = sums.entry(powers).or_insert((0.0, 0.0));
         *entry = (entry.0 + value, entry.1 + value.abs());
     }
@@ -570,9 +527,7 @@ mod tests {
     use super::*;
 
     fn position(text: &str) -> Result<String, OscillatorError> {
-        Ok(centred(&Oscillator::parse(text)?, None)?
-            .position
-            .to_string())
+        Ok(centred(&Oscillator::parse(text)?, None)?.position.to_string())
     }
 
     fn force(text: &str) -> String {
@@ -597,19 +552,13 @@ mod tests {
         assert_eq!(force("x'' + cos(x)"), "sin(x)");
         assert_eq!(force("x'' - sin(x + pi/3)"), "sin(x)");
         assert_eq!(force("x'' + 2*cos(2*x)"), "2*sin(2*x)");
-        assert_eq!(
-            force("x'' + sin(x) - 1/2"),
-            "-1/2 + sqrt(3)*sin(x)/2 + cos(x)/2"
-        );
+        assert_eq!(force("x'' + sin(x) - 1/2"), "-1/2 + sqrt(3)*sin(x)/2 + cos(x)/2");
     }
 
     #[test]
     fn every_scale_has_its_equilibria() {
         assert_eq!(position("x'' + 1e12*x - 1e26*x^3").unwrap(), "0");
-        let small: Expr = position("x'' + 1e12*x - 1e26*x^2 - 1e-9")
-            .unwrap()
-            .parse()
-            .unwrap();
+        let small: Expr = position("x'' + 1e12*x - 1e26*x^2 - 1e-9").unwrap().parse().unwrap();
         assert!((small.evaluate(&BTreeMap::new()).unwrap() / 1.000_000_1e-21 - 1.0).abs() < 1e-13);
         for scale in ["1e-20", "1e-9", "1e9", "1e20"] {
             let text = format!("x'' + (x/{scale})^2 - 4");
@@ -620,17 +569,10 @@ mod tests {
 
     #[test]
     fn what_is_no_equilibrium_is_not_taken_for_one() {
-        for text in [
-            "x'' + x^2 + x^3",
-            "x'' + x^2",
-            "x'' - x^3",
-            "x'' + max(x, 0)",
-            "x'' + x*log(abs(x))",
-        ] {
-            assert!(
-                matches!(position(text), Err(OscillatorError::Unstable { .. })),
-                "{text}"
-            );
+        for text in
+            ["x'' + x^2 + x^3", "x'' + x^2", "x'' - x^3", "x'' + max(x, 0)", "x'' + x*log(abs(x))"]
+        {
+            assert!(matches!(position(text), Err(OscillatorError::Unstable { .. })), "{text}");
         }
         assert_eq!(position("x'' + x - 1/x^3").unwrap(), "1");
         assert_eq!(position("x'' + x - 1/x").unwrap(), "1");
@@ -638,10 +580,7 @@ mod tests {
         let text = position("x'' + x + log(x)").unwrap();
         let value = to_f64(text.parse::<Expr>().unwrap().as_number().unwrap());
         assert!((value + value.ln()).abs() < 1e-15);
-        assert!(matches!(
-            position("x'' + k/x^2"),
-            Err(OscillatorError::SymbolicEquilibrium(_))
-        ));
+        assert!(matches!(position("x'' + k/x^2"), Err(OscillatorError::SymbolicEquilibrium(_))));
     }
 
     #[test]
@@ -662,18 +601,9 @@ mod tests {
         // x (1 - x)^2 = 1/4 has a root beyond x = 1 alone, the plates of a condenser having met; x
         // (1 - x) = 1/5 before it.
         let error = position("x'' + x - 1/(4*(1 - x)^2)").unwrap_err();
-        assert!(
-            matches!(error, OscillatorError::BeyondPole { .. }),
-            "{error}"
-        );
-        assert!(
-            matches!(position("x'' + x - 1/(9*(1 - x)^2)").unwrap().len(), 18..),
-            "irrational"
-        );
-        assert_eq!(
-            position("x'' + x - 1/(5*(1 - x))").unwrap(),
-            "2/(5 + sqrt(5))"
-        );
+        assert!(matches!(error, OscillatorError::BeyondPole { .. }), "{error}");
+        assert!(matches!(position("x'' + x - 1/(9*(1 - x)^2)").unwrap().len(), 18..), "irrational");
+        assert_eq!(position("x'' + x - 1/(5*(1 - x))").unwrap(), "2/(5 + sqrt(5))");
         assert_eq!(
             position("x'' + x - lambda/(1 - x)").unwrap(),
             "2*lambda/(1 + sqrt(1 - 4*lambda))"
@@ -684,10 +614,7 @@ mod tests {
     fn static_loads_in_symbols() {
         assert_eq!(position("x'' + x - k").unwrap(), "k");
         assert_eq!(position("x'' + k*(x - L) + b*(x - L)^3").unwrap(), "L");
-        assert_eq!(
-            position("x'' + x + x^2 - g").unwrap(),
-            "2*g/(1 + sqrt(1 + 4*g))"
-        );
+        assert_eq!(position("x'' + x + x^2 - g").unwrap(), "2*g/(1 + sqrt(1 + 4*g))");
         assert_eq!(position("x'' + sin(x) - T").unwrap(), "asin(T)");
         assert_eq!(position("x'' - sin(x) - T").unwrap(), "pi + asin(T)");
         assert_eq!(position("x'' + x^3 - g").unwrap(), "g^(1/3)");
@@ -729,32 +656,21 @@ mod tests {
         };
         assert_eq!(stable("x'' - x + x^3"), "-1, 1");
         assert_eq!(stable("x'' - x + k*x^3"), "sqrt(1/k), -sqrt(1/k)");
-        assert_eq!(
-            stable("x'' + sin(x) - 2*sin(x)*cos(x)"),
-            "-pi/3, pi/3, and again every 2*pi"
-        );
-        assert!(matches!(
-            position("x'' + 1 + x^2"),
-            Err(OscillatorError::NoEquilibrium(_))
-        ));
+        assert_eq!(stable("x'' + sin(x) - 2*sin(x)*cos(x)"), "-pi/3, pi/3, and again every 2*pi");
+        assert!(matches!(position("x'' + 1 + x^2"), Err(OscillatorError::NoEquilibrium(_))));
     }
 
     #[test]
     fn an_equilibrium_may_be_chosen() {
         let about = |text: &str, place: &str| {
-            let oscillator = Oscillator::parse(text)
-                .unwrap()
-                .about(place.parse().unwrap());
+            let oscillator = Oscillator::parse(text).unwrap().about(place.parse().unwrap());
             centred(&oscillator, None).map(|centred| centred.position.to_string())
         };
         assert_eq!(about("x'' - x + x^3", "-1").unwrap(), "-1");
         assert_eq!(about("x'' + sin(x)", "2*pi").unwrap(), "2*pi");
         assert_eq!(about("x'' - x + k*x^3", "1/sqrt(k)").unwrap(), "1/sqrt(k)");
         assert_eq!(about("x'' - 2*x + x^3", "1.4142").unwrap(), "sqrt(2)");
-        assert_eq!(
-            about("x'' - cos(x)*(1 - 2*sin(x))", "1.5708").unwrap(),
-            "pi/2"
-        );
+        assert_eq!(about("x'' - cos(x)*(1 - 2*sin(x))", "1.5708").unwrap(), "pi/2");
         let none = [
             ("x'' - x + x^3", "0.5"),
             ("x'' + sin(x)", "pi"),
@@ -765,10 +681,7 @@ mod tests {
         ];
         for (text, place) in none {
             let error = about(text, place).unwrap_err();
-            assert!(
-                matches!(error, OscillatorError::NoSuchEquilibrium { .. }),
-                "{error}"
-            );
+            assert!(matches!(error, OscillatorError::NoSuchEquilibrium { .. }), "{error}");
         }
     }
 
@@ -779,19 +692,12 @@ mod tests {
             Oscillator::parse("x'' + sinh(x - 0.7390851332151607) + x - 0.7390851332151607")
                 .unwrap();
         assert_eq!(
-            centred(&oscillator, Some(5))
-                .unwrap()
-                .oscillator
-                .force
-                .to_string(),
+            centred(&oscillator, Some(5)).unwrap().oscillator.force.to_string(),
             "x + sinh(x)"
         );
         let oscillator =
             Oscillator::parse("x'' + exp(x - 1/7) - exp(1/7 - x) + x - 1/7 + 0*x").unwrap();
-        assert_eq!(
-            position("x'' + exp(x - 1/7) - exp(1/7 - x)").unwrap(),
-            "1/7"
-        );
+        assert_eq!(position("x'' + exp(x - 1/7) - exp(1/7 - x)").unwrap(), "1/7");
         let centred = centred(&oscillator, Some(4)).unwrap();
         assert!(!centred.numerical);
     }

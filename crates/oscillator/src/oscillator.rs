@@ -259,11 +259,7 @@ fn stable_ones(coordinate: Symbol, stable: &Equilibria) -> String {
 }
 
 fn list(symbols: &[Symbol]) -> String {
-    symbols
-        .iter()
-        .map(|symbol| symbol.name())
-        .collect::<Vec<_>>()
-        .join(", ")
+    symbols.iter().map(|symbol| symbol.name()).collect::<Vec<_>>().join(", ")
 }
 
 impl OscillatorError {
@@ -271,10 +267,7 @@ impl OscillatorError {
     pub fn help(&self) -> Option<Advice> {
         let either = |words: &str, [first, second]: [Method; 2]| {
             let first = Advice::words(words).choose(Setting::Method(first));
-            first
-                .then("` or `")
-                .choose(Setting::Method(second))
-                .then("`")
+            first.then("` or `").choose(Setting::Method(second)).then("`")
         };
         Some(match self {
             Self::AmbiguousSmallParameter(candidates) => Advice::words("choose one with `")
@@ -291,11 +284,7 @@ impl OscillatorError {
                 )
             }
             Self::NotPolynomial(term) | Self::Taylor(TaylorError::NotAnalytic { term, .. })
-                if term
-                    .expression()
-                    .symbols()
-                    .iter()
-                    .all(|symbol| symbol.primes() == 0) =>
+                if term.expression().symbols().iter().all(|symbol| symbol.primes() == 0) =>
             {
                 let by_energy = [Method::Hamiltonian, Method::HarmonicBalance];
                 match self {
@@ -306,11 +295,7 @@ impl OscillatorError {
                                 .choose(small);
                         let as_it_is = smooth.then("`; or take the force as it is: `");
                         let [first, second] = by_energy.map(Setting::Method);
-                        as_it_is
-                            .choose(first)
-                            .then("` or `")
-                            .choose(second)
-                            .then("`")
+                        as_it_is.choose(first).then("` or `").choose(second).then("`")
                     }
                     _ => either("take the force as it is: `", by_energy),
                 }
@@ -330,12 +315,8 @@ impl OscillatorError {
             Self::SymbolicEquilibrium(_) => {
                 Advice::words("give numbers for the parameters, or measure x from the equilibrium")
             }
-            Self::Unstable {
-                coordinate, stable, ..
-            }
-            | Self::BeyondPole {
-                coordinate, stable, ..
-            } => {
+            Self::Unstable { coordinate, stable, .. }
+            | Self::BeyondPole { coordinate, stable, .. } => {
                 let positions = &stable.positions;
                 let positive = positions.iter().find(|position| !position.is_negative());
                 let setting = Setting::About {
@@ -362,9 +343,7 @@ impl OscillatorError {
 impl Parts {
     /// Whether the force is one of the position alone, so that energy is conserved.
     pub fn of_position_alone(&self) -> bool {
-        [&self.inertia, &self.damping, &self.forcing]
-            .iter()
-            .all(|part| part.is_zero())
+        [&self.inertia, &self.damping, &self.forcing].iter().all(|part| part.is_zero())
     }
 }
 
@@ -405,12 +384,10 @@ impl Oscillator {
                 slope.is_ok_and(|slope| slope.contains(acceleration))
             });
             let numbers: Vec<usize> = fast.map(|(number, _)| number).collect();
-            return Err(OscillatorError::NonlinearAcceleration(
-                match numbers.is_empty() {
-                    true => residual.to_string(),
-                    false => equation.typed.quote(&numbers),
-                },
-            ));
+            return Err(OscillatorError::NonlinearAcceleration(match numbers.is_empty() {
+                true => residual.to_string(),
+                false => equation.typed.quote(&numbers),
+            }));
         }
         let rest = residual.substitute(acceleration, &Expr::zero())?;
         let force = Expr::divide(&rest, &mass)?;
@@ -426,11 +403,8 @@ impl Oscillator {
             Symbol::new("t"),
             Symbol::new("pi"),
         ];
-        let names: BTreeSet<Symbol> = residual
-            .symbols()
-            .into_iter()
-            .filter(|name| !own.contains(name))
-            .collect();
+        let names: BTreeSet<Symbol> =
+            residual.symbols().into_iter().filter(|name| !own.contains(name)).collect();
         Ok(Self {
             coordinate,
             residual,
@@ -461,9 +435,7 @@ impl Oscillator {
             Some(place) => Some(place.substitute_all(values)?),
             None => None,
         };
-        oscillator
-            .parameters
-            .retain(|name| !values.contains_key(name));
+        oscillator.parameters.retain(|name| !values.contains_key(name));
         Ok(oscillator)
     }
 
@@ -494,11 +466,7 @@ impl Oscillator {
         let slope = self.force.differentiate(self.coordinate)?;
         let linear = at_rest(&slope, self.coordinate).unwrap_or_else(|_| Expr::zero());
         let mut renamed = Vec::new();
-        for name in self
-            .parameters
-            .iter()
-            .filter(|name| NAMES_OF_ANSWERS.contains(&name.name()))
-        {
+        for name in self.parameters.iter().filter(|name| NAMES_OF_ANSWERS.contains(&name.name())) {
             let wanted = match (name.name(), driven) {
                 ("omega", true) => "Omega".to_owned(),
                 ("omega", false) if linear.contains(*name) => "omega0".to_owned(),
@@ -508,13 +476,9 @@ impl Oscillator {
             taken.push(written);
             renamed.push((*name, written));
         }
-        let values = renamed
-            .iter()
-            .map(|(typed, written)| (*typed, Expr::from(*written)));
+        let values = renamed.iter().map(|(typed, written)| (*typed, Expr::from(*written)));
         let mut oscillator = self.with_values(&values.collect())?;
-        oscillator
-            .parameters
-            .extend(renamed.iter().map(|(_, written)| *written));
+        oscillator.parameters.extend(renamed.iter().map(|(_, written)| *written));
         oscillator.parameters.sort_unstable();
         Ok((oscillator, renamed))
     }
@@ -544,13 +508,10 @@ impl Oscillator {
             [name, velocity, velocity.derivative()]
         });
         let values = own.iter().copied().chain(states);
-        let values: BTreeMap<Symbol, Expr> = values
-            .map(|name| (name, Expr::from(name.apart())))
-            .collect();
+        let values: BTreeMap<Symbol, Expr> =
+            values.map(|name| (name, Expr::from(name.apart()))).collect();
         let mut oscillator = self.with_values(&values)?;
-        oscillator
-            .parameters
-            .extend(own.into_iter().map(Symbol::apart));
+        oscillator.parameters.extend(own.into_iter().map(Symbol::apart));
         oscillator.parameters.sort_unstable();
         if let Some(name) = coordinate {
             oscillator.coordinate = name.apart();
@@ -599,9 +560,7 @@ impl Oscillator {
             }),
         };
         let parameters = self.parameters.iter();
-        parameters
-            .filter_map(|name| Some((*name, meant(name)?)))
-            .collect()
+        parameters.filter_map(|name| Some((*name, meant(name)?))).collect()
     }
 
     /// The velocity `x'`.
@@ -633,11 +592,7 @@ impl Oscillator {
     pub fn linear_frequency_name(&self, linear: &Polynomial) -> Symbol {
         let omega0 = Symbol::new("omega0");
         let square = Polynomial::term(Monomial::power_of(omega0, 2), num_traits::One::one());
-        if *linear == square {
-            omega0
-        } else {
-            fresh("omega0", &self.names())
-        }
+        if *linear == square { omega0 } else { fresh("omega0", &self.names()) }
     }
 
     /// The equation in normal form, `x'' + f = 0`.
@@ -719,20 +674,15 @@ impl Oscillator {
         match candidates.as_slice() {
             [] => Ok(SmallParameter::Amplitude),
             [only] => Ok(SmallParameter::Parameter(*only)),
-            [first, others @ ..] => match others
-                .iter()
-                .all(|other| self.stand_together(*first, *other))
-            {
-                // Either gives the same orders; a Greek letter is the likelier one.
-                true => Ok(SmallParameter::Parameter(
-                    candidates
-                        .iter()
-                        .copied()
-                        .find(|name| name.is_greek())
-                        .unwrap_or(*first),
-                )),
-                false => Err(OscillatorError::AmbiguousSmallParameter(candidates)),
-            },
+            [first, others @ ..] => {
+                match others.iter().all(|other| self.stand_together(*first, *other)) {
+                    // Either gives the same orders; a Greek letter is the likelier one.
+                    true => Ok(SmallParameter::Parameter(
+                        candidates.iter().copied().find(|name| name.is_greek()).unwrap_or(*first),
+                    )),
+                    false => Err(OscillatorError::AmbiguousSmallParameter(candidates)),
+                }
+            }
         }
     }
 
@@ -753,9 +703,7 @@ impl Oscillator {
         };
         let alike =
             |term: &Expr| power(term, one).is_some_and(|own| Some(own) == power(term, other));
-        self.force
-            .expand()
-            .is_ok_and(|force| force.terms().iter().all(alike))
+        self.force.expand().is_ok_and(|force| force.terms().iter().all(alike))
     }
 
     /// The degree of the force in the coordinate, where it is a polynomial in it.
@@ -771,22 +719,16 @@ impl Oscillator {
             return Ok(Some(degree));
         }
         let mut names = Names::new(self);
-        let polynomial = self
-            .force
-            .to_polynomial(&mut |constant| names.of(constant, &own))?;
+        let polynomial = self.force.to_polynomial(&mut |constant| names.of(constant, &own))?;
         let range = polynomial.and_then(|polynomial| polynomial.exponent_range(self.coordinate));
-        Ok(range
-            .filter(|range| range.0 >= 0)
-            .and_then(|range| u32::try_from(range.1).ok()))
+        Ok(range.filter(|range| range.0 >= 0).and_then(|range| u32::try_from(range.1).ok()))
     }
 
     /// Whether `parameter = 0` leaves `x'' + omega0^2 x = 0`, and the equation is not that already.
     /// What is left of a bead on a wire that turns, `-Omega^2 x`, is no such thing.
     fn is_linear_without(&self, parameter: Symbol) -> bool {
-        let Ok(rest) = self
-            .force
-            .substitute(parameter, &Expr::zero())
-            .and_then(|rest| rest.expand())
+        let Ok(rest) =
+            self.force.substitute(parameter, &Expr::zero()).and_then(|rest| rest.expand())
         else {
             return false;
         };
@@ -906,25 +848,15 @@ impl Oscillator {
                             SmallParameter::Parameter(name) => name.to_string(),
                             SmallParameter::Amplitude => AMPLITUDE.to_string(),
                         };
-                        return Err(OscillatorError::NotSmall {
-                            term: named(),
-                            small,
-                        });
+                        return Err(OscillatorError::NotSmall { term: named(), small });
                     }
-                    (order, position, velocity) => terms.push(Term {
-                        order,
-                        position,
-                        velocity,
-                        coefficient,
-                    }),
+                    (order, position, velocity) => {
+                        terms.push(Term { order, position, velocity, coefficient })
+                    }
                 }
             }
         }
-        Ok(PerturbedForce {
-            linear,
-            terms: merged(terms),
-            definitions: names.definitions,
-        })
+        Ok(PerturbedForce { linear, terms: merged(terms), definitions: names.definitions })
     }
 }
 
@@ -950,16 +882,12 @@ fn vanishes_identically(constant: &Expr) -> bool {
     let symbols = constant.symbols();
     let tried = [0.137, 0.731, 1.913].map(|scale| {
         let places = symbols.iter().zip(1_u32..);
-        let numbers: BTreeMap<Symbol, f64> = places
-            .map(|(name, k)| (*name, scale / f64::from(k).sqrt()))
-            .collect();
+        let numbers: BTreeMap<Symbol, f64> =
+            places.map(|(name, k)| (*name, scale / f64::from(k).sqrt())).collect();
         constant.evaluate_rounded(&|name| Some((*numbers.get(&name)?, 0.0)))
     });
     // One try may be outside of where it has a value.
-    let known = tried
-        .into_iter()
-        .flatten()
-        .filter(|(value, _)| value.is_finite());
+    let known = tried.into_iter().flatten().filter(|(value, _)| value.is_finite());
     let known: Vec<bool> = known.map(|(value, error)| value.abs() <= error).collect();
     !symbols.is_empty() && known.len() > 1 && known.iter().all(|zero| *zero)
 }
@@ -978,34 +906,24 @@ struct Names {
 
 impl Names {
     fn new(oscillator: &Oscillator) -> Self {
-        Self {
-            taken: oscillator.names(),
-            definitions: vec![],
-        }
+        Self { taken: oscillator.names(), definitions: vec![] }
     }
 
     /// The symbol of `constant`, unless one of `variables` occurs in it.
     fn of(&mut self, constant: &Expr, variables: &[Symbol]) -> Option<Symbol> {
-        if variables
-            .iter()
-            .any(|&variable| constant.contains(variable))
+        if variables.iter().any(|&variable| constant.contains(variable))
             || constant.contains(Symbol::new("t"))
         {
             return None;
         }
-        if let Some(known) = self
-            .definitions
-            .iter()
-            .find(|definition| definition.meaning == *constant)
+        if let Some(known) =
+            self.definitions.iter().find(|definition| definition.meaning == *constant)
         {
             return Some(known.symbol);
         }
         let stem = fresh_stem("c", &self.taken);
         let symbol = Symbol::new(&format!("{stem}{}", self.definitions.len() + 1));
-        self.definitions.push(Definition {
-            symbol,
-            meaning: constant.clone(),
-        });
+        self.definitions.push(Definition { symbol, meaning: constant.clone() });
         Some(symbol)
     }
 }
@@ -1050,11 +968,7 @@ impl PerturbedForce {
     fn letters_under_root(&self) -> Vec<Symbol> {
         let product = self.linear.single_term();
         product.map_or_else(Vec::new, |(monomial, _)| {
-            monomial
-                .factors()
-                .iter()
-                .map(|(symbol, _)| *symbol)
-                .collect()
+            monomial.factors().iter().map(|(symbol, _)| *symbol).collect()
         })
     }
 
@@ -1096,10 +1010,7 @@ impl PerturbedForce {
                 return None;
             }
             let scale = num_traits::pow::Pow::pow(number, -power);
-            written.add_term(
-                rest.product(&Monomial::power_of(frequency, 2 * power)),
-                own * scale,
-            );
+            written.add_term(rest.product(&Monomial::power_of(frequency, 2 * power)), own * scale);
         }
         Some(written)
     }
@@ -1107,10 +1018,7 @@ impl PerturbedForce {
     /// The coefficient of the linear force, its named constants written out.
     pub(crate) fn linear_in_full(&self) -> Expr {
         let linear = Expr::from(&self.linear);
-        let meanings = self
-            .definitions
-            .iter()
-            .map(|entry| (entry.symbol, entry.meaning.clone()));
+        let meanings = self.definitions.iter().map(|entry| (entry.symbol, entry.meaning.clone()));
         linear.substitute_all(&meanings.collect()).unwrap_or(linear)
     }
 
@@ -1120,12 +1028,8 @@ impl PerturbedForce {
         /// What a sum of constants has left of its terms where it is zero but for rounding.
         const ROUNDING: f64 = 1e-14;
         let named = |symbol: &Symbol| self.definitions.iter().any(|entry| entry.symbol == *symbol);
-        let parameters: Vec<Symbol> = self
-            .linear
-            .symbols()
-            .into_iter()
-            .filter(|name| !named(name))
-            .collect();
+        let parameters: Vec<Symbol> =
+            self.linear.symbols().into_iter().filter(|name| !named(name)).collect();
         if self.linear.is_zero() || (!parameters.is_empty() && self.linear.single_term().is_none())
         {
             return self.linear.is_zero();
@@ -1135,17 +1039,11 @@ impl PerturbedForce {
         let not_positive = |value: f64| {
             let numbers = parameters.iter().map(|name| (*name, value)).collect();
             let terms = full.terms().iter();
-            let size: f64 = terms
-                .filter_map(|term| Some(term.evaluate(&numbers).ok()?.abs()))
-                .sum();
-            full.evaluate(&numbers)
-                .ok()
-                .map(|found| found <= ROUNDING * size)
+            let size: f64 =
+                terms.filter_map(|term| Some(term.evaluate(&numbers).ok()?.abs())).sum();
+            full.evaluate(&numbers).ok().map(|found| found <= ROUNDING * size)
         };
-        let known: Vec<bool> = [1.0, 0.1, 0.37, 2.3]
-            .into_iter()
-            .filter_map(not_positive)
-            .collect();
+        let known: Vec<bool> = [1.0, 0.1, 0.37, 2.3].into_iter().filter_map(not_positive).collect();
         !known.is_empty() && known.iter().all(|not| *not)
     }
 }

@@ -125,11 +125,7 @@ impl Definition {
 pub fn constant_in_words(value: &Expr) -> String {
     match long_fraction(value) {
         Some(number) => significant_fraction(number, 15),
-        None => value
-            .with_number_under_root()
-            .as_ref()
-            .unwrap_or(value)
-            .to_string(),
+        None => value.with_number_under_root().as_ref().unwrap_or(value).to_string(),
     }
 }
 
@@ -139,9 +135,7 @@ const MANY: usize = 16;
 /// The number that a constant is, where it is a fraction of so many digits that it must be a
 /// rounded number.
 pub fn long_fraction(value: &Expr) -> Option<&Rational> {
-    value
-        .as_number()
-        .filter(|number| !number.is_integer() && number.to_string().len() > MANY)
+    value.as_number().filter(|number| !number.is_integer() && number.to_string().len() > MANY)
 }
 
 /// The limit cycle that a solution describes, among those of its equation.
@@ -178,11 +172,7 @@ impl LeadingCycle {
                 Some(_) => "repels".to_owned(),
                 None => {
                     let negative = condition.has_leading_minus();
-                    let scale = if negative {
-                        -condition
-                    } else {
-                        condition.clone()
-                    };
+                    let scale = if negative { -condition } else { condition.clone() };
                     let (stable, unstable) = if negative { ('<', '>') } else { ('>', '<') };
                     format!("attracts for {scale} {stable} 0 and repels for {scale} {unstable} 0")
                 }
@@ -254,8 +244,7 @@ impl Solution {
         polynomial: &Polynomial,
         value_of: &dyn Fn(Symbol) -> Option<f64>,
     ) -> Result<f64, Symbol> {
-        self.evaluate_with_size(polynomial, value_of)
-            .map(|(value, _)| value)
+        self.evaluate_with_size(polynomial, value_of).map(|(value, _)| value)
     }
 
     /// The value, and the sum of the sizes of its terms.
@@ -264,20 +253,13 @@ impl Solution {
         polynomial: &Polynomial,
         value_of: &dyn Fn(Symbol) -> Option<f64>,
     ) -> Result<(f64, f64), Symbol> {
-        let values = match polynomial
-            .symbols()
-            .iter()
-            .any(|symbol| self.defines(*symbol))
-        {
+        let values = match polynomial.symbols().iter().any(|symbol| self.defines(*symbol)) {
             true => self.defined_values(value_of)?,
             false => vec![],
         };
         let pi = Symbol::new("pi");
         polynomial.evaluate_with_size(|symbol| {
-            let defined = values
-                .iter()
-                .find(|(name, _)| *name == symbol)
-                .map(|(_, value)| *value);
+            let defined = values.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value);
             defined
                 .or_else(|| value_of(symbol))
                 .or_else(|| (symbol == pi).then_some(std::f64::consts::PI))
@@ -304,18 +286,13 @@ impl Solution {
                 .symbols()
                 .into_iter()
                 .map(|symbol| {
-                    let defined = values
-                        .iter()
-                        .find(|(name, _)| *name == symbol)
-                        .map(|(_, value)| *value);
+                    let defined =
+                        values.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value);
                     let value = defined.or_else(|| value_of(symbol)).ok_or(symbol)?;
                     Ok((symbol, value))
                 })
                 .collect();
-            let value = definition
-                .meaning
-                .evaluate(&known?)
-                .map_err(|_| definition.symbol)?;
+            let value = definition.meaning.evaluate(&known?).map_err(|_| definition.symbol)?;
             values.push((definition.symbol, value));
         }
         Ok(values)
@@ -338,12 +315,7 @@ impl Solution {
 
     /// The law that only numbers solve, in one line.
     pub fn by_numbers(&self) -> Option<String> {
-        let lines: Vec<String> = self
-            .law
-            .quadrature()?
-            .iter()
-            .map(ToString::to_string)
-            .collect();
+        let lines: Vec<String> = self.law.quadrature()?.iter().map(ToString::to_string).collect();
         Some(lines.join("; "))
     }
 
@@ -355,25 +327,19 @@ impl Solution {
     /// The small parameter, and those that are small together with it.
     pub fn small_parameters(&self) -> impl Iterator<Item = Symbol> + '_ {
         let of_cycle = self.limit_cycle.iter().flat_map(|cycle| &cycle.small_with);
-        let of_modulation = self
-            .modulation
-            .iter()
-            .flat_map(|modulation| &modulation.small_with);
+        let of_modulation = self.modulation.iter().flat_map(|modulation| &modulation.small_with);
         let others = of_cycle.chain(of_modulation.filter(|_| self.limit_cycle.is_none()));
         std::iter::once(self.small_parameter).chain(others.copied())
     }
 
     /// The power of the small parameters in a term.
     pub fn order_of(&self, monomial: &Monomial) -> i32 {
-        self.small_parameters()
-            .map(|name| monomial.exponent(name))
-            .sum()
+        self.small_parameters().map(|name| monomial.exponent(name)).sum()
     }
 
     /// The terms of a polynomial without small parameters.
     pub fn leading(&self, polynomial: &Polynomial) -> Polynomial {
-        self.small_parameters()
-            .fold(polynomial.clone(), |rest, name| rest.truncated(name, 0))
+        self.small_parameters().fold(polynomial.clone(), |rest, name| rest.truncated(name, 0))
     }
 
     /// The names that mean something in this answer already: parameters, coordinate, definitions,
@@ -382,10 +348,7 @@ impl Solution {
         let defined = self.definitions.iter().map(|definition| definition.symbol);
         let letters = self.letters();
         let letters = letters.unusual().map(|(_, written)| written);
-        self.names_of_equation()
-            .chain(defined)
-            .chain(letters)
-            .collect()
+        self.names_of_equation().chain(defined).chain(letters).collect()
     }
 
     fn names_of_equation(&self) -> impl Iterator<Item = Symbol> {
@@ -425,9 +388,7 @@ impl Solution {
     }
 
     fn defines(&self, symbol: Symbol) -> bool {
-        self.definitions
-            .iter()
-            .any(|definition| definition.symbol == symbol)
+        self.definitions.iter().any(|definition| definition.symbol == symbol)
     }
 
     /// Rounds every coefficient to fifteen digits and says so.
@@ -445,17 +406,13 @@ impl Solution {
                 definition.meaning = meaning;
             }
         }
-        self.derivation = self
-            .derivation
-            .iter()
-            .map(|line| line.with_numbers(&round_long))
-            .collect();
+        self.derivation =
+            self.derivation.iter().map(|line| line.with_numbers(&round_long)).collect();
         if let Some(cycle) = &mut self.limit_cycle {
             cycle.amplitude = rounded(&cycle.amplitude);
         }
-        self.displacement = self
-            .displacement
-            .map(POLYNOMIALS, |coefficient, _| rounded(coefficient));
+        self.displacement =
+            self.displacement.map(POLYNOMIALS, |coefficient, _| rounded(coefficient));
         if let Some(slow) = &mut self.modulation {
             slow.round(&round);
             let motion = slow.motion.take();
@@ -481,9 +438,8 @@ impl Solution {
             }
             step.resonance = rounded(&step.resonance);
             step.correction = rounded(&step.correction);
-            step.displacement = step
-                .displacement
-                .map(POLYNOMIALS, |coefficient, _| rounded(coefficient));
+            step.displacement =
+                step.displacement.map(POLYNOMIALS, |coefficient, _| rounded(coefficient));
         }
         self.numerical = true;
         self.validity.push(Note::RoundedCoefficients);
@@ -494,10 +450,7 @@ impl Solution {
     pub fn order_in_words(&self) -> String {
         let order = self.order;
         match self.method.counts() {
-            Counts::Degrees(_) => self
-                .degrees
-                .unwrap_or(Degrees::Quotient(order, 0))
-                .to_string(),
+            Counts::Degrees(_) => self.degrees.unwrap_or(Degrees::Quotient(order, 0)).to_string(),
             Counts::Powers => {
                 let names: Vec<&str> = self.small_parameters().map(Symbol::written).collect();
                 format!("to order {order} in {}", names.join(" and "))
@@ -518,9 +471,7 @@ impl Solution {
         if self.method == Method::Exact && (self.slow().is_some() || self.in_time().is_some()) {
             return "Exact motion".to_owned();
         }
-        format!("{} {}", self.method.title(), self.order_in_words())
-            .trim_end()
-            .to_owned()
+        format!("{} {}", self.method.title(), self.order_in_words()).trim_end().to_owned()
     }
 
     /// The law in one line, with the definitions it needs.
@@ -532,11 +483,7 @@ impl Solution {
             let symbols = rates.into_iter().flat_map(Expr::symbols).collect();
             let definitions = self.definitions_behind(symbols).into_iter();
             let definitions = definitions.map(|definition| {
-                format!(
-                    ", {} = {}",
-                    definition.symbol,
-                    definition.meaning_in_words()
-                )
+                format!(", {} = {}", definition.symbol, definition.meaning_in_words())
             });
             let law = format!("{amplitude} = {}, {phase} = {}", rates[0], rates[1]);
             return std::iter::once(law).chain(definitions).collect();
@@ -561,11 +508,7 @@ impl Solution {
         };
         let definitions = self.definitions_of_formula().into_iter();
         let definitions = definitions.map(|definition| {
-            format!(
-                ", {} = {}",
-                definition.symbol,
-                definition.meaning_in_words()
-            )
+            format!(", {} = {}", definition.symbol, definition.meaning_in_words())
         });
         std::iter::once(law).chain(definitions).collect()
     }
@@ -593,25 +536,19 @@ impl Solution {
             }
         }
         let definitions = self.definitions.iter();
-        definitions
-            .filter(|entry| symbols.contains(&entry.symbol))
-            .collect()
+        definitions.filter(|entry| symbols.contains(&entry.symbol)).collect()
     }
 
     /// A polynomial of this solution, the terms with the lowest power of the small parameters
     /// first.
     pub fn ordered(&self, polynomial: &Polynomial) -> Sum {
-        Sum::new(polynomial, self.numerical, |monomial| {
-            self.order_of(monomial)
-        })
+        Sum::new(polynomial, self.numerical, |monomial| self.order_of(monomial))
     }
 
     /// A relation of this solution, the terms with the highest power of omega first.
     pub fn by_falling_frequency(&self, relation: &Polynomial) -> Sum {
         let omega = Symbol::new("omega");
-        Sum::new(relation, self.numerical, |monomial| {
-            -monomial.exponent(omega)
-        })
+        Sum::new(relation, self.numerical, |monomial| -monomial.exponent(omega))
     }
 
     /// omega^2 at given values: of the law where it is explicit, else the root of the relation that
@@ -629,11 +566,7 @@ impl Solution {
         }
         if let Some(form) = self.law.closed_form() {
             let value = self.evaluate_expression(&form.value, value_of)?;
-            return Some(if form.squared {
-                value
-            } else {
-                value * value.abs()
-            });
+            return Some(if form.squared { value } else { value * value.abs() });
         }
         let frequency = self.evaluate(self.law.frequency()?, value_of).ok()?;
         Some(frequency * frequency.abs())
@@ -650,11 +583,7 @@ impl Solution {
             let value = self.evaluate(&Polynomial::symbol(symbol), value_of).ok()?;
             Some((symbol, value))
         };
-        let values = expression
-            .symbols()
-            .into_iter()
-            .map(value)
-            .collect::<Option<_>>()?;
+        let values = expression.symbols().into_iter().map(value).collect::<Option<_>>()?;
         expression.evaluate(&values).ok()
     }
 
@@ -734,11 +663,7 @@ impl Solution {
             let name = cosine.symbols().into_iter().find(|name| !known(name))?;
             Some((k, name))
         };
-        self.displacement
-            .harmonics()
-            .into_iter()
-            .filter_map(named)
-            .collect()
+        self.displacement.harmonics().into_iter().filter_map(named).collect()
     }
 
     /// The motion as a numerical Fourier series in `theta`.
@@ -762,10 +687,7 @@ impl Solution {
             false => vec![],
         };
         let value_of = |symbol| {
-            let found = defined
-                .iter()
-                .find(|(name, _)| *name == symbol)
-                .map(|(_, value)| *value);
+            let found = defined.iter().find(|(name, _)| *name == symbol).map(|(_, value)| *value);
             found.or_else(|| value_of(symbol))
         };
         for (k, cosines, sines) in harmonics {
@@ -780,9 +702,6 @@ impl Solution {
     pub fn depends_on_amplitude(&self) -> bool {
         let amplitude = self.amplitude.symbol();
         self.law.contains(amplitude)
-            || self
-                .definitions
-                .iter()
-                .any(|definition| definition.meaning.contains(amplitude))
+            || self.definitions.iter().any(|definition| definition.meaning.contains(amplitude))
     }
 }

@@ -198,10 +198,7 @@ impl Course {
         }
         powers.push(("dissipation".to_owned(), Expr::sum(lost)));
         powers.retain(|(_, power)| !power.is_zero());
-        let energy = Energy {
-            value: Expr::sum(energy),
-            powers,
-        };
+        let energy = Energy { value: Expr::sum(energy), powers };
         Ok(Self::new(
             mechanism.coordinates.clone(),
             equations.left.clone(),
@@ -240,10 +237,7 @@ impl Course {
         match self.rates.states.iter().position(|state| *state == name) {
             Some(place) => self.start[place] = value,
             None => {
-                return Err(TrajectoryError::NoState {
-                    name,
-                    states: names(&self.rates.states),
-                });
+                return Err(TrajectoryError::NoState { name, states: names(&self.rates.states) });
             }
         }
         Ok(())
@@ -260,25 +254,15 @@ impl Course {
     /// The names without whose numbers nothing moves.
     fn parameters_of_motion(&self) -> BTreeSet<Symbol> {
         let section = self.section.iter().map(Section::expression);
-        let all = self
-            .rates
-            .right
-            .iter()
-            .chain(section)
-            .flat_map(Expr::symbols);
+        let all = self.rates.right.iter().chain(section).flat_map(Expr::symbols);
         all.filter(|name| !self.is_variable(*name)).collect()
     }
 
     /// The names that stand in the energy.
     fn parameters_of_energy(&self) -> BTreeSet<Symbol> {
         let energy = self.energy.iter();
-        let energy = energy.flat_map(|energy| {
-            energy
-                .powers
-                .iter()
-                .map(|(_, power)| power)
-                .chain([&energy.value])
-        });
+        let energy = energy
+            .flat_map(|energy| energy.powers.iter().map(|(_, power)| power).chain([&energy.value]));
         let all = energy.flat_map(Expr::symbols);
         all.filter(|name| !self.is_variable(*name)).collect()
     }
@@ -292,10 +276,7 @@ impl Course {
     pub fn missing_for_energy(&self) -> Vec<Symbol> {
         let of_motion = self.parameters_of_motion();
         let missing = |name: &Symbol| !self.values.contains_key(name) && !of_motion.contains(name);
-        self.parameters_of_energy()
-            .into_iter()
-            .filter(missing)
-            .collect()
+        self.parameters_of_energy().into_iter().filter(missing).collect()
     }
 
     /// Follows the motion.
@@ -325,9 +306,7 @@ impl Course {
         ready: Option<&Ready>,
         accounted: Accounted,
     ) -> Result<Trajectory, TrajectoryError> {
-        let first = self
-            .clone()
-            .followed_by(Integrator::Taylor, ready, accounted);
+        let first = self.clone().followed_by(Integrator::Taylor, ready, accounted);
         // A start without a series, or a series that ends, may still be followed by evaluation
         // alone.
         match first {
@@ -411,13 +390,7 @@ impl Course {
     /// Whether the equations have digits where it begins.
     fn check_start(&self) -> Result<(), TrajectoryError> {
         let mut at_start = self.values.clone();
-        at_start.extend(
-            self.rates
-                .states
-                .iter()
-                .copied()
-                .zip(self.start.iter().copied()),
-        );
+        at_start.extend(self.rates.states.iter().copied().zip(self.start.iter().copied()));
         at_start.insert(Symbol::new("t"), 0.0);
         for right in &self.rates.right {
             right.check_digits(&at_start, &self.rates.states)?;
@@ -448,20 +421,15 @@ impl Course {
             .map(|right| roots_across_corners(right, &self.values))
             .collect::<Result<_, _>>()?;
         let mut taken: Vec<Symbol> = states.iter().chain(&needed).copied().collect();
-        let energy = self
-            .energy
-            .as_ref()
-            .filter(|_| self.missing_for_energy().is_empty());
+        let energy = self.energy.as_ref().filter(|_| self.missing_for_energy().is_empty());
         for (_, power) in energy.iter().flat_map(|energy| &energy.powers) {
             let work = fresh("work", &taken);
             taken.push(work);
             states.push(work);
             right.push(roots_across_corners(power, &self.values)?);
         }
-        let values: BTreeMap<Symbol, f64> = needed
-            .iter()
-            .filter_map(|name| Some((*name, *self.values.get(name)?)))
-            .collect();
+        let values: BTreeMap<Symbol, f64> =
+            needed.iter().filter_map(|name| Some((*name, *self.values.get(name)?))).collect();
         let critical = pulse::critical_times(&right, &states, &values, self.duration);
         let system =
             System::new(&states, Symbol::new("t"), &right, &values)?.with_critical_times(&critical);
@@ -580,12 +548,8 @@ impl Trajectory {
         }
         // Compiled once: the account takes the energy and its terms at two thousand times.
         let value = self.compiled(&energy.value)?;
-        let parts: Vec<_> = energy
-            .value
-            .terms()
-            .iter()
-            .filter_map(|part| self.compiled(part))
-            .collect();
+        let parts: Vec<_> =
+            energy.value.terms().iter().filter_map(|part| self.compiled(part)).collect();
         let count = self.course.rates.states.len();
         let at = |time: f64, state: &[f64]| {
             let (state, works) = state.split_at(count);
@@ -616,12 +580,7 @@ impl Trajectory {
             start,
             end,
             work: sum(&works),
-            works: energy
-                .powers
-                .iter()
-                .map(|(name, _)| name.clone())
-                .zip(works)
-                .collect(),
+            works: energy.powers.iter().map(|(name, _)| name.clone()).zip(works).collect(),
             residual: if moved > 0.0 { astray / moved } else { 0.0 },
         })
     }
@@ -630,14 +589,9 @@ impl Trajectory {
     /// where a name has no value.
     fn compiled(&self, expression: &Expr) -> Option<impl Fn(f64, &[f64]) -> f64> {
         let states = &self.course.rates.states;
-        let moving: Vec<Symbol> = std::iter::once(Symbol::new("t"))
-            .chain(states.iter().copied())
-            .collect();
-        let constant = self
-            .course
-            .values
-            .iter()
-            .filter(|(name, _)| !moving.contains(name));
+        let moving: Vec<Symbol> =
+            std::iter::once(Symbol::new("t")).chain(states.iter().copied()).collect();
+        let constant = self.course.values.iter().filter(|(name, _)| !moving.contains(name));
         let (constants, numbers): (Vec<Symbol>, Vec<f64>) =
             constant.map(|(name, value)| (*name, *value)).unzip();
         let function = CompiledFunction::new(expression, &[moving, constants].concat()).ok()?;
@@ -682,10 +636,7 @@ impl Trajectory {
                 }
             }
         }
-        Sampled {
-            times: kept,
-            columns,
-        }
+        Sampled { times: kept, columns }
     }
 
     /// The stretches of time, from when until when, on which dry friction holds something: at rest,

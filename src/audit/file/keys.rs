@@ -20,14 +20,8 @@ pub(super) const KINDS: [&str; 9] = [
 ];
 
 /// Keys that some quantities read and others do not.
-pub(super) const OF_A_LAW: [&str; 6] = [
-    "equation",
-    "method",
-    "order",
-    "small",
-    "amplitude",
-    "taylor",
-];
+pub(super) const OF_A_LAW: [&str; 6] =
+    ["equation", "method", "order", "small", "amplitude", "taylor"];
 
 /// The keys of the question that a quantity reads.
 pub(super) fn keys_of(kind: &str) -> Vec<&'static str> {
@@ -40,23 +34,10 @@ pub(super) fn keys_of(kind: &str) -> Vec<&'static str> {
         "coordinates" => &["formula"],
         "options" => &["settings"],
         "" => &[],
-        "value" | "trend" => &[
-            "formula",
-            "linearisation",
-            "values",
-            "entries",
-            "unknown",
-            "tolerance",
-            "rounding",
-        ],
-        _ => &[
-            "linearisation",
-            "values",
-            "entries",
-            "unknown",
-            "tolerance",
-            "rounding",
-        ],
+        "value" | "trend" => {
+            &["formula", "linearisation", "values", "entries", "unknown", "tolerance", "rounding"]
+        }
+        _ => &["linearisation", "values", "entries", "unknown", "tolerance", "rounding"],
     };
     let of_a_law: &[&str] = match kind {
         "taylor" | "identity" | "motion" | "coordinates" | "options" | "" => &[],
@@ -78,10 +59,7 @@ pub(super) fn kind(section: &Section) -> Found<&str> {
             true => helped(
                 section.id.span(),
                 format!("claim `{}` has no quantity", section.id.get_ref()),
-                format!(
-                    "give `quantity`: {}, or a number such as paper_speed",
-                    KINDS.join(", ")
-                ),
+                format!("give `quantity`: {}, or a number such as paper_speed", KINDS.join(", ")),
             ),
         };
     };
@@ -128,10 +106,7 @@ pub(super) fn check_keys(section: &Section, kind: &str) -> Found<()> {
                 "" => "a claim without a quantity".to_owned(),
                 kind => format!("the quantity `{kind}`"),
             };
-            return mistake(
-                span,
-                format!("`{key}` says nothing to {words}: leave it out"),
-            );
+            return mistake(span, format!("`{key}` says nothing to {words}: leave it out"));
         }
     }
     if let Some(suppose) = &section.suppose {
@@ -145,14 +120,9 @@ pub(super) fn check_keys(section: &Section, kind: &str) -> Found<()> {
             ("linearisation", subjects.linearisation.is_empty()),
             ("values", subjects.values.is_empty()),
         ];
-        let odd = tried
-            .iter()
-            .find(|(key, none)| !none && !known.contains(key));
+        let odd = tried.iter().find(|(key, none)| !none && !known.contains(key));
         let is_number = known.contains(&"values") && !matches!(kind, "" | "identity" | "motion");
-        let odd_number = [
-            ("pi", subjects.pi.is_empty()),
-            ("formula", subjects.formula.is_empty()),
-        ];
+        let odd_number = [("pi", subjects.pi.is_empty()), ("formula", subjects.formula.is_empty())];
         let odd_number = odd_number.iter().find(|(_, none)| !none && !is_number);
         if let Some((key, _)) = odd.or(odd_number) {
             return mistake(

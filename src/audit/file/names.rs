@@ -41,19 +41,12 @@ pub(super) fn used(claim: &Claim) -> BTreeSet<Symbol> {
 /// Refuses names that are nearly those of numbers, a missing equation, and keys that no name asks
 /// for.
 pub(super) fn check_names(section: &Section, claim: &Claim) -> Found<()> {
-    if !matches!(
-        claim.question.quantity,
-        Quantity::Value(_) | Quantity::Trend(_)
-    ) {
+    if !matches!(claim.question.quantity, Quantity::Value(_) | Quantity::Trend(_)) {
         return Ok(());
     }
     let used = used(claim);
-    let place = section
-        .formula
-        .as_ref()
-        .or(section.quantity.as_ref())
-        .unwrap_or(&section.id)
-        .span();
+    let place =
+        section.formula.as_ref().or(section.quantity.as_ref()).unwrap_or(&section.id).span();
     let given = |name: Symbol| {
         let supposed = claim.suppositions.iter().flatten().any(|one| match one {
             Supposition::Values(values) => values.iter().any(|(known, _)| *known == name),
@@ -75,47 +68,31 @@ pub(super) fn check_names(section: &Section, claim: &Claim) -> Found<()> {
         }
     }
     let asks = |wanted: &dyn Fn(&str) -> bool| {
-        used.iter()
-            .any(|name| is_a_name(name.name()) && wanted(name.name()))
+        used.iter().any(|name| is_a_name(name.name()) && wanted(name.name()))
     };
     let of_a_law = |name: &str| ["frequency", "true_frequency", "max_deviation"].contains(&name);
     let of_an_impact = |name: &str| {
         !of_a_law(name)
-            && ["paper_", "energy_", "true_", "line_"]
-                .iter()
-                .any(|head| name.starts_with(head))
+            && ["paper_", "energy_", "true_", "line_"].iter().any(|head| name.starts_with(head))
     };
     if asks(&of_a_law) && section.equation.is_none() {
         return helped(
             place,
-            format!(
-                "claim `{}` has no equation that a frequency could be derived from",
-                claim.id
-            ),
+            format!("claim `{}` has no equation that a frequency could be derived from", claim.id),
             "give equation = \"x'' + sin(x) = 0\", or a name of the catalogue",
         );
     }
     let keys = [
-        section
-            .equation
-            .as_ref()
-            .map(|text| ("equation", text.span())),
+        section.equation.as_ref().map(|text| ("equation", text.span())),
         section.method.as_ref().map(|text| ("method", text.span())),
         section.order.as_ref().map(|order| ("order", order.span())),
         section.small.as_ref().map(|text| ("small", text.span())),
-        section
-            .amplitude
-            .as_ref()
-            .map(|text| ("amplitude", text.span())),
-        section
-            .taylor
-            .as_ref()
-            .map(|degree| ("taylor", degree.span())),
+        section.amplitude.as_ref().map(|text| ("amplitude", text.span())),
+        section.taylor.as_ref().map(|degree| ("taylor", degree.span())),
     ];
-    if let (Some((key, span)), false) = (
-        keys.into_iter().flatten().next(),
-        asks(&of_a_law) || asks(&of_an_impact),
-    ) {
+    if let (Some((key, span)), false) =
+        (keys.into_iter().flatten().next(), asks(&of_a_law) || asks(&of_an_impact))
+    {
         return mistake(
             span,
             format!("`{key}` says nothing here: the formula asks for nothing that is derived"),
@@ -141,23 +118,16 @@ pub(super) fn asked_by<'a>(
     name: Symbol,
     equation: Option<&'a Oscillator>,
 ) -> impl Iterator<Item = Symbol> + 'a {
-    let needs = NAMES
-        .iter()
-        .find(|entry| entry.0 == name.name())
-        .map(|entry| entry.1);
+    let needs = NAMES.iter().find(|entry| entry.0 == name.name()).map(|entry| entry.1);
     let words = needs.into_iter().flat_map(|needs| needs.split(", "));
     let own =
         words.filter(|word| !word.is_empty() && !word.contains("equation") && !word.contains(' '));
     let of_a_law = needs.is_some_and(|needs| needs.starts_with("equation"));
     // An impact has the parameters of its swing, and the amplitude of a law has either letter.
-    let parameters = equation
-        .filter(|_| needs.is_some())
-        .into_iter()
-        .flat_map(|equation| &equation.parameters);
+    let parameters =
+        equation.filter(|_| needs.is_some()).into_iter().flat_map(|equation| &equation.parameters);
     let letter = of_a_law.then(|| Symbol::new("a"));
-    own.map(Symbol::new)
-        .chain(parameters.copied())
-        .chain(letter)
+    own.map(Symbol::new).chain(parameters.copied()).chain(letter)
 }
 
 /// Refuses values of a claim that nothing asks for.
@@ -166,25 +136,15 @@ pub(super) fn check_values(section: &Section, claim: &Claim) -> Found<()> {
     let mut used = used(claim);
     let formulas = match quantity {
         Quantity::Identity(formula) => vec![formula],
-        Quantity::Motion {
-            kinetic,
-            potential,
-            force,
-        } => vec![kinetic, potential, force],
+        Quantity::Motion { kinetic, potential, force } => vec![kinetic, potential, force],
         _ => vec![],
     };
     if !formulas.is_empty() {
-        let printed = claim
-            .entries
-            .iter()
-            .filter_map(|entry| match &entry.stated {
-                Stated::Formula(printed) => Some(printed),
-                _ => None,
-            });
-        let all = formulas
-            .into_iter()
-            .chain(printed)
-            .chain(claim.question.values.values());
+        let printed = claim.entries.iter().filter_map(|entry| match &entry.stated {
+            Stated::Formula(printed) => Some(printed),
+            _ => None,
+        });
+        let all = formulas.into_iter().chain(printed).chain(claim.question.values.values());
         used.extend(all.flat_map(Expr::symbols));
         used.extend(used.clone().into_iter().map(Symbol::coordinate));
     }
@@ -196,19 +156,13 @@ pub(super) fn check_values(section: &Section, claim: &Claim) -> Found<()> {
     let own = section.values.as_ref().map(Spanned::get_ref);
     let rows = section.entries.iter().flat_map(|rows| rows.get_ref());
     let tables = own.into_iter().chain(rows.map(|row| &row.get_ref().values));
-    let supposed = section
-        .suppose
-        .iter()
-        .flat_map(|suppose| &suppose.get_ref().values);
+    let supposed = section.suppose.iter().flat_map(|suppose| &suppose.get_ref().values);
     for (name, value) in tables.chain(supposed).flatten() {
         let symbol = symbol(name, value.span())?;
         if !used.contains(&symbol) && *quantity != Quantity::Nothing {
             return mistake(
                 value.span(),
-                format!(
-                    "nothing in claim `{}` asks for `{name}`: leave it out",
-                    claim.id
-                ),
+                format!("nothing in claim `{}` asks for `{name}`: leave it out", claim.id),
             );
         }
     }

@@ -17,24 +17,18 @@ use toml::Spanned;
 
 pub(super) fn table(table: &Table) -> Found<BTreeMap<Symbol, Expr>> {
     let row = |(name, value): (&String, &Spanned<toml::Value>)| {
-        Ok((
-            symbol(name, value.span())?,
-            number(value.get_ref(), value.span())?,
-        ))
+        Ok((symbol(name, value.span())?, number(value.get_ref(), value.span())?))
     };
     table.iter().map(row).collect()
 }
 
 pub(super) fn symbol(name: &str, span: Range<usize>) -> Found<Symbol> {
-    let found = parse_expression(name)
-        .ok()
-        .and_then(|name| name.as_symbol());
+    let found = parse_expression(name).ok().and_then(|name| name.as_symbol());
     match found.filter(|symbol| symbol.name() == name) {
         Some(symbol) => Ok(symbol),
-        None => mistake(
-            span,
-            format!("`{name}` is no name: letters, digits and `_`, a letter first"),
-        ),
+        None => {
+            mistake(span, format!("`{name}` is no name: letters, digits and `_`, a letter first"))
+        }
     }
 }
 
@@ -98,18 +92,13 @@ pub(super) fn convention(text: &Text) -> Found<AmplitudeConvention> {
         Some(convention) => Ok(convention),
         None => mistake(
             text.span(),
-            format!(
-                "unknown amplitude `{}`: choose initial or first-harmonic",
-                text.get_ref()
-            ),
+            format!("unknown amplitude `{}`: choose initial or first-harmonic", text.get_ref()),
         ),
     }
 }
 
 pub(super) fn rule(text: &Text) -> Found<Rule> {
-    text.get_ref()
-        .parse()
-        .or_else(|error| mistake(text.span(), format!("{error}")))
+    text.get_ref().parse().or_else(|error| mistake(text.span(), format!("{error}")))
 }
 
 pub(super) fn rounding(text: &Text) -> Found<Rounding> {
@@ -117,10 +106,7 @@ pub(super) fn rounding(text: &Text) -> Found<Rounding> {
         Some(rounding) => Ok(rounding),
         None => {
             let known = Rounding::ALL.map(Rounding::name).join(", ");
-            mistake(
-                text.span(),
-                format!("unknown rounding `{}`: choose {known}", text.get_ref()),
-            )
+            mistake(text.span(), format!("unknown rounding `{}`: choose {known}", text.get_ref()))
         }
     }
 }
@@ -130,10 +116,7 @@ pub(super) fn verdict(text: &Text) -> Found<Verdict> {
         Some(verdict) => Ok(verdict),
         None => {
             let known = Verdict::ALL.map(Verdict::name).join(", ");
-            mistake(
-                text.span(),
-                format!("unknown verdict `{}`: choose {known}", text.get_ref()),
-            )
+            mistake(text.span(), format!("unknown verdict `{}`: choose {known}", text.get_ref()))
         }
     }
 }
@@ -142,9 +125,6 @@ pub(super) fn tolerance(number: &Spanned<f64>) -> Found<f64> {
     let value = *number.get_ref();
     match value.is_finite() && value > 0.0 {
         true => Ok(value),
-        false => mistake(
-            number.span(),
-            format!("a tolerance is a positive number, not {value}"),
-        ),
+        false => mistake(number.span(), format!("a tolerance is a positive number, not {value}")),
     }
 }

@@ -41,10 +41,8 @@ const PRINTED_SWING: &str =
 /// Equation (7), with sgn(x') in the place of equation (6).
 const PRINTED_SCALED: &str = "x'' + 2*zeta*x' + alpha*sgn(x') - beta*sin(eta*t)*cos(x) + sin(x) + (gamma + mu*x')*(x - xc)^(3/2)*H(x - xc)";
 /// gamma and beta of equation (8), with omega^2 = g/L.
-const PRINTED_GROUPS: [(&str, &str); 2] = [
-    ("gamma", "4*l^(5/2)*E*sqrt(R)/(3*g*m*L)"),
-    ("beta", "Ae*Omega^2/g"),
-];
+const PRINTED_GROUPS: [(&str, &str); 2] =
+    [("gamma", "4*l^(5/2)*E*sqrt(R)/(3*g*m*L)"), ("beta", "Ae*Omega^2/g")];
 
 /// The paper's mechanism: a pendulum on a driven pivot that meets an elastic barrier, with viscous
 /// and dry friction. Hertz's force acts on the lever l, the damping of equation (4) is a torque; Ae
@@ -86,11 +84,7 @@ pub fn units() -> BTreeMap<Symbol, Dimension> {
 /// The mechanism of the paper with the units of its letters, ready for
 /// [`study`](crate::mechanics::study).
 pub fn mechanism() -> MechanismQuestion {
-    MechanismQuestion {
-        mechanism: pendulum(),
-        units: Some(units()),
-        values: BTreeMap::new(),
-    }
+    MechanismQuestion { mechanism: pendulum(), units: Some(units()), values: BTreeMap::new() }
 }
 
 /// The reason why the paper's equations could not be compared.
@@ -213,13 +207,8 @@ fn equation_of_motion(
     let per_inertia: Expr = "1/(m*L^2)".parse().unwrap_or_else(|_| Expr::one());
     let rate = Dimension::of([0, 0, -2]);
     let contact = check(&(&force * &per_inertia), &rate, all, "equation of motion");
-    let lever = check(
-        &(force * per_inertia * Expr::symbol("l")),
-        &rate,
-        all,
-        "equation of motion",
-    )
-    .is_ok();
+    let lever =
+        check(&(force * per_inertia * Expr::symbol("l")), &rate, all, "equation of motion").is_ok();
     let swing_words = match difference.is_zero() {
         true => "the swing follows term by term".to_owned(),
         false => format!("the swing differs by {difference}"),
@@ -270,20 +259,15 @@ fn definitions(groups: &Groups) -> Result<Finding, PaperError> {
             differing.push(name);
         }
     }
-    let printed: Vec<String> = PRINTED_GROUPS
-        .iter()
-        .map(|(name, definition)| format!("{name} = {definition}"))
-        .collect();
+    let printed: Vec<String> =
+        PRINTED_GROUPS.iter().map(|(name, definition)| format!("{name} = {definition}")).collect();
     Ok(Finding {
         equation: "(8)",
         printed: printed.join(", "),
         agrees: Some(differing.is_empty()),
         words: match differing.as_slice() {
             [] => "gamma and beta are the groups that the derived equation has".to_owned(),
-            names => format!(
-                "not the groups that the derived equation has: {}",
-                names.join(", ")
-            ),
+            names => format!("not the groups that the derived equation has: {}", names.join(", ")),
         },
     })
 }

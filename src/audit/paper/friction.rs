@@ -20,89 +20,22 @@ pub struct PrintedSpeed {
 
 /// The speeds of Table 1, each with its printed entries.
 pub const SPEEDS: [(f64, PrintedSpeed); 11] = [
-    (
-        -5.0,
-        PrintedSpeed {
-            value: "-0.99923",
-            error: "0.07667",
-        },
-    ),
-    (
-        -4.0,
-        PrintedSpeed {
-            value: "-0.99891",
-            error: "0.10851",
-        },
-    ),
-    (
-        -3.0,
-        PrintedSpeed {
-            value: "-0.99838",
-            error: "0.16159",
-        },
-    ),
-    (
-        -2.0,
-        PrintedSpeed {
-            value: "-0.99732",
-            error: "0.26775",
-        },
-    ),
-    (
-        -1.0,
-        PrintedSpeed {
-            value: "-0.99414",
-            error: "0.58620",
-        },
-    ),
-    (
-        0.0,
-        PrintedSpeed {
-            value: "0.00000",
-            error: "0.00000",
-        },
-    ),
-    (
-        1.0,
-        PrintedSpeed {
-            value: "+0.99413",
-            error: "0.58620",
-        },
-    ),
-    (
-        2.0,
-        PrintedSpeed {
-            value: "+0.99732",
-            error: "0.267747",
-        },
-    ),
-    (
-        3.0,
-        PrintedSpeed {
-            value: "+0.99838",
-            error: "0.161592",
-        },
-    ),
-    (
-        4.0,
-        PrintedSpeed {
-            value: "+0.99891",
-            error: "0.108514",
-        },
-    ),
-    (
-        5.0,
-        PrintedSpeed {
-            value: "+0.99923",
-            error: "0.076667",
-        },
-    ),
+    (-5.0, PrintedSpeed { value: "-0.99923", error: "0.07667" }),
+    (-4.0, PrintedSpeed { value: "-0.99891", error: "0.10851" }),
+    (-3.0, PrintedSpeed { value: "-0.99838", error: "0.16159" }),
+    (-2.0, PrintedSpeed { value: "-0.99732", error: "0.26775" }),
+    (-1.0, PrintedSpeed { value: "-0.99414", error: "0.58620" }),
+    (0.0, PrintedSpeed { value: "0.00000", error: "0.00000" }),
+    (1.0, PrintedSpeed { value: "+0.99413", error: "0.58620" }),
+    (2.0, PrintedSpeed { value: "+0.99732", error: "0.267747" }),
+    (3.0, PrintedSpeed { value: "+0.99838", error: "0.161592" }),
+    (4.0, PrintedSpeed { value: "+0.99891", error: "0.108514" }),
+    (5.0, PrintedSpeed { value: "+0.99923", error: "0.076667" }),
 ];
 
 /// The values of pi that are tried: short ones, fractions, and pi itself.
-const TRIED: [&str; 11] = [
-    "3", "3.1", "22/7", "3.14", "3.141", "3.142", "3.1415", "3.1416", "3.14159", "355/113", "pi",
-];
+const TRIED: [&str; 11] =
+    ["3", "3.1", "22/7", "3.14", "3.141", "3.142", "3.1415", "3.1416", "3.14159", "355/113", "pi"];
 
 /// The number that is written so: a decimal or a fraction; pi itself for its name.
 fn value_of(name: &str) -> f64 {
@@ -139,11 +72,7 @@ pub struct Entry {
 impl Entry {
     fn of(printed: &'static str, number: f64) -> Self {
         let [rounded, cut] = has_digits(printed, number);
-        Self {
-            printed,
-            rounded,
-            cut,
-        }
+        Self { printed, rounded, cut }
     }
 
     /// `rounded`, `cut`, `either` or `neither`.
@@ -184,10 +113,8 @@ pub struct PiReading {
 
 impl PiReading {
     fn of(name: &'static str, value: f64) -> Self {
-        let entries: Vec<Entry> = SPEEDS
-            .iter()
-            .flat_map(|(speed, printed)| entries(*speed, printed, value))
-            .collect();
+        let entries: Vec<Entry> =
+            SPEEDS.iter().flat_map(|(speed, printed)| entries(*speed, printed, value)).collect();
         let count =
             |wanted: fn(&Entry) -> bool| entries.iter().filter(|entry| wanted(entry)).count();
         Self {
@@ -252,16 +179,8 @@ impl Table {
             laws: SpeedRow::at(*speed),
             printed: Some(entries(*speed, printed, pi)),
         });
-        let others = study.rows.iter().map(|laws| TableRow {
-            laws: *laws,
-            printed: None,
-        });
-        Self {
-            rows: own.chain(others).collect(),
-            pi_range: pi_range(),
-            readings,
-            best,
-        }
+        let others = study.rows.iter().map(|laws| TableRow { laws: *laws, printed: None });
+        Self { rows: own.chain(others).collect(), pi_range: pi_range(), readings, best }
     }
 
     /// The pi with which most printed entries come out.

@@ -146,25 +146,12 @@ fn beginning(used: &Used) -> String {
 }
 
 fn routine(text: &Text) -> String {
-    let arguments: Vec<String> = text
-        .arguments
-        .iter()
-        .map(|name| format!("double {name}"))
-        .collect();
-    let arguments = if arguments.is_empty() {
-        "void".to_owned()
-    } else {
-        arguments.join(", ")
-    };
-    let head = format!(
-        "// {}.\ndouble {}({arguments})\n{{\n",
-        text.about, text.name
-    );
+    let arguments: Vec<String> =
+        text.arguments.iter().map(|name| format!("double {name}")).collect();
+    let arguments = if arguments.is_empty() { "void".to_owned() } else { arguments.join(", ") };
+    let head = format!("// {}.\ndouble {}({arguments})\n{{\n", text.about, text.name);
     let lines = text.lines.iter().map(|line| format!("    {line}\n"));
-    std::iter::once(head)
-        .chain(lines)
-        .chain(["}\n".to_owned()])
-        .collect()
+    std::iter::once(head).chain(lines).chain(["}\n".to_owned()]).collect()
 }
 
 fn helper(function: Function) -> Option<&'static str> {

@@ -58,10 +58,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
     pi: "pi",
     operators: ["*", "/"],
     between_values: ["*", "/"],
-    power: |Base {
-                inside, operand, ..
-            },
-            exponent| match exponent {
+    power: |Base { inside, operand, .. }, exponent| match exponent {
         Exponent::Whole(number) => format!("{operand}^{number}"),
         Exponent::Half => format!("sqrt({inside})"),
         Exponent::OddRoot(number, true) => format!("copysign(abs({inside})^({number}), {inside})"),
@@ -99,12 +96,8 @@ fn function(function: Function) -> &'static str {
 
 /// Whole numbers as arguments are made floating-point ones: their powers would overflow.
 fn routine(text: &Text) -> String {
-    let head = format!(
-        "\"{}.\"\nfunction {}({})\n",
-        text.about,
-        text.name,
-        text.arguments.join(", ")
-    );
+    let head =
+        format!("\"{}.\"\nfunction {}({})\n", text.about, text.name, text.arguments.join(", "));
     let converted = match text.arguments {
         [] => None,
         [only] => Some(format!("    {only} = float({only})\n")),

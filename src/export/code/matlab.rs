@@ -50,10 +50,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
     pi: "pi",
     operators: ["*", "/"],
     between_values: [".*", "./"],
-    power: |Base {
-                inside, operand, ..
-            },
-            exponent| match exponent {
+    power: |Base { inside, operand, .. }, exponent| match exponent {
         Exponent::Whole(number) => format!("{operand}.^{number}"),
         Exponent::Half => format!("realsqrt({inside})"),
         Exponent::OddRoot(number, true) => format!("(sign({inside}).*abs({inside}).^({number}))"),
@@ -94,20 +91,14 @@ fn function(function: Function) -> &'static str {
 
 /// A file has one function that others can call: here it hands the others out.
 fn beginning(used: &Used) -> String {
-    let handles = used
-        .routines
-        .iter()
-        .map(|name| format!("    motion.{name} = @{name};\n"));
+    let handles = used.routines.iter().map(|name| format!("    motion.{name} = @{name};\n"));
     let head = "% Save this as oscillator.m: motion = oscillator(); then motion.displacement(t, ...), and so on.\n\
                 function motion = oscillator()\n";
     let head = match used.routines.contains(&"displacement") {
         true => head.to_owned(),
         false => head.replace("displacement(t, ...), and so on", "angular_frequency(...)"),
     };
-    std::iter::once(head)
-        .chain(handles)
-        .chain(["end\n".to_owned()])
-        .collect()
+    std::iter::once(head).chain(handles).chain(["end\n".to_owned()]).collect()
 }
 
 fn routine(text: &Text) -> String {
@@ -118,10 +109,7 @@ fn routine(text: &Text) -> String {
         text.arguments.join(", ")
     );
     let lines = text.lines.iter().map(|line| format!("    {line}\n"));
-    std::iter::once(head)
-        .chain(lines)
-        .chain(["end\n".to_owned()])
-        .collect()
+    std::iter::once(head).chain(lines).chain(["end\n".to_owned()]).collect()
 }
 
 fn helper(function: Function) -> Option<&'static str> {

@@ -73,20 +73,10 @@ pub(super) fn of_solution(
                 || NoCode::NoMotion(verification.reason.as_ref().map(ToString::to_string));
             let (motion, frequency) = numbers.ok_or_else(no_motion)?;
             routines.extend(motion_in_numbers(&names, motion, frequency));
-            let at: Vec<String> = verification
-                .at
-                .iter()
-                .map(|(name, value)| format!("{name} = {value}"))
-                .collect();
-            let what = if formula.is_err() {
-                "Everything"
-            } else {
-                "The motion"
-            };
-            remarks.push(format!(
-                "{what} is in numbers, which hold at {} alone.",
-                at.join(", ")
-            ));
+            let at: Vec<String> =
+                verification.at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+            let what = if formula.is_err() { "Everything" } else { "The motion" };
+            remarks.push(format!("{what} is in numbers, which hold at {} alone.", at.join(", ")));
         }
         None if by_numbers => {
             remarks.push(
@@ -118,16 +108,8 @@ fn header(solution: &Solution, verification: Option<&Verification>, tolerance: f
         );
         !words
     };
-    let sections = document
-        .sections
-        .into_iter()
-        .filter(|section| !section.iter().any(is_formula));
-    let text = crate::export::text::document(
-        &Document {
-            sections: sections.collect(),
-        },
-        WIDTH,
-    );
+    let sections = document.sections.into_iter().filter(|section| !section.iter().any(is_formula));
+    let text = crate::export::text::document(&Document { sections: sections.collect() }, WIDTH);
     let lines = text.trim_end().lines();
     lines.flat_map(wrapped).collect()
 }
@@ -244,11 +226,7 @@ fn resolved<'a>(
 ) -> (Vec<&'a Definition>, Vec<Symbol>) {
     let definitions = solution.definitions_behind(symbols.clone());
     let mut all = symbols;
-    all.extend(
-        definitions
-            .iter()
-            .flat_map(|definition| definition.meaning.symbols()),
-    );
+    all.extend(definitions.iter().flat_map(|definition| definition.meaning.symbols()));
     for definition in &definitions {
         all.remove(&definition.symbol);
     }
@@ -260,10 +238,7 @@ fn resolved<'a>(
 
 fn variables(definitions: Vec<&Definition>) -> impl Iterator<Item = Statement> + '_ {
     let variable = |definition: &Definition| {
-        Statement::Variable(
-            definition.symbol,
-            Value::Expression(definition.meaning.clone()),
-        )
+        Statement::Variable(definition.symbol, Value::Expression(definition.meaning.clone()))
     };
     definitions.into_iter().map(variable)
 }
@@ -275,9 +250,7 @@ fn flips(solution: &Solution, expression: &Expr, negated: bool) -> bool {
     let written_out = |expression: &Expr| {
         let mut definitions = solution.definitions.iter().rev();
         definitions.try_fold(expression.clone(), |whole, definition| {
-            whole
-                .substitute(definition.symbol, &definition.meaning)
-                .ok()
+            whole.substitute(definition.symbol, &definition.meaning).ok()
         })
     };
     let turned = || {
@@ -302,12 +275,7 @@ fn frequency(oscillator: &Oscillator, solution: &Solution, names: &Names, law: &
     let result = match law.squared {
         true => {
             body.push(Statement::Variable(names.omega_squared, value));
-            body.extend(digits(
-                names,
-                [&law.expression],
-                names.omega_squared,
-                &Expr::one(),
-            ));
+            body.extend(digits(names, [&law.expression], names.omega_squared, &Expr::one()));
             body.push(Statement::Positive(
                 names.omega_squared,
                 names.omega_squared,
@@ -377,10 +345,9 @@ struct Harmonic {
 fn terms(harmonics: Vec<Harmonic>, theta: Symbol) -> Vec<Value> {
     let mut terms = Vec::new();
     for harmonic in harmonics {
-        for (coefficient, function) in [
-            (harmonic.cosine, Function::Cos),
-            (harmonic.sine, Function::Sin),
-        ] {
+        for (coefficient, function) in
+            [(harmonic.cosine, Function::Cos), (harmonic.sine, Function::Sin)]
+        {
             match (coefficient, harmonic.k) {
                 (None, _) => {}
                 (Some(Value::Sum(parts)), 0) => terms.extend(parts),
@@ -428,18 +395,10 @@ fn motion(
             }
         }
         body.extend(variables(definitions.clone()));
-        body.push(Statement::Variable(
-            names.omega,
-            Value::Call(FREQUENCY, of_frequency.to_vec()),
-        ));
+        body.push(Statement::Variable(names.omega, Value::Call(FREQUENCY, of_frequency.to_vec())));
         // Where a definition stands in a motion, it stands there over omega^2.
         let scale = Expr::product([names.omega, names.amplitude].map(Expr::from));
-        body.extend(digits(
-            names,
-            definitions.iter().map(|own| &own.meaning),
-            names.omega,
-            &scale,
-        ));
+        body.extend(digits(names, definitions.iter().map(|own| &own.meaning), names.omega, &scale));
         body.push(match sign {
             Sign::HalfPeriod => {
                 Statement::Variable(names.theta, Value::Expression(turned_angle(names)))
@@ -457,10 +416,9 @@ fn motion(
             let all = &all | &solution.equilibrium.symbols();
             [beginning(all.clone()), beginning(all)]
         }
-        Sign::Any | Sign::Opposite => [
-            beginning(all),
-            beginning(moving.clone().flat_map(symbols).flatten().collect()),
-        ],
+        Sign::Any | Sign::Opposite => {
+            [beginning(all), beginning(moving.clone().flat_map(symbols).flatten().collect())]
+        }
     };
     let start = match sign {
         Sign::HalfPeriod => Some(missing_at_start(solution, names, &harmonics)),
@@ -491,23 +449,13 @@ fn motion(
     });
     let moving = moving.map(|(k, cosine, sine)| {
         let factor = i64::try_from(*k).unwrap_or(i64::MAX);
-        Harmonic {
-            k: *k,
-            cosine: times(sine, factor),
-            sine: cosines(*k, cosine, -factor),
-        }
+        Harmonic { k: *k, cosine: times(sine, factor), sine: cosines(*k, cosine, -factor) }
     });
     let before = match sign {
         Sign::Opposite => Some(names.sign),
         _ => None,
     };
-    both(
-        names,
-        beginnings,
-        before,
-        displaced.collect(),
-        moving.collect(),
-    )
+    both(names, beginnings, before, displaced.collect(), moving.collect())
 }
 
 /// Displacement and velocity of a motion that is an expression in the time.
@@ -516,9 +464,7 @@ fn written_motion(
     names: &Names,
     motion: &Expr,
 ) -> Result<[Routine; 2], NoCode> {
-    let velocity = motion
-        .differentiate(names.time)
-        .map_err(|_| NoCode::NoMotion(None))?;
+    let velocity = motion.differentiate(names.time).map_err(|_| NoCode::NoMotion(None))?;
     let routine = |name, about: &str, expression: &Expr| {
         let (definitions, mut arguments) = resolved(solution, names, expression.symbols());
         arguments.insert(0, names.time);
@@ -602,9 +548,7 @@ fn both(
             slope => vec![omega, slope],
         }),
         _ => {
-            velocity
-                .body
-                .push(Statement::Variable(names.slope, Value::Lines(slopes)));
+            velocity.body.push(Statement::Variable(names.slope, Value::Lines(slopes)));
             times(vec![omega, Value::Expression(names.slope.into())])
         }
     };
@@ -634,10 +578,7 @@ fn sign_of_motion(oscillator: &Oscillator, solution: &Solution, names: &Names) -
     let of_one_term = harmonics.iter().all(|(k, cosine, sine)| match k {
         0 => {
             !Expr::from(cosine).contains(names.amplitude)
-                && cosine
-                    .symbols()
-                    .iter()
-                    .all(|symbol| !is_of_amplitude(solution, *symbol, names))
+                && cosine.symbols().iter().all(|symbol| !is_of_amplitude(solution, *symbol, names))
         }
         1 => *cosine == amplitude && sine.is_zero(),
         _ => false,
@@ -648,12 +589,7 @@ fn sign_of_motion(oscillator: &Oscillator, solution: &Solution, names: &Names) -
     let turns = |polynomial: &Polynomial| flips(solution, &Expr::from(polynomial), true);
     let is_odd = is_odd_equation(oscillator) && solution.equilibrium.is_zero();
     match is_odd {
-        true if harmonics
-            .iter()
-            .all(|entry| turns(&entry.1) && turns(&entry.2)) =>
-        {
-            Sign::Any
-        }
+        true if harmonics.iter().all(|entry| turns(&entry.1) && turns(&entry.2)) => Sign::Any,
         true => Sign::Opposite,
         false => Sign::HalfPeriod,
     }
@@ -662,9 +598,7 @@ fn sign_of_motion(oscillator: &Oscillator, solution: &Solution, names: &Names) -
 /// Whether a symbol is defined by way of the amplitude.
 fn is_of_amplitude(solution: &Solution, symbol: Symbol, names: &Names) -> bool {
     let behind = solution.definitions_behind(BTreeSet::from([symbol]));
-    behind
-        .iter()
-        .any(|definition| definition.meaning.contains(names.amplitude))
+    behind.iter().any(|definition| definition.meaning.contains(names.amplitude))
 }
 
 /// The motion at given values.
@@ -683,28 +617,17 @@ fn motion_in_numbers(
         cosine: value(cosine),
         sine: value(sine),
     });
-    let moving = coefficients
-        .iter()
-        .filter(|entry| entry.0 > 0)
-        .map(|&(k, cosine, sine)| Harmonic {
+    let moving =
+        coefficients.iter().filter(|entry| entry.0 > 0).map(|&(k, cosine, sine)| Harmonic {
             k,
             cosine: value(sine).map(|_| number(k as f64 * sine)),
             sine: value(cosine).map(|_| number(-(k as f64) * cosine)),
         });
     let beginning = || Beginning {
         arguments: vec![names.time],
-        body: vec![
-            Statement::Variable(names.omega, number(frequency)),
-            angle(names),
-        ],
+        body: vec![Statement::Variable(names.omega, number(frequency)), angle(names)],
     };
-    both(
-        names,
-        [beginning(), beginning()],
-        None,
-        displaced.collect(),
-        moving.collect(),
-    )
+    both(names, [beginning(), beginning()], None, displaced.collect(), moving.collect())
 }
 
 /// Ends a function where the terms of its formulas cancel and more than half of the digits of

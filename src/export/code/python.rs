@@ -16,10 +16,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
     pi: "pi",
     operators: ["*", "/"],
     between_values: ["*", "/"],
-    power: |Base {
-                inside, operand, ..
-            },
-            exponent| match exponent {
+    power: |Base { inside, operand, .. }, exponent| match exponent {
         Exponent::Whole(number) => format!("{operand}**{number}"),
         Exponent::Half => format!("sqrt({inside})"),
         Exponent::OddRoot(number, true) => {
@@ -75,11 +72,7 @@ fn routine(text: &Text) -> String {
     let head = format!("def {}({}):\n", text.name, text.arguments.join(", "));
     let about = format!("    \"\"\"{}.\"\"\"\n", text.about);
     let lines = text.lines.iter().map(|line| format!("    {line}\n"));
-    [head, about]
-        .into_iter()
-        .chain(lines)
-        .chain(["\n".to_owned()])
-        .collect()
+    [head, about].into_iter().chain(lines).chain(["\n".to_owned()]).collect()
 }
 
 fn helper(function: Function) -> Option<&'static str> {

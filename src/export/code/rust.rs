@@ -38,11 +38,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
 
 /// Of a number written out no power is a method: it has no type of its own.
 fn power(base: &Base, exponent: Exponent) -> String {
-    let Base {
-        inside,
-        operand,
-        literal,
-    } = base;
+    let Base { inside, operand, literal } = base;
     let call = |method: &str, argument: &str| match (literal, argument) {
         (true, "") => format!("f64::{method}({inside})"),
         (true, _) => format!("f64::{method}({inside}, {argument})"),
@@ -92,53 +88,25 @@ fn function(function: Function) -> &'static str {
 
 /// Names keep the letters that they have in the formulas.
 fn beginning(used: &Used) -> String {
-    let signatures = || {
-        used.text
-            .lines()
-            .filter(|line| line.contains("fn ") || line.contains("let "))
-    };
+    let signatures =
+        || used.text.lines().filter(|line| line.contains("fn ") || line.contains("let "));
     let name = |line: &str| {
-        let names = line
-            .split(" = ")
-            .next()
-            .unwrap_or(line)
-            .split(" -> ")
-            .next()
-            .unwrap_or(line);
+        let names = line.split(" = ").next().unwrap_or(line).split(" -> ").next().unwrap_or(line);
         names.chars().any(|letter| letter.is_ascii_uppercase())
     };
     let capitals = signatures().any(name);
-    let allow = if capitals {
-        "#![allow(non_snake_case)]\n\n"
-    } else {
-        ""
-    };
-    let pi = if used.has("PI") {
-        "use std::f64::consts::PI;\n\n"
-    } else {
-        ""
-    };
+    let allow = if capitals { "#![allow(non_snake_case)]\n\n" } else { "" };
+    let pi = if used.has("PI") { "use std::f64::consts::PI;\n\n" } else { "" };
     format!("{allow}{pi}").trim_end_matches('\n').to_owned()
         + if capitals || !pi.is_empty() { "\n" } else { "" }
 }
 
 fn routine(text: &Text) -> String {
-    let arguments: Vec<String> = text
-        .arguments
-        .iter()
-        .map(|name| format!("{name}: f64"))
-        .collect();
-    let head = format!(
-        "/// {}.\npub fn {}({}) -> f64 {{\n",
-        text.about,
-        text.name,
-        arguments.join(", ")
-    );
+    let arguments: Vec<String> = text.arguments.iter().map(|name| format!("{name}: f64")).collect();
+    let head =
+        format!("/// {}.\npub fn {}({}) -> f64 {{\n", text.about, text.name, arguments.join(", "));
     let lines = text.lines.iter().map(|line| format!("    {line}\n"));
-    std::iter::once(head)
-        .chain(lines)
-        .chain(["}\n".to_owned()])
-        .collect()
+    std::iter::once(head).chain(lines).chain(["}\n".to_owned()]).collect()
 }
 
 fn helper(function: Function) -> Option<&'static str> {

@@ -20,41 +20,24 @@ const WIDTH: usize = 100;
 pub(super) fn source(program: &Program, syntax: &'static Syntax) -> Result<String, NoCode> {
     let functions = functions(program);
     let names = names(program, syntax, &functions);
-    let writer = Writer {
-        syntax,
-        names: &names,
-    };
-    let helpers = functions
-        .iter()
-        .filter_map(|function| (syntax.helper)(*function));
+    let writer = Writer { syntax, names: &names };
+    let helpers = functions.iter().filter_map(|function| (syntax.helper)(*function));
     let mut parts: Vec<String> = helpers.map(str::to_owned).collect();
     for routine in &program.routines {
         parts.push(writer.routine(routine)?);
     }
     let text = parts.join("\n");
-    let routines: Vec<&str> = program
-        .routines
-        .iter()
-        .map(|routine| routine.name)
-        .collect();
-    let beginning = (syntax.beginning)(&Used {
-        text: &text,
-        routines: &routines,
-    });
-    let renamed = names
-        .iter()
-        .filter(|(symbol, name)| symbol.written() != **name);
-    let renamed: Vec<String> = renamed
-        .map(|(symbol, name)| format!("{symbol} is {name} here"))
-        .collect();
+    let routines: Vec<&str> = program.routines.iter().map(|routine| routine.name).collect();
+    let beginning = (syntax.beginning)(&Used { text: &text, routines: &routines });
+    let renamed = names.iter().filter(|(symbol, name)| symbol.written() != **name);
+    let renamed: Vec<String> =
+        renamed.map(|(symbol, name)| format!("{symbol} is {name} here")).collect();
     let mut header = program.header.clone();
     if !renamed.is_empty() {
         header.extend([String::new(), format!("{}.", renamed.join(", "))]);
     }
     let header = commented(&header.join("\n"), syntax.comment);
-    let parts = [header, beginning, text]
-        .into_iter()
-        .filter(|part| !part.is_empty());
+    let parts = [header, beginning, text].into_iter().filter(|part| !part.is_empty());
     let whole = parts.collect::<Vec<String>>().join("\n");
     Ok(whole.trim_end().to_owned() + "\n")
 }
@@ -81,18 +64,14 @@ fn expressions(program: &Program) -> Vec<&Expr> {
 
 /// The functions of the table that a program calls.
 fn functions(program: &Program) -> BTreeSet<Function> {
-    let nodes = expressions(program)
-        .into_iter()
-        .flat_map(Expr::unique_nodes);
+    let nodes = expressions(program).into_iter().flat_map(Expr::unique_nodes);
     let function = |expression: &Expr| match expression.node() {
         Node::Function(function, _) => Some(*function),
         _ => None,
     };
     let mut functions: BTreeSet<Function> = nodes.filter_map(function).collect();
     // What all three are computed by stands with the first of them.
-    if [Function::JacobiCn, Function::JacobiDn]
-        .iter()
-        .any(|function| functions.contains(function))
+    if [Function::JacobiCn, Function::JacobiDn].iter().any(|function| functions.contains(function))
     {
         functions.insert(Function::JacobiSn);
     }
@@ -111,20 +90,14 @@ fn names(
             Statement::Variable(name, _) => Some(*name),
             Statement::Size(_) | Statement::Positive(..) => None,
         });
-        locals
-            .chain(routine.arguments.iter().copied())
-            .collect::<Vec<Symbol>>()
+        locals.chain(routine.arguments.iter().copied()).collect::<Vec<Symbol>>()
     };
     let symbols: BTreeSet<Symbol> = program.routines.iter().flat_map(variables).collect();
     let called: Vec<&str> = functions
         .iter()
         .map(|function| (syntax.function)(*function))
         .chain(program.routines.iter().map(|routine| routine.name))
-        .chain(
-            functions
-                .contains(&Function::JacobiSn)
-                .then_some("jacobi_functions"),
-        )
+        .chain(functions.contains(&Function::JacobiSn).then_some("jacobi_functions"))
         .collect();
     let mut names: BTreeMap<Symbol, String> = BTreeMap::new();
     for symbol in &symbols {
@@ -132,9 +105,7 @@ fn names(
             called.contains(&name.as_str())
                 || syntax.reserved.contains(&name.as_str())
                 || names.values().any(|other| other == name)
-                || symbols
-                    .iter()
-                    .any(|other| other != symbol && other.written() == name)
+                || symbols.iter().any(|other| other != symbol && other.written() == name)
         };
         let mut name = symbol.written().to_owned();
         while taken(&name) {
@@ -170,20 +141,11 @@ struct Piece {
 
 impl Piece {
     fn new(text: String, level: Level) -> Self {
-        Self {
-            text,
-            negative: false,
-            level,
-            literal: false,
-            below: None,
-        }
+        Self { text, negative: false, level, literal: false, below: None }
     }
 
     fn literal(text: String, level: Level) -> Self {
-        Self {
-            literal: true,
-            ..Self::new(text, level)
-        }
+        Self { literal: true, ..Self::new(text, level) }
     }
 
     /// With its sign.
@@ -203,11 +165,7 @@ impl Piece {
     }
 
     fn as_base(&self) -> Base {
-        Base {
-            inside: self.whole(),
-            operand: self.at(Level::Atom),
-            literal: self.literal,
-        }
+        Base { inside: self.whole(), operand: self.at(Level::Atom), literal: self.literal }
     }
 
     fn is_one(&self) -> bool {
@@ -240,11 +198,8 @@ impl Writer<'_> {
         }
         let [before, after] = self.syntax.result;
         lines.extend(self.lines(before, &routine.result, after)?);
-        let arguments: Vec<String> = routine
-            .arguments
-            .iter()
-            .map(|name| self.name(*name))
-            .collect();
+        let arguments: Vec<String> =
+            routine.arguments.iter().map(|name| self.name(*name)).collect();
         Ok((self.syntax.routine)(&Text {
             name: routine.name,
             about: &routine.about,
@@ -254,10 +209,7 @@ impl Writer<'_> {
     }
 
     fn name(&self, symbol: Symbol) -> String {
-        self.names
-            .get(&symbol)
-            .cloned()
-            .unwrap_or_else(|| symbol.written().to_owned())
+        self.names.get(&symbol).cloned().unwrap_or_else(|| symbol.written().to_owned())
     }
 
     /// A value between two texts, in as many lines as it needs.
@@ -272,21 +224,14 @@ impl Writer<'_> {
                 let mut parts = Vec::new();
                 for (index, term) in terms.enumerate() {
                     let term = term?;
-                    let unsigned = Piece {
-                        negative: false,
-                        ..term.clone()
-                    };
+                    let unsigned = Piece { negative: false, ..term.clone() };
                     let sign = match (index, term.negative) {
                         (0, false) => "",
                         (0, true) => "-",
                         (_, false) => "+ ",
                         (_, true) => "- ",
                     };
-                    let level = if index == 0 {
-                        Level::Sum
-                    } else {
-                        Level::Product
-                    };
+                    let level = if index == 0 { Level::Sum } else { Level::Product };
                     parts.push(format!("{sign}{}", unsigned.at(level)));
                 }
                 parts
@@ -309,50 +254,28 @@ impl Writer<'_> {
         match value {
             Value::Expression(expression) => self.expression(expression),
             Value::Sum(parts) | Value::Lines(parts) => {
-                let parts: Vec<Piece> = parts
-                    .iter()
-                    .map(|part| self.value(part))
-                    .collect::<Result<_, _>>()?;
+                let parts: Vec<Piece> =
+                    parts.iter().map(|part| self.value(part)).collect::<Result<_, _>>()?;
                 Ok(self.sum(&parts))
             }
             Value::Product(parts) => {
-                let parts: Vec<Piece> = parts
-                    .iter()
-                    .map(|part| self.value(part))
-                    .collect::<Result<_, _>>()?;
+                let parts: Vec<Piece> =
+                    parts.iter().map(|part| self.value(part)).collect::<Result<_, _>>()?;
                 let negative = parts.iter().filter(|part| part.negative).count() % 2 == 1;
-                let unsigned = parts.into_iter().map(|part| Piece {
-                    negative: false,
-                    ..part
-                });
+                let unsigned = parts.into_iter().map(|part| Piece { negative: false, ..part });
                 let factors: Vec<Piece> = unsigned.filter(|part| !part.is_one()).collect();
                 // A fraction stands before what it is multiplied with, without parentheses.
                 let first = factors.first().map(|first| Piece {
-                    level: if first.level == Level::Product {
-                        Level::Power
-                    } else {
-                        first.level
-                    },
+                    level: if first.level == Level::Product { Level::Power } else { first.level },
                     ..first.clone()
                 });
-                let factors = first
-                    .into_iter()
-                    .chain(factors.into_iter().skip(1))
-                    .collect();
-                Ok(Piece {
-                    negative,
-                    ..self.fraction(factors, vec![])
-                })
+                let factors = first.into_iter().chain(factors.into_iter().skip(1)).collect();
+                Ok(Piece { negative, ..self.fraction(factors, vec![]) })
             }
             Value::Call(name, arguments) => {
-                let arguments: Vec<String> = arguments
-                    .iter()
-                    .map(|argument| self.name(*argument))
-                    .collect();
-                Ok(Piece::new(
-                    format!("{name}({})", arguments.join(", ")),
-                    Level::Atom,
-                ))
+                let arguments: Vec<String> =
+                    arguments.iter().map(|argument| self.name(*argument)).collect();
+                Ok(Piece::new(format!("{name}({})", arguments.join(", ")), Level::Atom))
             }
         }
     }
@@ -376,10 +299,7 @@ impl Writer<'_> {
                         None => above.push(child.clone()),
                     }
                 }
-                Piece {
-                    negative: coefficient.is_negative(),
-                    ..self.fraction(above, below)
-                }
+                Piece { negative: coefficient.is_negative(), ..self.fraction(above, below) }
             }
             Node::Power(base, exponent) => match (exponent.as_number(), children) {
                 (Some(number), [written, _]) if number.is_negative() => {
@@ -439,10 +359,7 @@ impl Writer<'_> {
             Exponent::Half => Level::Atom,
             _ => Level::Power,
         };
-        Ok(Piece::new(
-            (self.syntax.power)(&written.as_base(), exponent),
-            level,
-        ))
+        Ok(Piece::new((self.syntax.power)(&written.as_base(), exponent), level))
     }
 
     /// A sum of pieces, which has at least one.
@@ -452,15 +369,8 @@ impl Writer<'_> {
         }
         let mut text = String::new();
         for term in terms {
-            let unsigned = Piece {
-                negative: false,
-                ..term.clone()
-            };
-            let level = if text.is_empty() {
-                Level::Sum
-            } else {
-                Level::Product
-            };
+            let unsigned = Piece { negative: false, ..term.clone() };
+            let level = if text.is_empty() { Level::Sum } else { Level::Product };
             text.push_str(match (text.is_empty(), term.negative) {
                 (true, true) => "-",
                 (true, false) => "",
@@ -480,12 +390,7 @@ impl Writer<'_> {
 
     /// Factors over factors.
     fn fraction(&self, above: Vec<Piece>, below: Vec<Piece>) -> Piece {
-        let one = || {
-            vec![Piece::literal(
-                format!("1{}", self.syntax.point),
-                Level::Atom,
-            )]
-        };
+        let one = || vec![Piece::literal(format!("1{}", self.syntax.point), Level::Atom)];
         let above = if above.is_empty() { one() } else { above };
         let numerator = self.product(&above);
         match below.as_slice() {
@@ -531,10 +436,7 @@ impl Writer<'_> {
             literal &= factor.literal;
             last = factor.literal;
         }
-        Piece {
-            literal,
-            ..Piece::new(text, Level::Product)
-        }
+        Piece { literal, ..Piece::new(text, Level::Product) }
     }
 
     /// Two operands with the sign of a product or a quotient between them, and whether each is a
@@ -545,11 +447,8 @@ impl Writer<'_> {
             // A quotient by a value is one of every element.
             _ => !right.1,
         };
-        let operators = if between_values {
-            &self.syntax.between_values
-        } else {
-            &self.syntax.operators
-        };
+        let operators =
+            if between_values { &self.syntax.between_values } else { &self.syntax.operators };
         format!("{}{}{}", left.0, operators[operator], right.0)
     }
 

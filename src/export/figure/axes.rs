@@ -44,18 +44,12 @@ pub(super) fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout)
         Guide::Y(at, label) => plot(label, across(panel.y_scale.place(at)), CurveStyle::GUIDE),
     });
     let scaled = |points: Vec<(f64, f64)>| {
-        points
-            .into_iter()
-            .map(|(x, y)| (x / x_unit, y / y_unit))
-            .collect()
+        points.into_iter().map(|(x, y)| (x / x_unit, y / y_unit)).collect()
     };
     let curves = lines.into_iter();
     let curves = curves.map(|(label, points, style)| plot(label, scaled(points), style));
     let lines = guides.chain(curves).collect();
-    Ok((
-        lines,
-        axes(panel, (x_power, x_range), (y_power, y_range), columns),
-    ))
+    Ok((lines, axes(panel, (x_power, x_range), (y_power, y_range), columns)))
 }
 
 impl Scale {
@@ -71,11 +65,7 @@ impl Scale {
 
 /// The points of a curve on the axes of its panel, no more than can be told apart.
 fn placed(
-    Curve {
-        label,
-        points,
-        style,
-    }: &Curve,
+    Curve { label, points, style }: &Curve,
     panel: &Panel,
 ) -> Result<Vec<(f64, f64)>, FigureError> {
     let within = |thing: String| format!("{thing} in panel \"{}\"", panel.title);
@@ -85,14 +75,10 @@ fn placed(
         !point.0.is_finite() || !point.1.is_finite() || x.is_nan() || y.is_nan()
     };
     if let Some(point) = points.iter().find(off) {
-        return Err(FigureError::OffAxes(within(format!(
-            "point {point:?} of \"{label}\""
-        ))));
+        return Err(FigureError::OffAxes(within(format!("point {point:?} of \"{label}\""))));
     }
     let points = points.iter().map(place);
-    let points: Vec<(f64, f64)> = points
-        .filter(|(x, y)| x.is_finite() && y.is_finite())
-        .collect();
+    let points: Vec<(f64, f64)> = points.filter(|(x, y)| x.is_finite() && y.is_finite()).collect();
     let (points, enough) = match style.1 == POINTS {
         true => {
             let every = points.len().div_ceil(MOST_DOTS).max(1);
@@ -101,9 +87,7 @@ fn placed(
         false => (thinned(&points), 2),
     };
     if points.len() < enough {
-        return Err(FigureError::TooFewPoints(within(format!(
-            "curve \"{label}\""
-        ))));
+        return Err(FigureError::TooFewPoints(within(format!("curve \"{label}\""))));
     }
     Ok(points)
 }
@@ -116,10 +100,7 @@ fn plot(
 ) -> Plot {
     let words = Some(printable(label)).filter(|label| !label.is_empty());
     if dashes == POINTS {
-        let points = ScatterPlot::new()
-            .with_data(points)
-            .with_color(colour)
-            .with_size(width);
+        let points = ScatterPlot::new().with_data(points).with_color(colour).with_size(width);
         return Plot::Scatter(match words {
             None => points,
             Some(words) => points.with_legend(words),
@@ -156,11 +137,8 @@ fn axes(
     layout.theme.grid_color = "#e8e8e8".to_owned();
     (layout.x_axis_min, layout.x_axis_max) = (Some(x_range.0), Some(x_range.1));
     (layout.y_axis_min, layout.y_axis_max) = (Some(y_range.0), Some(y_range.1));
-    let exponents = || {
-        TickFormat::Custom(Arc::new(|exponent: f64| {
-            power_of_ten(exponent.round() as i32)
-        }))
-    };
+    let exponents =
+        || TickFormat::Custom(Arc::new(|exponent: f64| power_of_ten(exponent.round() as i32)));
     let decades = |range: (f64, f64)| Some(((range.1 - range.0) / 6.0).ceil());
     if panel.x_scale == Scale::Logarithmic {
         (layout.x_tick_step, layout.x_tick_format) = (decades(x_range), exponents());
@@ -185,11 +163,7 @@ fn extent(values: &[f64], scale: Scale) -> Extent {
     let power = power.clamp(-300.0, 300.0) as i32;
     let [low, high, size] = [low, high, size].map(|value| value / 10f64.powi(power));
     let constant = high - low <= 1e-9 * size;
-    let around = if constant {
-        size.max(1e-9)
-    } else {
-        0.05 * (high - low)
-    };
+    let around = if constant { size.max(1e-9) } else { 0.05 * (high - low) };
     (power, (low - around, high + around))
 }
 
@@ -211,10 +185,7 @@ fn number(value: f64) -> String {
 pub(in crate::export) fn power_of_ten(exponent: i32) -> String {
     let digits: Vec<char> = "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().collect();
     let raised = |c: char| c.to_digit(10).map_or('⁻', |digit| digits[digit as usize]);
-    format!(
-        "10{}",
-        exponent.to_string().chars().map(raised).collect::<String>()
-    )
+    format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
 }
 
 /// At most [`MOST_POINTS`] points and the last one: of each run the first, the lowest and the
@@ -227,13 +198,8 @@ pub(super) fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let run = points.len().div_ceil(MOST_POINTS / 3);
     let starts = (0..points.len()).step_by(run);
     let runs = starts.map(|start| start..points.len().min(start + run));
-    let kept = runs.flat_map(|run| {
-        [
-            Some(run.start),
-            run.clone().min_by(by_height),
-            run.max_by(by_height),
-        ]
-    });
+    let kept = runs
+        .flat_map(|run| [Some(run.start), run.clone().min_by(by_height), run.max_by(by_height)]);
     let kept: BTreeSet<usize> = kept.flatten().chain([points.len() - 1]).collect();
     kept.into_iter().map(|index| points[index]).collect()
 }

@@ -16,10 +16,7 @@ impl Default for Typesetter {
 impl Typesetter {
     /// Rows of `align*`, one below the other.
     pub(super) fn display(&self, rows: &[String]) -> String {
-        let together = format!(
-            "\\begin{{aligned}}\n{}\n\\end{{aligned}}",
-            rows.join(" \\\\\n")
-        );
+        let together = format!("\\begin{{aligned}}\n{}\n\\end{{aligned}}", rows.join(" \\\\\n"));
         let set = self
             .set(&together, MathDisplay::Block)
             .unwrap_or_else(|| rows.iter().map(|row| unset(row) + "<br>\n").collect());
@@ -28,8 +25,7 @@ impl Typesetter {
 
     /// A formula in a line.
     pub(super) fn inline(&self, formula: &str) -> String {
-        self.set(formula, MathDisplay::Inline)
-            .unwrap_or_else(|| unset(formula))
+        self.set(formula, MathDisplay::Inline).unwrap_or_else(|| unset(formula))
     }
 
     /// LaTeX of running text with formulas between dollars.
@@ -47,22 +43,14 @@ impl Typesetter {
 
     fn set(&self, formula: &str, display: MathDisplay) -> Option<String> {
         let formula = words_apart(formula);
-        let set = self
-            .0
-            .as_ref()?
-            .convert_with_local_counter(&formula, display)
-            .ok()?;
+        let set = self.0.as_ref()?.convert_with_local_counter(&formula, display).ok()?;
         // As indices they are shrunk once more by fonts that have them small already.
-        Some(
-            ["\u{2032}", "\u{2033}", "\u{2034}"]
-                .iter()
-                .fold(set, |set, primes| {
-                    set.replace(
-                        &format!("<mo>{primes}</mo>"),
-                        &format!("<mo class=\"primes\">{primes}</mo>"),
-                    )
-                }),
-        )
+        Some(["\u{2032}", "\u{2033}", "\u{2034}"].iter().fold(set, |set, primes| {
+            set.replace(
+                &format!("<mo>{primes}</mo>"),
+                &format!("<mo class=\"primes\">{primes}</mo>"),
+            )
+        }))
     }
 }
 

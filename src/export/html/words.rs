@@ -23,11 +23,7 @@ pub(super) fn definitions(class: &str, entries: &[(impl AsRef<str>, String)]) ->
     };
     let entry = |(name, words): &(_, String)| {
         let name: &str = AsRef::as_ref(name);
-        format!(
-            "<dt>{}</dt><dd>{}</dd>\n",
-            escaped(name),
-            verdict(&escaped(words))
-        )
+        format!("<dt>{}</dt><dd>{}</dd>\n", escaped(name), verdict(&escaped(words)))
     };
     let entries: String = entries.iter().map(entry).collect();
     format!("<dl{class}>\n{entries}</dl>\n")
@@ -35,10 +31,7 @@ pub(super) fn definitions(class: &str, entries: &[(impl AsRef<str>, String)]) ->
 
 /// Lines one below the other.
 pub(super) fn list(lines: &[String]) -> String {
-    let lines: String = lines
-        .iter()
-        .map(|line| format!("<li>{}</li>\n", escaped(line)))
-        .collect();
+    let lines: String = lines.iter().map(|line| format!("<li>{}</li>\n", escaped(line))).collect();
     format!("<ul>\n{lines}</ul>\n")
 }
 

@@ -29,10 +29,7 @@ pub struct AuditDocument {
 /// How many claims have each verdict.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "AuditCounts")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditCounts"))]
 pub struct Counts {
     /// Reproduced to every printed digit.
     pub reproduced: usize,
@@ -47,10 +44,7 @@ pub struct Counts {
 /// One claim.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "AuditClaim")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditClaim"))]
 pub struct Claim {
     /// Its name in the file.
     pub id: String,
@@ -90,10 +84,7 @@ pub struct Claim {
 /// One thing that is printed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "AuditEntry")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditEntry"))]
 pub struct Entry {
     /// As it is printed.
     pub printed: String,
@@ -108,10 +99,7 @@ pub struct Entry {
 /// The claim under some suppositions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "AuditTried")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditTried"))]
 pub struct Tried {
     /// What is supposed; empty for the claim alone.
     pub supposing: Vec<String>,
@@ -124,10 +112,7 @@ pub struct Tried {
 /// What a claim asks of a number that is not printed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "AuditUnknown")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditUnknown"))]
 pub struct Unknown {
     /// Its name.
     pub name: String,
@@ -173,11 +158,7 @@ pub fn audit(audit: &Audit) -> AuditDocument {
 }
 
 fn number(found: &Result<Computed, crate::audit::Lack>) -> Option<f64> {
-    found
-        .as_ref()
-        .ok()?
-        .number()
-        .filter(|number| number.is_finite())
+    found.as_ref().ok()?.number().filter(|number| number.is_finite())
 }
 
 fn claim(finding: &Finding) -> Claim {

@@ -45,10 +45,7 @@ pub struct Entry {
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Applicability {
     /// The method, by its name on the command line.
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "super::generated_schema::methods")
-    )]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
     pub method: String,
     /// Whether it applies.
     pub applies: bool,
@@ -73,11 +70,7 @@ fn entry(entry: &catalog::Entry) -> Entry {
     let applicability =
         |(method, result): (crate::solution::Method, Result<(), crate::method::Refusal>)| {
             let reason = result.err().map(|refusal| refusal.to_string());
-            Applicability {
-                method: method.name().to_owned(),
-                applies: reason.is_none(),
-                reason,
-            }
+            Applicability { method: method.name().to_owned(), applies: reason.is_none(), reason }
         };
     Entry {
         name: entry.name.to_owned(),
@@ -85,9 +78,6 @@ fn entry(entry: &catalog::Entry) -> Entry {
         equation: entry.equation.to_owned(),
         source: entry.source.to_owned(),
         published: entry.published.map(|published| published.to_string()),
-        methods: catalog::methods(entry)
-            .into_iter()
-            .map(applicability)
-            .collect(),
+        methods: catalog::methods(entry).into_iter().map(applicability).collect(),
     }
 }

@@ -94,10 +94,7 @@ pub enum ForceDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "CertificateFormula")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CertificateFormula"))]
 pub struct FormulaDocument {
     /// The law as it was derived: `omega = ...` or `omega^2 = ...` with definitions of letters
     /// behind commas, which has to give `omega` at `values` to its last digits. What is of another
@@ -174,10 +171,8 @@ fn short(value: &Rational, side: usize) -> String {
 
 /// The values of letters as text.
 pub(super) fn values(values: &Values) -> String {
-    let equations: Vec<String> = values
-        .iter()
-        .map(|(name, value)| format!("{name} = {value}"))
-        .collect();
+    let equations: Vec<String> =
+        values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     equations.join(", ")
 }
 
@@ -185,10 +180,8 @@ pub(super) fn values(values: &Values) -> String {
 pub(super) fn read_values(text: &str) -> Result<Values, JsonError> {
     let values = Some(text).filter(|text| text.len() <= LONGEST_VALUES);
     let values = values.and_then(|text| text.parse().ok());
-    values.map_or_else(
-        || unexpected("values", "names with numbers, such as `A = 3/2, k = pi/5`"),
-        Ok,
-    )
+    values
+        .map_or_else(|| unexpected("values", "names with numbers, such as `A = 3/2, k = pi/5`"), Ok)
 }
 
 /// The document of a formula that is judged.
@@ -212,9 +205,7 @@ pub(super) fn force(force: &Expr) -> ForceDocument {
     let coefficients = polynomial.filter(|_| of_x_alone).and_then(|polynomial| {
         let mut coefficients = vec![Rational::zero()];
         for (monomial, coefficient) in polynomial.terms() {
-            let power = usize::try_from(monomial.exponent(x))
-                .ok()
-                .filter(|power| *power <= 200)?;
+            let power = usize::try_from(monomial.exponent(x)).ok().filter(|power| *power <= 200)?;
             let length = coefficients.len().max(power + 1);
             coefficients.resize(length, Rational::zero());
             coefficients[power] = coefficient.clone();
@@ -242,12 +233,7 @@ impl CertificateDocument {
         if self.ode != EQUATION {
             return unexpected("ode", "`x''+f(x)=0`");
         }
-        check_sizes(
-            &self.nu,
-            self.highest,
-            &self.inverse,
-            [self.bits, self.inverse_bits],
-        )?;
+        check_sizes(&self.nu, self.highest, &self.inverse, [self.bits, self.inverse_bits])?;
         Ok(Certificate {
             force: self.f.read("f")?,
             start: fraction(&self.start, "A")?,
@@ -260,11 +246,7 @@ impl CertificateDocument {
             inverse: matrix(&self.inverse)?,
             sigma: self.sigma_log2,
             claim: decimal(&self.claim_r, "claim_r")?,
-            formula: self
-                .formula
-                .as_ref()
-                .map(FormulaDocument::read)
-                .transpose()?,
+            formula: self.formula.as_ref().map(FormulaDocument::read).transpose()?,
         })
     }
 }
@@ -281,10 +263,7 @@ pub(super) fn check_sizes(
     }
     let fits = highest <= HIGHEST_HARMONIC && inverse.len() <= HIGHEST_HARMONIC + 2;
     if !fits || inverse.iter().any(|row| row.len() > HIGHEST_HARMONIC + 2) {
-        return unexpected(
-            "K",
-            "at most 400, and `A_block` a square matrix of this size",
-        );
+        return unexpected("K", "at most 400, and `A_block` a square matrix of this size");
     }
     if bits.iter().any(|bits| *bits > MOST_BITS) {
         return unexpected("bits", "at most 224, and so `Abits`");
@@ -362,10 +341,7 @@ pub(super) fn integer(text: &str, key: &str) -> Result<Integer, JsonError> {
 pub(super) fn fraction(text: &str, key: &str) -> Result<Rational, JsonError> {
     let number = Some(text).filter(|text| text.len() <= LONGEST_NUMBER);
     let number = number.and_then(|text| text.parse().ok());
-    number.map_or_else(
-        || unexpected(key, "a fraction of at most 200 characters"),
-        Ok,
-    )
+    number.map_or_else(|| unexpected(key, "a fraction of at most 200 characters"), Ok)
 }
 
 /// A decimal, `2.5e-33`, that is not negative.
@@ -378,17 +354,10 @@ pub(super) fn decimal(text: &str, key: &str) -> Result<Rational, JsonError> {
     }
     let (digits, exponent) = text.split_once('e').unwrap_or((text, "0"));
     let (whole, decimals) = digits.split_once('.').unwrap_or((digits, ""));
-    let exponent = exponent
-        .parse()
-        .ok()
-        .filter(|exponent| EXPONENTS.contains(exponent));
-    let plain = (whole.to_owned() + decimals)
-        .bytes()
-        .all(|byte| byte.is_ascii_digit());
-    let count: Option<Integer> = (whole.to_owned() + decimals)
-        .parse()
-        .ok()
-        .filter(|_| plain && !whole.is_empty());
+    let exponent = exponent.parse().ok().filter(|exponent| EXPONENTS.contains(exponent));
+    let plain = (whole.to_owned() + decimals).bytes().all(|byte| byte.is_ascii_digit());
+    let count: Option<Integer> =
+        (whole.to_owned() + decimals).parse().ok().filter(|_| plain && !whole.is_empty());
     let Some((count, exponent)) = count.zip(exponent) else {
         return unexpected(key, EXPECTED);
     };

@@ -54,10 +54,7 @@ pub enum MethodRow {
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ApplyingRow {
     /// The method, by its name on the command line.
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "super::generated_schema::methods")
-    )]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
     pub method: String,
     /// The highest power kept of the small parameter, inclusive; for a balance the number of
     /// harmonics, for iterations the passes.
@@ -97,10 +94,7 @@ pub struct ApplyingRow {
 #[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct RefusedRow {
     /// The method, by its name on the command line.
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "super::generated_schema::methods")
-    )]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
     pub method: String,
     /// Null.
     pub order: (),
@@ -160,9 +154,7 @@ pub fn comparison(comparison: &Comparison) -> ComparisonDocument {
         true_frequency: finite(comparison.true_frequency),
         reason: comparison.reason.as_ref().map(ToString::to_string),
         tolerance: comparison.tolerance,
-        methods: applying
-            .chain(comparison.refused.iter().map(refused))
-            .collect(),
+        methods: applying.chain(comparison.refused.iter().map(refused)).collect(),
         validity: comparison.validity.clone(),
     }
 }
@@ -211,9 +203,5 @@ fn reach(reach: validity::Reach) -> Reach {
         validity::Reach::Between { from, .. } => Some(from),
         _ => None,
     };
-    Reach {
-        from,
-        up_to: reach.end(),
-        searched,
-    }
+    Reach { from, up_to: reach.end(), searched }
 }

@@ -92,10 +92,7 @@ pub struct DampedCertificateDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "CertificateDrive")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CertificateDrive"))]
 pub struct DriveDocument {
     /// The driving frequency, a positive fraction, exact.
     #[serde(rename = "Omega")]
@@ -112,10 +109,7 @@ pub struct DriveDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "CertificateFormulaOfCycle")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CertificateFormulaOfCycle"))]
 pub struct DampedFormulaDocument {
     /// The law as it was derived: of a cycle `omega = ...` or `omega^2 = ...`, with a drive
     /// `x = ...` in t, with definitions of letters behind commas; it has to give `omega`, with a
@@ -179,10 +173,7 @@ pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateD
         }),
         odd: certificate.odd,
         bits: certificate.bits,
-        p: certificate
-            .drive
-            .is_none()
-            .then(|| certificate.reciprocal.to_string()),
+        p: certificate.drive.is_none().then(|| certificate.reciprocal.to_string()),
         c: texts(&certificate.cosines),
         s: texts(&certificate.sines),
         highest: certificate.highest,
@@ -214,11 +205,7 @@ fn formula(formula: &JudgedFormula, is_driven: bool) -> DampedFormulaDocument {
 
 impl DampedFormulaDocument {
     fn read(&self, is_driven: bool) -> Result<JudgedFormula, JsonError> {
-        let of_cycle = [
-            self.omega.is_some(),
-            self.frequency_error.is_some(),
-            self.drift.is_some(),
-        ];
+        let of_cycle = [self.omega.is_some(), self.frequency_error.is_some(), self.drift.is_some()];
         if of_cycle != [!is_driven; 3] || self.amplitude_error.is_some() != is_driven {
             return unexpected(
                 "formula",
@@ -261,23 +248,14 @@ impl DampedCertificateDocument {
     pub fn read(&self) -> Result<DampedCertificate, JsonError> {
         check_kind(&self.schema, Kind::Certificate)?;
         let is_driven = self.drive.is_some();
-        let expected = if is_driven {
-            EQUATION_WITH_DRIVE
-        } else {
-            EQUATION_OF_CYCLES
-        };
+        let expected = if is_driven { EQUATION_WITH_DRIVE } else { EQUATION_OF_CYCLES };
         if self.ode != expected || self.p.is_some() == is_driven {
             return unexpected(
                 "ode",
                 "`x''+g(x)*x'+h(x)=0` with `p`, or `x''+g(x)*x'+h(x,c,s)=0` with `drive`",
             );
         }
-        check_sizes(
-            &self.nu,
-            self.highest,
-            &self.inverse,
-            [self.bits, self.inverse_bits],
-        )?;
+        check_sizes(&self.nu, self.highest, &self.inverse, [self.bits, self.inverse_bits])?;
         Ok(DampedCertificate {
             damping: self.g.read("g")?,
             force: self.h.read("h")?,
@@ -292,11 +270,7 @@ impl DampedCertificateDocument {
             inverse: matrix(&self.inverse)?,
             sigma: self.sigma_log2,
             claim: decimal(&self.claim_r, "claim_r")?,
-            formula: self
-                .formula
-                .as_ref()
-                .map(|formula| formula.read(is_driven))
-                .transpose()?,
+            formula: self.formula.as_ref().map(|formula| formula.read(is_driven)).transpose()?,
         })
     }
 }

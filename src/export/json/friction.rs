@@ -81,10 +81,7 @@ pub struct Printed {
 /// How many of the printed entries come out with one value of pi.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "PiReading")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PiReading"))]
 pub struct Reading {
     /// The value as it is written, such as `22/7`.
     pub pi: String,
@@ -164,10 +161,7 @@ pub struct Creep {
 /// A state after the stop.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "CreepSample")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CreepSample"))]
 pub struct Sample {
     /// The time since both were at rest where Coulomb's law stops the swing, in units of time.
     pub t: f64,
@@ -207,9 +201,8 @@ pub struct RestTime {
 pub fn friction(study: &FrictionStudy) -> FrictionDocument {
     let (table, near_rest) = (Table::of(study), &study.near_rest);
     let speeds = table.rows.iter().map(|row| {
-        let [value, error] = row.printed.map_or([None, None], |entries| {
-            entries.map(|entry| Some(printed(entry)))
-        });
+        let [value, error] =
+            row.printed.map_or([None, None], |entries| entries.map(|entry| Some(printed(entry))));
         Speed {
             speed: row.laws.speed,
             sign: row.laws.sign,
@@ -280,9 +273,5 @@ pub fn friction(study: &FrictionStudy) -> FrictionDocument {
 }
 
 fn printed(entry: Entry) -> Printed {
-    Printed {
-        text: entry.printed.to_owned(),
-        rounded: entry.rounded,
-        cut: entry.cut,
-    }
+    Printed { text: entry.printed.to_owned(), rounded: entry.rounded, cut: entry.cut }
 }

@@ -19,9 +19,7 @@ use crate::solution::Method;
 impl Kind {
     /// The JSON Schema as the types have it: what the file `schemas/` of this kind has to say.
     pub fn generated_schema(self) -> Value {
-        let generator = SchemaSettings::draft2020_12()
-            .for_serialize()
-            .into_generator();
+        let generator = SchemaSettings::draft2020_12().for_serialize().into_generator();
         let mut schema = match self {
             Self::Solution => generator.into_root_schema_for::<SolutionDocument>(),
             Self::Comparison => generator.into_root_schema_for::<ComparisonDocument>(),
@@ -76,10 +74,8 @@ fn head_first(schema: Value) -> Value {
         return schema;
     };
     let head = ["$schema", "title", "description"];
-    let mut ordered: serde_json::Map<String, Value> = head
-        .iter()
-        .filter_map(|key| rest.shift_remove_entry(*key))
-        .collect();
+    let mut ordered: serde_json::Map<String, Value> =
+        head.iter().filter_map(|key| rest.shift_remove_entry(*key)).collect();
     ordered.extend(rest);
     ordered.into()
 }

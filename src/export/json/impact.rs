@@ -254,10 +254,7 @@ pub struct Phase {
 /// sin * sin(harmonic * frequency * s), with s = t - clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "PhaseDisplacement")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PhaseDisplacement"))]
 pub struct Displacement {
     /// What does not oscillate, in radians.
     pub centre: f64,
@@ -276,10 +273,7 @@ pub struct Displacement {
 /// A harmonic of a phase, in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "PhaseHarmonic")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PhaseHarmonic"))]
 pub struct Harmonic {
     /// Its number.
     pub harmonic: u32,
@@ -454,10 +448,7 @@ pub struct Quantity {
 /// The closed forms beside the true motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "ImpactVerification")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "ImpactVerification"))]
 pub struct Verification {
     /// The size of the relative error up to which a verdict is `pass`.
     pub tolerance: f64,
@@ -523,10 +514,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
         impact.quantities().map(|found| quantity(impact, &found));
     let verdicts = impact.verdicts(tolerance);
     let judged = |reading| {
-        let index = impact
-            .columns
-            .iter()
-            .position(|column| column.reading == reading)?;
+        let index = impact.columns.iter().position(|column| column.reading == reading)?;
         let (column, verdict) = (&impact.columns[index], verdicts[index]);
         let line = column.phases.fitted.map(|fitted| Line {
             slope: fitted.line.slope,
@@ -546,17 +534,11 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
     };
     let phases = |reading| {
         let column = impact.column(reading).into_iter();
-        column
-            .flat_map(|column| &column.phases.phases)
-            .map(Phase::of)
-            .collect()
+        column.flat_map(|column| &column.phases.phases).map(Phase::of).collect()
     };
     let [paper, energy, derived] = READINGS.map(judged);
     let contact_laws = impact.contact_laws.iter().map(ContactLawRow::of);
-    let first = paper
-        .as_ref()
-        .or(derived.as_ref())
-        .map(|column| column.verdict.clone());
+    let first = paper.as_ref().or(derived.as_ref()).map(|column| column.verdict.clone());
     ImpactDocument {
         schema: Kind::Impact.schema().to_owned(),
         equation: impact.equation.clone(),
@@ -577,16 +559,9 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
         phases: phases(Reading::Paper),
         energy_phases: phases(Reading::Energy),
         derived_phases: phases(Reading::Derived),
-        contact: Contact {
-            speed,
-            penetration,
-            duration,
-        },
+        contact: Contact { speed, penetration, duration },
         contact_damping: contact_damping(impact),
-        contact_laws: impact
-            .setup
-            .every_contact_law
-            .then(|| contact_laws.collect()),
+        contact_laws: impact.setup.every_contact_law.then(|| contact_laws.collect()),
         time_to_contact,
         period,
         verification: Verification {
@@ -748,10 +723,7 @@ fn contact_damping(impact: &Impact) -> Option<ContactDamping> {
         peak_force: contact.map(|contact| contact.peak_force),
         small_damping: contact.map(|contact| {
             let value = 1.0 - 2.0 / 3.0 * contact.damping * contact.speed;
-            Judged {
-                value,
-                error: value / contact.restitution - 1.0,
-            }
+            Judged { value, error: value / contact.restitution - 1.0 }
         }),
     })
 }
@@ -761,20 +733,14 @@ const READINGS: [Reading; 3] = [Reading::Paper, Reading::Energy, Reading::Derive
 fn quantity(impact: &Impact, quantity: &impact::Quantity) -> Quantity {
     let errors: Vec<f64> = quantity.errors().collect();
     let found = |reading| {
-        let index = impact
-            .columns
-            .iter()
-            .position(|column| column.reading == reading);
+        let index = impact.columns.iter().position(|column| column.reading == reading);
         match index {
             Some(index) => (Some(quantity.closed_forms[index]), Some(errors[index])),
             None => (None, None),
         }
     };
-    let [
-        (paper, paper_error),
-        (energy, energy_error),
-        (derived, derived_error),
-    ] = READINGS.map(found);
+    let [(paper, paper_error), (energy, energy_error), (derived, derived_error)] =
+        READINGS.map(found);
     Quantity {
         paper,
         energy,
@@ -816,24 +782,16 @@ impl Phase {
             end_state: state(phase.end),
             closed_form: phase.closed_form(),
             coefficients: match phase.form {
-                Form::Cosine {
-                    amplitude,
-                    frequency,
-                    phase,
-                } => Some(Coefficients::Cosine(Cosine {
-                    amplitude,
-                    frequency,
-                    phase,
-                })),
-                Form::Oscillation {
-                    centre,
-                    amplitude: Complex64 { re, im },
-                    frequency,
-                } => Some(Coefficients::Oscillation(Oscillation {
-                    centre,
-                    amplitude: Amplitude { re, im },
-                    frequency,
-                })),
+                Form::Cosine { amplitude, frequency, phase } => {
+                    Some(Coefficients::Cosine(Cosine { amplitude, frequency, phase }))
+                }
+                Form::Oscillation { centre, amplitude: Complex64 { re, im }, frequency } => {
+                    Some(Coefficients::Oscillation(Oscillation {
+                        centre,
+                        amplitude: Amplitude { re, im },
+                        frequency,
+                    }))
+                }
                 Form::Harmonics { .. } | Form::Contact { .. } => None,
             },
             displacement: Displacement {
@@ -900,10 +858,7 @@ impl Displacement {
     /// The depth in contact that these harmonics are.
     fn read_depth(&self) -> SineSeries {
         let sines = |rest: u32| -> Vec<f64> {
-            let those = self
-                .harmonics
-                .iter()
-                .filter(|wave| wave.harmonic % 2 == rest);
+            let those = self.harmonics.iter().filter(|wave| wave.harmonic % 2 == rest);
             those.map(|wave| wave.sin).collect()
         };
         let mut depth = SineSeries::new(self.duration, self.parabola, sines(1));

@@ -51,10 +51,7 @@ pub struct TrueNumbers {
 /// A row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "ImpactMethodRow")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "ImpactMethodRow"))]
 pub struct Row {
     /// The method, by its name on the command line; `paper` and `energy` are the paper's readings.
     pub method: String,
@@ -122,13 +119,7 @@ pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> ImpactComp
             None,
             table.damping,
         ),
-        runge_kutta: TrueNumbers {
-            time_to_contact,
-            speed,
-            penetration,
-            duration,
-            period,
-        },
+        runge_kutta: TrueNumbers { time_to_contact, speed, penetration, duration, period },
         tolerance,
         methods: applying.chain(refused).collect(),
     }
@@ -136,12 +127,8 @@ pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> ImpactComp
 
 fn applying(row: &ImpactRow, tolerance: f64) -> Row {
     let (values, errors) = (row.phases.quantities(), row.errors);
-    let [time_to_contact, speed, penetration, duration, period] = std::array::from_fn(|index| {
-        Some(Judged {
-            value: values[index],
-            error: errors[index],
-        })
-    });
+    let [time_to_contact, speed, penetration, duration, period] =
+        std::array::from_fn(|index| Some(Judged { value: values[index], error: errors[index] }));
     Row {
         method: row.method.name().to_owned(),
         order: row.order,

@@ -87,10 +87,7 @@ pub struct GroupDocument {
 /// A place of rest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "Equilibrium")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Equilibrium"))]
 pub struct EquilibriumDocument {
     /// The place of each coordinate; null for one that may be anywhere.
     pub places: Map<Option<String>>,
@@ -144,10 +141,7 @@ pub struct FindingDocument {
 pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
     let mechanism = &study.question.mechanism;
     let coordinates = &mechanism.coordinates;
-    let groups = study
-        .groups
-        .as_ref()
-        .and_then(|groups| groups.as_ref().ok());
+    let groups = study.groups.as_ref().and_then(|groups| groups.as_ref().ok());
     let zero = |left: &crate::expr::Expr| format!("{left} = 0");
     let names = coordinates.iter().map(ToString::to_string);
     let accelerations = study.equations.accelerations().unwrap_or_default();
@@ -158,33 +152,19 @@ pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
         };
         let places = rest.rest.places.iter().map(place);
         EquilibriumDocument {
-            places: coordinates
-                .iter()
-                .map(ToString::to_string)
-                .zip(places)
-                .collect(),
+            places: coordinates.iter().map(ToString::to_string).zip(places).collect(),
             cosine: rest.rest.condition.as_ref().map(ToString::to_string),
-            frequency_squared: rest
-                .modes
-                .square()
-                .ok()
-                .flatten()
-                .map(|square| square.to_string()),
+            frequency_squared: rest.modes.square().ok().flatten().map(|square| square.to_string()),
         }
     };
     let modes = |rest: &RestStudy| {
-        let known = rest
-            .numbers
-            .as_ref()
-            .and_then(|numbers| numbers.as_ref().ok());
+        let known = rest.numbers.as_ref().and_then(|numbers| numbers.as_ref().ok());
         let mode = |mode: &Mode| ModeDocument {
             frequency: mode.frequency,
             growth: mode.growth,
             shape: mode.shape.clone(),
         };
-        known
-            .map(|modes| modes.iter().map(mode).collect())
-            .unwrap_or_default()
+        known.map(|modes| modes.iter().map(mode).collect()).unwrap_or_default()
     };
     LagrangianDocument {
         schema: Kind::Lagrangian.schema().to_owned(),
@@ -198,26 +178,14 @@ pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
             .map(|(on, force)| (on.to_string(), force.to_string()))
             .collect(),
         equations: study.equations.left.iter().map(zero).collect(),
-        divisors: study
-            .equations
-            .divisors
-            .iter()
-            .map(ToString::to_string)
-            .collect(),
-        accelerations: names
-            .zip(accelerations.iter().map(ToString::to_string))
-            .collect(),
+        divisors: study.equations.divisors.iter().map(ToString::to_string).collect(),
+        accelerations: names.zip(accelerations.iter().map(ToString::to_string)).collect(),
         units_checked: study.question.units.is_some(),
         units: groups.map(|groups| groups.units.iter().map(ToString::to_string).collect()),
         combinations: groups.map(|groups| {
             let combinations = groups.combinations.iter();
             combinations
-                .map(|combination| {
-                    (
-                        combination.name.to_string(),
-                        combination.meaning.to_string(),
-                    )
-                })
+                .map(|combination| (combination.name.to_string(), combination.meaning.to_string()))
                 .collect()
         }),
         time_unit: groups.map(|groups| groups.time.to_string()),

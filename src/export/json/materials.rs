@@ -39,10 +39,7 @@ pub struct MaterialsDocument {
 /// The pendulum and the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "MaterialsParameters")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "MaterialsParameters"))]
 pub struct Parameters {
     /// Where the barriers stand.
     pub barrier: Barrier,
@@ -89,10 +86,7 @@ pub struct RestTime {
 /// A material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "MaterialRow")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "MaterialRow"))]
 pub struct Row {
     /// Its name.
     pub name: String,
@@ -140,10 +134,7 @@ pub struct FirstContact {
 /// A stated yield limit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "MaterialYieldCheck")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "MaterialYieldCheck"))]
 pub struct YieldCheck {
     /// The body: `sphere` or `barrier`.
     pub body: String,
@@ -221,10 +212,7 @@ pub fn materials(study: &MaterialStudy) -> MaterialsDocument {
     MaterialsDocument {
         schema: Kind::Materials.schema().to_owned(),
         parameters: Parameters {
-            barrier: Barrier {
-                left: study.model.left,
-                right: study.model.right,
-            },
+            barrier: Barrier { left: study.model.left, right: study.model.right },
             start: study.start.x,
             speed: study.start.velocity,
             mass: design.mass,
@@ -239,12 +227,7 @@ pub fn materials(study: &MaterialStudy) -> MaterialsDocument {
             rest_fraction: impact::REST_FRACTION,
         },
         dissipation: Dissipation::from(&study.dissipation),
-        defaults: study
-            .question
-            .defaults
-            .iter()
-            .map(|key| key.name().to_owned())
-            .collect(),
+        defaults: study.question.defaults.iter().map(|key| key.name().to_owned()).collect(),
         materials: study.rows.iter().map(row).collect(),
         held_fixed: study.held_fixed.iter().map(held_fixed).collect(),
         no_barrier: rest(study.no_barrier),

@@ -93,10 +93,7 @@ impl From<serde_json::Error> for JsonError {
 }
 
 fn unexpected<T>(key: &str, expected: &'static str) -> Result<T, JsonError> {
-    Err(JsonError::Unexpected {
-        key: key.to_owned(),
-        expected,
-    })
+    Err(JsonError::Unexpected { key: key.to_owned(), expected })
 }
 
 /// Writes a document as text of several lines, with a line end.

@@ -124,29 +124,13 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
         let names = course.rates.states.iter().map(ToString::to_string);
         names.zip(state.iter().copied()).collect()
     };
-    let sample = |t: f64| {
-        Some(MotionSample {
-            t,
-            state: named(&motion.at(t)?),
-        })
-    };
-    let start = MotionSample {
-        t: 0.0,
-        state: named(&course.start),
-    };
+    let sample = |t: f64| Some(MotionSample { t, state: named(&motion.at(t)?) });
+    let start = MotionSample { t: 0.0, state: named(&course.start) };
     MotionDocument {
         schema: Kind::Motion.schema().to_owned(),
         coordinates: course.coordinates.iter().map(ToString::to_string).collect(),
-        equations: course
-            .equations
-            .iter()
-            .map(|left| format!("{left} = 0"))
-            .collect(),
-        parameters: course
-            .values
-            .iter()
-            .map(|(name, value)| (name.to_string(), *value))
-            .collect(),
+        equations: course.equations.iter().map(|left| format!("{left} = 0")).collect(),
+        parameters: course.values.iter().map(|(name, value)| (name.to_string(), *value)).collect(),
         start: start.state.clone(),
         integrator: match motion.integrator {
             Integrator::Taylor => "taylor",
@@ -154,12 +138,7 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
         }
         .to_owned(),
         section: course.section.as_ref().map(|section| {
-            section_document(
-                course,
-                section,
-                (motion.crossings(), motion.touches()),
-                &named,
-            )
+            section_document(course, section, (motion.crossings(), motion.touches()), &named)
         }),
         samples: report.times().into_iter().filter_map(sample).collect(),
         final_state: sample(motion.end()).unwrap_or(start),
@@ -188,10 +167,8 @@ fn section_document(
         Section::Every(period) => [Some(period.to_string()), None],
         Section::Rising(expression) => [None, Some(expression.to_string())],
     };
-    let state = |crossing: &Crossing| MotionSample {
-        t: crossing.time,
-        state: named(&crossing.state),
-    };
+    let state =
+        |crossing: &Crossing| MotionSample { t: crossing.time, state: named(&crossing.state) };
     SectionDocument {
         every,
         rising,
@@ -231,10 +208,7 @@ pub struct MotionSweepDocument {
 /// One of many motions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "SweptMotion")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SweptMotion"))]
 pub struct SweptMotionDocument {
     /// The values of what is varied.
     pub values: Map<f64>,
@@ -253,24 +227,14 @@ pub struct SweptMotionDocument {
 /// The document of kind `motion-sweep`.
 pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
     let course = sweep.course;
-    let states: Vec<String> = course
-        .rates
-        .states
-        .iter()
-        .map(ToString::to_string)
-        .collect();
+    let states: Vec<String> = course.rates.states.iter().map(ToString::to_string).collect();
     let named =
         |state: &[f64]| -> Map<f64> { states.iter().cloned().zip(state.iter().copied()).collect() };
     let is_varied = |name: &str| sweep.names.iter().any(|varied| varied.name() == name);
     let rest = |all: Map<f64>| -> Map<f64> {
-        all.into_iter()
-            .filter(|(name, _)| !is_varied(name))
-            .collect()
+        all.into_iter().filter(|(name, _)| !is_varied(name)).collect()
     };
-    let parameters = course
-        .values
-        .iter()
-        .map(|(name, value)| (name.to_string(), *value));
+    let parameters = course.values.iter().map(|(name, value)| (name.to_string(), *value));
     let motions = sweep.motions.iter().map(|motion| SweptMotionDocument {
         values: sweep
             .names
@@ -278,10 +242,7 @@ pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
             .map(ToString::to_string)
             .zip(motion.values.iter().copied())
             .collect(),
-        final_state: MotionSample {
-            t: motion.end,
-            state: named(&motion.state),
-        },
+        final_state: MotionSample { t: motion.end, state: named(&motion.state) },
         extremes: course
             .coordinates
             .iter()
@@ -289,12 +250,7 @@ pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
             .zip(motion.extremes.iter().copied())
             .collect(),
         section: course.section.as_ref().map(|section| {
-            section_document(
-                course,
-                section,
-                (&motion.crossings, &motion.touches),
-                &named,
-            )
+            section_document(course, section, (&motion.crossings, &motion.touches), &named)
         }),
         stopped: in_words(motion.reason).to_owned(),
         complete: motion.reason == End::Reached,
@@ -302,11 +258,7 @@ pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
     MotionSweepDocument {
         schema: Kind::MotionSweep.schema().to_owned(),
         coordinates: course.coordinates.iter().map(ToString::to_string).collect(),
-        equations: course
-            .equations
-            .iter()
-            .map(|left| format!("{left} = 0"))
-            .collect(),
+        equations: course.equations.iter().map(|left| format!("{left} = 0")).collect(),
         parameters: rest(parameters.collect()),
         start: rest(named(&course.start)),
         duration: course.duration,

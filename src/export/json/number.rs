@@ -61,14 +61,8 @@ pub struct Term {
 impl Constant {
     /// An exact constant expression, `3/2` or `pi/3`, beside its decimal value.
     pub fn of(value: &Expr) -> Self {
-        let decimal = value
-            .as_number()
-            .map(to_f64)
-            .or_else(|| value.evaluate(&[].into()).ok());
-        Self {
-            exact: value.to_string(),
-            value: finite(decimal),
-        }
+        let decimal = value.as_number().map(to_f64).or_else(|| value.evaluate(&[].into()).ok());
+        Self { exact: value.to_string(), value: finite(decimal) }
     }
 
     /// The constant that the text says.
@@ -97,9 +91,7 @@ impl Polynomial {
             exact: coefficient.to_string(),
             value: finite(Some(to_f64(coefficient))),
         };
-        Self {
-            terms: sum.terms().map(term).collect(),
-        }
+        Self { terms: sum.terms().map(term).collect() }
     }
 
     /// The polynomial with its exact coefficients.
@@ -119,10 +111,7 @@ impl Polynomial {
             let exponents = term.monomial.values();
             let highest = exponents.map(|exponent| exponent.unsigned_abs()).max();
             if highest > Some(HIGHEST_EXPONENT) || term.monomial.len() > MOST_SYMBOLS {
-                return unexpected(
-                    key,
-                    "exponents up to 2000000, of up to 1000 symbols in a term",
-                );
+                return unexpected(key, "exponents up to 2000000, of up to 1000 symbols in a term");
             }
             let powers = term.monomial.iter();
             let monomial = powers.fold(Monomial::one(), |product, (name, exponent)| {
@@ -146,16 +135,9 @@ impl Names {
     pub fn beside(own: impl IntoIterator<Item = Symbol>, driven: bool) -> Self {
         let own: Vec<Symbol> = own.into_iter().collect();
         let letters = Letters::beside(&own, driven);
-        let clash = |name: &Symbol| {
-            letters
-                .unusual()
-                .any(|(usual, _)| usual.name() == name.name())
-        };
+        let clash = |name: &Symbol| letters.unusual().any(|(usual, _)| usual.name() == name.name());
         let apart = |name: Symbol| if clash(&name) { name.apart() } else { name };
-        Self {
-            own: own.into_iter().map(apart).collect(),
-            letters,
-        }
+        Self { own: own.into_iter().map(apart).collect(), letters }
     }
 
     /// How the frequency is written.
@@ -183,9 +165,7 @@ impl Names {
             return Ok(expression);
         }
         let symbols = expression.symbols().into_iter();
-        let symbols = symbols
-            .map(|name| (name, Expr::from(self.changed(name))))
-            .collect();
+        let symbols = symbols.map(|name| (name, Expr::from(self.changed(name)))).collect();
         let changed = expression.substitute_all(&symbols);
         changed.or_else(|_| unexpected(key, "an expression"))
     }

@@ -101,10 +101,7 @@ pub struct Asked {
 /// A number of the design that varies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "SearchVariable")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchVariable"))]
 pub struct Variable {
     /// Its key in a file.
     pub name: String,
@@ -119,10 +116,7 @@ pub struct Variable {
 /// A material that is tried.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "SearchMaterial")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchMaterial"))]
 pub struct Material {
     /// Its name.
     pub name: String,
@@ -155,10 +149,7 @@ pub struct ContactForm {
 /// What must not be larger.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "SearchLimit")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchLimit"))]
 pub struct Limit {
     /// What, by its name as an objective.
     pub objective: String,
@@ -171,10 +162,7 @@ pub struct Limit {
 /// What is held fixed; null where it varies or is not given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "SearchHeldFixed")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchHeldFixed"))]
 pub struct HeldFixed {
     /// The release from rest, in radians.
     pub amplitude: f64,
@@ -262,10 +250,7 @@ pub struct Genetic {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "SearchRun")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchRun"))]
 pub struct Run {
     /// Its number, from 0.
     pub number: usize,
@@ -468,11 +453,7 @@ pub fn optimization(study: &Study) -> OptimizationDocument {
         runs: study.runs.iter().map(Run::of).collect(),
         searches: searches(study),
         median_curve: match study.question.objectives.len() {
-            1 => study
-                .median_curve()
-                .into_iter()
-                .map(|value| finite(Some(value)))
-                .collect(),
+            1 => study.median_curve().into_iter().map(|value| finite(Some(value))).collect(),
             _ => vec![],
         },
         finalists: study
@@ -481,19 +462,12 @@ pub fn optimization(study: &Study) -> OptimizationDocument {
             .map(|finalist| Finalist {
                 run: finalist.run,
                 by_closed_forms: finalist.by_chain.clone(),
-                values: finalist
-                    .values
-                    .iter()
-                    .map(|value| finite(Some(*value)))
-                    .collect(),
+                values: finalist.values.iter().map(|value| finite(Some(*value))).collect(),
                 feasible: finalist.feasible,
                 design: design(study, &finalist.design),
             })
             .collect(),
-        papers_design: study
-            .default_design
-            .as_ref()
-            .map(|papers| design(study, papers)),
+        papers_design: study.default_design.as_ref().map(|papers| design(study, papers)),
         decision: study.decision.as_ref().map(decision),
         conclusions: optimization_sentences(study),
     }
@@ -516,18 +490,9 @@ fn searches(study: &Study) -> Vec<Search> {
         };
     let (evaluations, _) = study.evaluations();
     let each = evaluations as f64 / study.runs.len().max(1) as f64;
-    let own = search(
-        "genetic algorithm",
-        each,
-        study.values().len(),
-        study.spread(),
-    );
+    let own = search("genetic algorithm", each, study.values().len(), study.spread());
     let rivals = study.rivals.iter().map(|rival| {
-        let found = rival
-            .values
-            .iter()
-            .filter(|value| value.is_finite())
-            .count();
+        let found = rival.values.iter().filter(|value| value.is_finite()).count();
         search(rival.name, rival.evaluations as f64, found, rival.spread())
     });
     std::iter::once(own).chain(rivals).collect()
@@ -535,9 +500,7 @@ fn searches(study: &Study) -> Vec<Search> {
 
 fn design(study: &Study, design: &optimize::Design) -> Design {
     let variables = study.question.variables.iter().zip(&design.point);
-    let material = design
-        .material
-        .and_then(|number| study.question.materials.get(number));
+    let material = design.material.and_then(|number| study.question.materials.get(number));
     Design {
         variables: variables
             .map(|(variable, value)| (variable.parameter.name().to_owned(), *value))
@@ -629,11 +592,7 @@ impl Asked {
                 speed: of.speed,
             }),
             held_fixed: HeldFixed::of(question),
-            defaults: question
-                .defaults
-                .iter()
-                .map(|key| key.name().to_owned())
-                .collect(),
+            defaults: question.defaults.iter().map(|key| key.name().to_owned()).collect(),
             duration: question.settings.duration,
             rest_fraction: REST_FRACTION,
             step_tolerance: question.settings.relative_tolerance,
@@ -681,10 +640,7 @@ impl HeldFixed {
             amplitude: case.amplitude,
             start: case.start,
             speed: case.speed,
-            barrier: Barrier {
-                left: case.left,
-                right: case.right,
-            },
+            barrier: Barrier { left: case.left, right: case.right },
             contact: question
                 .holds_contact_damping()
                 .then(|| ContactForm::of(case.contact_damping, case.at_speed, case.speed_unit)),
@@ -761,10 +717,7 @@ impl Run {
             found: run
                 .found
                 .iter()
-                .map(|found| Found {
-                    point: found.point.clone(),
-                    values: found.values.clone(),
-                })
+                .map(|found| Found { point: found.point.clone(), values: found.values.clone() })
                 .collect(),
             curve: run.curve.iter().map(|value| finite(Some(*value))).collect(),
             generations: run.generations,
@@ -775,18 +728,14 @@ impl Run {
     }
 
     fn read(self) -> Option<SearchRun> {
-        let found = self.found.into_iter().map(|found| optimize::Found {
-            point: found.point,
-            values: found.values,
-        });
+        let found = self
+            .found
+            .into_iter()
+            .map(|found| optimize::Found { point: found.point, values: found.values });
         Some(SearchRun {
             number: self.number,
             found: found.collect(),
-            curve: self
-                .curve
-                .into_iter()
-                .map(|value| value.unwrap_or(f64::INFINITY))
-                .collect(),
+            curve: self.curve.into_iter().map(|value| value.unwrap_or(f64::INFINITY)).collect(),
             generations: self.generations,
             evaluations: self.evaluations,
             integrated: self.integrated,
@@ -828,10 +777,7 @@ pub enum RecordError {
 /// # Errors
 /// What the writer says.
 pub fn record_head(question: &Question) -> Result<String, RecordError> {
-    let head = Head {
-        schema: RECORD.to_owned(),
-        asked: asked(question)?,
-    };
+    let head = Head { schema: RECORD.to_owned(), asked: asked(question)? };
     line(&head)
 }
 

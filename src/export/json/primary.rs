@@ -102,10 +102,7 @@ pub struct PrimarySample {
 /// An impact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "PrimaryImpact")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PrimaryImpact"))]
 pub struct PrimaryImpactDocument {
     /// The barrier: `left` or `right`.
     pub side: String,
@@ -250,13 +247,7 @@ pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
         })
     };
     let [x, velocity, y, speed] = case.start;
-    let start = PrimarySample {
-        t: 0.0,
-        x,
-        velocity,
-        y,
-        speed,
-    };
+    let start = PrimarySample { t: 0.0, x, velocity, y, speed };
     let others = own.others();
     let driven = own.force != 0.0;
     let rest = motion.rest_time();
@@ -363,13 +354,8 @@ pub fn primary_sweep(report: &PrimarySweepReport) -> PrimarySweepDocument {
             complete: row.stop == PrimaryStop::Duration,
         }
     };
-    let rows: Vec<PrimarySweepRow> = report
-        .rows
-        .iter()
-        .zip(report.units)
-        .enumerate()
-        .map(row)
-        .collect();
+    let rows: Vec<PrimarySweepRow> =
+        report.rows.iter().zip(report.units).enumerate().map(row).collect();
     let common = |unit: fn(&PrimarySweepRow) -> f64| {
         let first = rows.first().map(unit)?;
         rows.iter().all(|row| unit(row) == first).then_some(first)

@@ -105,10 +105,7 @@ pub struct ResponsePoint {
 /// Steady motions by slow equations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "SlowResponse")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SlowResponse"))]
 pub struct SlowDocument {
     /// The method: `multiple-scales`.
     pub method: String,
@@ -165,12 +162,7 @@ fn slow(slow: &SlowResponse) -> SlowDocument {
         amplitude_rate,
         phase_rate,
         definitions: definitions
-            .map(|definition| {
-                (
-                    definition.symbol.to_string(),
-                    definition.meaning.to_string(),
-                )
-            })
+            .map(|definition| (definition.symbol.to_string(), definition.meaning.to_string()))
             .collect(),
         states: slow
             .states
@@ -253,10 +245,7 @@ pub struct SimulatedPoint {
 /// Folds of the balance alone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "ResponseRipple")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "ResponseRipple"))]
 pub struct RippleDocument {
     /// How many they are.
     pub folds: usize,
@@ -300,9 +289,7 @@ fn point(point: &response::Point) -> ResponsePoint {
         phase: point.phase,
         peak: point.peak,
         stable: point.stable,
-        multipliers: point
-            .multipliers
-            .map(|both| both.map(|one| [one.re, one.im])),
+        multipliers: point.multipliers.map(|both| both.map(|one| [one.re, one.im])),
         start: point.start,
         error: point.error,
     }
@@ -364,17 +351,12 @@ pub fn response(response: &Response) -> ResponseDocument {
             .iter()
             .map(|branch| branch.points.iter().map(point).collect())
             .collect(),
-        mirrored: response
-            .branches
-            .iter()
-            .map(|branch| branch.mirrored)
-            .collect(),
+        mirrored: response.branches.iter().map(|branch| branch.mirrored).collect(),
         stuck: response.branches.iter().map(stuck).collect(),
         bifurcations: response.bifurcations.iter().map(bifurcation).collect(),
-        ripple: response.ripple.map(|ripple| RippleDocument {
-            folds: ripple.folds,
-            range: ripple.range,
-        }),
+        ripple: response
+            .ripple
+            .map(|ripple| RippleDocument { folds: ripple.folds, range: ripple.range }),
         backbone: response
             .backbone
             .iter()
@@ -403,10 +385,7 @@ pub fn response(response: &Response) -> ResponseDocument {
         elsewhere: response
             .elsewhere
             .iter()
-            .map(|found| ElsewherePoint {
-                parameter: found.parameter,
-                periods: found.periods,
-            })
+            .map(|found| ElsewherePoint { parameter: found.parameter, periods: found.periods })
             .collect(),
         verification: ResponseVerification {
             error: response.error,

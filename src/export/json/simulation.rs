@@ -445,11 +445,8 @@ pub struct Difference {
 /// The routes by which a motion is found.
 pub(super) const ROUTES: [&str; 2] = ["integration", "chain"];
 
-const INTEGRATORS: [Integrator; 3] = [
-    Integrator::Taylor,
-    Integrator::RungeKutta,
-    Integrator::Chain,
-];
+const INTEGRATORS: [Integrator; 3] =
+    [Integrator::Taylor, Integrator::RungeKutta, Integrator::Chain];
 
 /// The document of kind `simulation`.
 ///
@@ -477,10 +474,7 @@ pub fn simulation(report: &Report) -> SimulationDocument {
     SimulationDocument {
         schema: Kind::Simulation.schema().to_owned(),
         parameters: Parameters {
-            barrier: Barrier {
-                left: model.left,
-                right: model.right,
-            },
+            barrier: Barrier { left: model.left, right: model.right },
             start: motion.start.x,
             speed: motion.start.velocity,
             gamma: model.gamma,
@@ -507,9 +501,7 @@ pub fn simulation(report: &Report) -> SimulationDocument {
         impacts: impacts(report),
         place_of_rest: rest.place,
         rest_time: rest.time.ok(),
-        rest_time_in_seconds: report
-            .units
-            .and_then(|units| Some(rest.time.ok()? * units.time())),
+        rest_time_in_seconds: report.units.and_then(|units| Some(rest.time.ok()? * units.time())),
         rest_reason: rest.time.err().map(|reason| reason.to_string()),
         last_crossing: rest.last_crossing,
         baseline: report.baseline.map(|baseline| Baseline {
@@ -543,9 +535,7 @@ pub fn simulation(report: &Report) -> SimulationDocument {
 /// Every contact; of a chain that is judged, with its errors.
 fn impacts(report: &Report) -> Vec<Impact> {
     let motion = report.motion;
-    let judge = report
-        .judge
-        .filter(|_| motion.integrator == Integrator::Chain);
+    let judge = report.judge.filter(|_| motion.integrator == Integrator::Chain);
     let errors = judge.map_or_else(Vec::new, |judge| motion.contact_deviations(judge));
     let errors = errors.into_iter().chain(std::iter::repeat(None));
     let error = |error: impact::ContactDeviation| ImpactError {
@@ -556,12 +546,7 @@ fn impacts(report: &Report) -> Vec<Impact> {
         speed_out: error.speed_out,
     };
     let impacts = motion.impacts.iter().zip(errors);
-    impacts
-        .map(|(contact, found)| Impact {
-            error: found.map(error),
-            ..impact(contact)
-        })
-        .collect()
+    impacts.map(|(contact, found)| Impact { error: found.map(error), ..impact(contact) }).collect()
 }
 
 fn phase(piece: &Piece) -> ChainPhase {
@@ -580,36 +565,14 @@ fn phase(piece: &Piece) -> ChainPhase {
     };
     match form {
         None => empty,
-        Some(ClosedForm::Swing {
-            sign,
-            modulus,
-            rate,
-            speed,
-            phase,
-            parameter,
-        }) => ChainPhase {
+        Some(ClosedForm::Swing { sign, modulus, rate, speed, phase, parameter }) => ChainPhase {
             name: "swing".to_owned(),
-            swing: Some(SwingForm {
-                sign,
-                modulus,
-                rate,
-                speed,
-                phase,
-                parameter,
-            }),
+            swing: Some(SwingForm { sign, modulus, rate, speed, phase, parameter }),
             ..empty
         },
-        Some(ClosedForm::Contact {
-            barrier,
-            duration,
-            sines,
-        }) => ChainPhase {
+        Some(ClosedForm::Contact { barrier, duration, sines }) => ChainPhase {
             name: "contact".to_owned(),
-            contact: Some(ContactForm {
-                barrier,
-                duration,
-                sines: sines.to_vec(),
-            }),
+            contact: Some(ContactForm { barrier, duration, sines: sines.to_vec() }),
             ..empty
         },
     }
@@ -654,9 +617,5 @@ fn integrator(integrator: Integrator) -> &'static str {
 }
 
 fn final_state(motion: &impact::Simulation) -> State {
-    State {
-        t: motion.end_time,
-        x: motion.end_x,
-        velocity: motion.end_velocity,
-    }
+    State { t: motion.end_time, x: motion.end_x, velocity: motion.end_velocity }
 }

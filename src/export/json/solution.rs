@@ -34,10 +34,7 @@ pub struct SolutionDocument {
     /// in radians per unit of it.
     pub equation: String,
     /// The method that derived it, by its name on the command line.
-    #[cfg_attr(
-        feature = "schema",
-        schemars(schema_with = "super::generated_schema::methods")
-    )]
+    #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
     pub method: String,
     /// The highest power kept of the small parameter, inclusive; for a balance the number of
     /// harmonics, for iterations the passes.
@@ -159,10 +156,7 @@ impl Estimate {
 
     fn read(&self) -> Result<singularity::Estimate, JsonError> {
         match self.exact.parse() {
-            Ok(value) => Ok(singularity::Estimate {
-                value,
-                error: self.error,
-            }),
+            Ok(value) => Ok(singularity::Estimate { value, error: self.error }),
             Err(_) => unexpected("exact", "a fraction"),
         }
     }
@@ -174,9 +168,7 @@ impl Convergence {
         let [real, imaginary] = nearest.place.each_ref().map(Estimate::of);
         let powers = convergence.variable.factors().iter();
         Self {
-            variable: powers
-                .map(|(name, power)| (name.to_string(), *power))
-                .collect(),
+            variable: powers.map(|(name, power)| (name.to_string(), *power)).collect(),
             highest: convergence.highest,
             radius: Estimate::of(&nearest.radius),
             angle: Estimate::of(&nearest.angle),
@@ -438,12 +430,7 @@ pub fn solution(
         amplitude: solution.amplitude.name().to_owned(),
         parameters: names(&solution.parameters),
         definitions: definitions
-            .map(|definition| {
-                (
-                    definition.symbol.to_string(),
-                    definition.meaning.to_string(),
-                )
-            })
+            .map(|definition| (definition.symbol.to_string(), definition.meaning.to_string()))
             .collect(),
         equilibrium: Constant::of(&solution.equilibrium),
         frequency: optional(solution.law.frequency()),
@@ -457,18 +444,9 @@ pub fn solution(
         }),
         displacement: displacement(&solution.displacement, solution),
         closed_motion: solution.closed_motion.as_ref().map(ToString::to_string),
-        limit_cycle: solution
-            .limit_cycle
-            .as_ref()
-            .map(|cycle| limit_cycle(cycle, solution)),
-        modulation: solution
-            .modulation
-            .as_ref()
-            .map(|slow| modulation(slow, solution)),
-        response: solution
-            .response
-            .as_ref()
-            .map(|response| self::response(response, solution)),
+        limit_cycle: solution.limit_cycle.as_ref().map(|cycle| limit_cycle(cycle, solution)),
+        modulation: solution.modulation.as_ref().map(|slow| modulation(slow, solution)),
+        response: solution.response.as_ref().map(|response| self::response(response, solution)),
         numerical: solution.numerical,
         validity: solution.validity.iter().map(ToString::to_string).collect(),
         convergence: solution.convergence.as_ref().map(Convergence::of),
@@ -536,10 +514,7 @@ fn modulation(modulation: &solution::Modulation, solution: &Solution) -> Modulat
             ends: transient.ends.as_ref().map(ToString::to_string),
         }),
         steady: modulation.steady.iter().map(cycle).collect(),
-        motion: modulation
-            .motion
-            .as_ref()
-            .map(|motion| displacement(motion, solution)),
+        motion: modulation.motion.as_ref().map(|motion| displacement(motion, solution)),
     }
 }
 
@@ -565,10 +540,7 @@ fn response(response: &solution::Response, solution: &Solution) -> Response {
             .plane
             .as_ref()
             .map(|plane| plane.coordinates.map(|name| name.to_string())),
-        rates: response
-            .plane
-            .as_ref()
-            .map(|plane| plane.rates.each_ref().map(polynomial)),
+        rates: response.plane.as_ref().map(|plane| plane.rates.each_ref().map(polynomial)),
         parts: response.plane.as_ref().map_or_else(Vec::new, |plane| {
             let orders = |part: &Vec<[exact::Polynomial; 2]>| {
                 let orders = part.iter().map(|rates| rates.each_ref().map(polynomial));
@@ -610,10 +582,7 @@ impl SolutionDocument {
         let driven = equation.left.contains(time) || equation.right.contains(time);
         let names = &Names::beside(own.chain([equation.coordinate]), driven);
         let definition = |(name, meaning): (&String, &String)| {
-            Ok(Definition {
-                symbol: names.symbol(name),
-                meaning: names.expression(meaning, name)?,
-            })
+            Ok(Definition { symbol: names.symbol(name), meaning: names.expression(meaning, name)? })
         };
         Ok(Solution {
             equation: Equation {
@@ -643,28 +612,12 @@ impl SolutionDocument {
                 Some(text) => Some(names.expression(text, "closed_motion")?),
                 None => None,
             },
-            limit_cycle: self
-                .limit_cycle
-                .as_ref()
-                .map(|own| own.read(names))
-                .transpose()?,
-            modulation: self
-                .modulation
-                .as_ref()
-                .map(|own| own.read(names))
-                .transpose()?,
-            response: self
-                .response
-                .as_ref()
-                .map(|own| own.read(names))
-                .transpose()?,
+            limit_cycle: self.limit_cycle.as_ref().map(|own| own.read(names)).transpose()?,
+            modulation: self.modulation.as_ref().map(|own| own.read(names)).transpose()?,
+            response: self.response.as_ref().map(|own| own.read(names)).transpose()?,
             numerical: self.numerical,
             validity: self.validity.iter().cloned().map(Note::Stated).collect(),
-            convergence: self
-                .convergence
-                .as_ref()
-                .map(|own| own.read(names))
-                .transpose()?,
+            convergence: self.convergence.as_ref().map(|own| own.read(names)).transpose()?,
             steps: vec![],
             derivation: vec![],
         })
@@ -673,44 +626,26 @@ impl SolutionDocument {
     /// The law, of whose kinds a document holds one.
     fn law(&self, names: &Names) -> Result<Law, JsonError> {
         let optional = |law: &Option<Polynomial>, key| {
-            law.as_ref()
-                .map(|law| names.polynomial(law, key))
-                .transpose()
+            law.as_ref().map(|law| names.polynomial(law, key)).transpose()
         };
         let frequency = optional(&self.frequency, "frequency")?;
         let squared = optional(&self.frequency_squared, "frequency_squared")?;
-        let form = self
-            .closed_form
-            .as_deref()
-            .map(|text| closed_form(text, names))
-            .transpose()?;
-        let system = self
-            .system
-            .as_ref()
-            .map(|own| own.read(names))
-            .transpose()?;
-        Ok(
-            match (
-                optional(&self.relation, "relation")?,
-                squared,
-                frequency,
-                form,
-                system,
-            ) {
-                (Some(relation), squared, _, form, _) => Law::Relation {
-                    relation,
-                    root: squared.map(Root::Polynomial).or(form.map(Root::Closed)),
-                },
-                (None, Some(squared), frequency, ..) => Law::Series { squared, frequency },
-                (None, None, Some(frequency), ..) => Law::Frequency(frequency),
-                (None, None, None, Some(form), _) => Law::Closed(form),
-                (None, None, None, None, Some(system)) => Law::System(system),
-                (None, None, None, None, None) => {
-                    let lines = self.by_quadrature.as_deref().map(|text| text.split("; "));
-                    Law::Quadrature(lines.into_iter().flatten().map(Line::words).collect())
-                }
+        let form = self.closed_form.as_deref().map(|text| closed_form(text, names)).transpose()?;
+        let system = self.system.as_ref().map(|own| own.read(names)).transpose()?;
+        Ok(match (optional(&self.relation, "relation")?, squared, frequency, form, system) {
+            (Some(relation), squared, _, form, _) => Law::Relation {
+                relation,
+                root: squared.map(Root::Polynomial).or(form.map(Root::Closed)),
             },
-        )
+            (None, Some(squared), frequency, ..) => Law::Series { squared, frequency },
+            (None, None, Some(frequency), ..) => Law::Frequency(frequency),
+            (None, None, None, Some(form), _) => Law::Closed(form),
+            (None, None, None, None, Some(system)) => Law::System(system),
+            (None, None, None, None, None) => {
+                let lines = self.by_quadrature.as_deref().map(|text| text.split("; "));
+                Law::Quadrature(lines.into_iter().flatten().map(Line::words).collect())
+            }
+        })
     }
 }
 
@@ -727,10 +662,7 @@ fn closed_form(text: &str, names: &Names) -> Result<ClosedForm, JsonError> {
 
 impl System {
     fn read(&self, names: &Names) -> Result<solution::System, JsonError> {
-        let equations = self
-            .equations
-            .iter()
-            .map(|text| names.expression(text, "equations"));
+        let equations = self.equations.iter().map(|text| names.expression(text, "equations"));
         Ok(solution::System {
             unknowns: symbols(&self.unknowns, names),
             equations: equations.collect::<Result<_, _>>()?,
@@ -768,10 +700,7 @@ impl Cycle {
 impl Response {
     fn read(&self, names: &Names) -> Result<solution::Response, JsonError> {
         let polynomial = |value: &Option<Polynomial>, key| {
-            value
-                .as_ref()
-                .map(|value| names.polynomial(value, key))
-                .transpose()
+            value.as_ref().map(|value| names.polynomial(value, key)).transpose()
         };
         let branches = |branches: &Branches| -> Result<_, JsonError> {
             Ok(solution::response::Branches {
@@ -797,22 +726,14 @@ impl Response {
                 Ok(solution::response::Plane {
                     coordinates: coordinates.each_ref().map(|name| names.symbol(name)),
                     rates: [names.polynomial(u, "rates")?, names.polynomial(v, "rates")?],
-                    parts: self
-                        .parts
-                        .iter()
-                        .map(|part| orders(part))
-                        .collect::<Result<_, _>>()?,
+                    parts: self.parts.iter().map(|part| orders(part)).collect::<Result<_, _>>()?,
                 })
             };
         Ok(solution::Response {
             motion: names.expression(&self.motion, "motion")?,
             relation: polynomial(&self.relation, "relation")?,
             branches: self.branches.as_ref().map(branches).transpose()?,
-            peak: self
-                .peak
-                .as_deref()
-                .map(|peak| names.expression(peak, "peak"))
-                .transpose()?,
+            peak: self.peak.as_deref().map(|peak| names.expression(peak, "peak")).transpose()?,
             folds: self
                 .folds
                 .iter()
@@ -820,12 +741,7 @@ impl Response {
                 .collect::<Result<_, _>>()?,
             jumps: polynomial(&self.jumps, "jumps")?,
             closed: self.closed.as_ref().map(closed).transpose()?,
-            plane: self
-                .coordinates
-                .as_ref()
-                .zip(self.rates.as_ref())
-                .map(plane)
-                .transpose()?,
+            plane: self.coordinates.as_ref().zip(self.rates.as_ref()).map(plane).transpose()?,
         })
     }
 }
@@ -833,9 +749,7 @@ impl Response {
 impl Modulation {
     fn read(&self, names: &Names) -> Result<solution::Modulation, JsonError> {
         let optional = |text: &Option<String>, key| {
-            text.as_deref()
-                .map(|text| names.expression(text, key))
-                .transpose()
+            text.as_deref().map(|text| names.expression(text, key)).transpose()
         };
         let resonance = |resonance: &Resonance| -> Result<_, JsonError> {
             Ok(modulation::Resonance {
@@ -877,11 +791,7 @@ impl Modulation {
                 .iter()
                 .map(|own| own.read(names))
                 .collect::<Result<_, JsonError>>()?,
-            motion: self
-                .motion
-                .as_ref()
-                .map(|own| own.read(names))
-                .transpose()?,
+            motion: self.motion.as_ref().map(|own| own.read(names)).transpose()?,
         })
     }
 }

@@ -41,10 +41,7 @@ pub struct StabilityDocument {
 /// A transition curve: `curve + sign*sqrt(under_root)`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "TransitionCurve")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "TransitionCurve"))]
 pub struct CurveDocument {
     /// `a1`, `b1` for motions of cosines and of sines; `lower1`, `upper1` where they are of both.
     pub name: String,
@@ -78,10 +75,7 @@ pub struct StabilityVerification {
 /// A curve at the values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(
-    feature = "schema",
-    schemars(deny_unknown_fields, rename = "JudgedCurve")
-)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "JudgedCurve"))]
 pub struct JudgedCurveDocument {
     /// Its name.
     pub name: String,
@@ -132,11 +126,7 @@ pub fn stability(report: &StabilityReport) -> StabilityDocument {
             .map(|curve| CurveDocument {
                 name: curve.name.clone(),
                 tongue: curve.tongue,
-                multiplier: if curve.tongue.is_multiple_of(2) {
-                    1
-                } else {
-                    -1
-                },
+                multiplier: if curve.tongue.is_multiple_of(2) { 1 } else { -1 },
                 curve: polynomial(&curve.middle),
                 under_root: curve.under_root.as_ref().map(polynomial),
                 sign: match (&curve.under_root, curve.upper) {
@@ -147,10 +137,7 @@ pub fn stability(report: &StabilityReport) -> StabilityDocument {
             })
             .collect(),
         verification: report.judged.map(|(at, judged)| StabilityVerification {
-            at: at
-                .iter()
-                .map(|(name, value)| (name.to_string(), Constant::of(value)))
-                .collect(),
+            at: at.iter().map(|(name, value)| (name.to_string(), Constant::of(value))).collect(),
             tolerance: report.tolerance,
             curves: judged
                 .iter()

@@ -142,13 +142,11 @@ impl Serialize for Streamed<'_> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
-    let columns = columns(report.axes, report.has_baseline())
-        .into_iter()
-        .map(|column| Column {
-            name: column.name,
-            unit: column.unit.map(str::to_owned),
-            meaning: column.meaning.to_owned(),
-        });
+    let columns = columns(report.axes, report.has_baseline()).into_iter().map(|column| Column {
+        name: column.name,
+        unit: column.unit.map(str::to_owned),
+        meaning: column.meaning.to_owned(),
+    });
     let document = SweepDocument {
         schema: Kind::Sweep.schema().to_owned(),
         axes: report.axes.iter().map(Axis::from).collect(),

@@ -193,20 +193,13 @@ pub fn verification(verification: &verify::Verification) -> Verification {
         residual: finite(verification.residual),
         slope: finite(verification.slope),
         ranges: ranges
-            .map(|range| Range {
-                text: range.text.clone(),
-                outside: range.outside,
-            })
+            .map(|range| Range { text: range.text.clone(), outside: range.outside })
             .collect(),
         chosen: numbers(&verification.chosen),
         values: numbers(&verification.values),
         phase: verification.phase,
         motion: verification.motion.as_ref().and_then(motion),
-        steady_states: verification
-            .steady_states
-            .iter()
-            .map(steady_state)
-            .collect(),
+        steady_states: verification.steady_states.iter().map(steady_state).collect(),
         spurious: verification.spurious,
         followed: verification.followed.as_ref().map(|followed| Followed {
             until: followed.until,
@@ -227,10 +220,7 @@ fn steady_state(judged: &verify::JudgedState) -> SteadyState {
     SteadyState {
         amplitude: judged.state.amplitude,
         phase: judged.state.phase,
-        eigenvalues: judged
-            .state
-            .eigenvalues
-            .map(|(real, imaginary)| [real, imaginary]),
+        eigenvalues: judged.state.eigenvalues.map(|(real, imaginary)| [real, imaginary]),
         stable: judged.state.is_stable(),
         true_amplitude: finite(judged.true_amplitude),
         true_stable: judged.true_stable,
@@ -259,16 +249,11 @@ fn motion(motion: &FourierSeries<Doubles>) -> Option<Vec<HarmonicValue>> {
 
 /// Exact values by their names.
 pub(super) fn values(values: &Values) -> Map<Constant> {
-    values
-        .iter()
-        .map(|(name, value)| (name.to_string(), Constant::of(value)))
-        .collect()
+    values.iter().map(|(name, value)| (name.to_string(), Constant::of(value))).collect()
 }
 
 /// Numbers by their names.
 pub(super) fn numbers(numbers: &[(Symbol, f64)]) -> Map<f64> {
     let numbers = numbers.iter();
-    numbers
-        .map(|(name, value)| (name.to_string(), *value))
-        .collect()
+    numbers.map(|(name, value)| (name.to_string(), *value)).collect()
 }

@@ -21,9 +21,8 @@ pub(super) fn truth(equation: &Equation, frequency: &Result<f64, String>) -> Str
 /// The table, a formula at the end of each row.
 pub(super) fn methods(rows: &[MethodRow], at: &Values) -> Table {
     let at = at.iter();
-    let at: Vec<String> = at
-        .map(|(name, value)| format!("{} = {}", symbol(name), expression(value)))
-        .collect();
+    let at: Vec<String> =
+        at.map(|(name, value)| format!("{} = {}", symbol(name), expression(value))).collect();
     let place = match at.is_empty() {
         true => String::new(),
         false => format!(" at ${}$", at.join(", ")),
@@ -31,13 +30,7 @@ pub(super) fn methods(rows: &[MethodRow], at: &Values) -> Table {
     let omega = format!("${}${place}", symbol(FREQUENCY));
     Table {
         places: "lrrrl".to_owned(),
-        head: table::head(&[
-            "method",
-            &omega,
-            "error in \\%",
-            "deviation in \\%",
-            "formula",
-        ]),
+        head: table::head(&["method", &omega, "error in \\%", "deviation in \\%", "formula"]),
         rows: rows.iter().map(row).collect(),
         framed: true,
     }

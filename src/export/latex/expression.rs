@@ -116,10 +116,7 @@ fn term(term: &Expr, turn: bool) -> Vec<Piece> {
     let decimal = decimal_of_long_fraction(&coefficient.abs());
     let (numerator, denominator) = match decimal {
         Some(decimal) => (super::scientific_text(&decimal), Integer::one()),
-        None => (
-            coefficient.numer().abs().to_string(),
-            coefficient.denom().clone(),
-        ),
+        None => (coefficient.numer().abs().to_string(), coefficient.denom().clone()),
     };
     let is_fraction = !denominator.is_one() || !below.is_empty();
     let above = match above.as_slice() {
@@ -127,10 +124,7 @@ fn term(term: &Expr, turn: bool) -> Vec<Piece> {
         [(base, exponent)] if is_fraction && numerator == "1" && exponent.is_one() => {
             vec![Piece::Expr(base.clone(), Place::Inside)]
         }
-        _ => row(
-            (numerator != "1" || above.is_empty()).then_some(numerator),
-            &above,
-        ),
+        _ => row((numerator != "1" || above.is_empty()).then_some(numerator), &above),
     };
     let below = match below.as_slice() {
         [] if denominator.is_one() => return above,
@@ -138,18 +132,9 @@ fn term(term: &Expr, turn: bool) -> Vec<Piece> {
         [(base, exponent)] if denominator.is_one() && exponent.is_one() => {
             vec![Piece::Expr(base.clone(), Place::Inside)]
         }
-        _ => row(
-            (!denominator.is_one()).then(|| denominator.to_string()),
-            &below,
-        ),
+        _ => row((!denominator.is_one()).then(|| denominator.to_string()), &below),
     };
-    let line = [
-        vec![text("\\frac{")],
-        above,
-        vec![text("}{")],
-        below,
-        vec![text("}")],
-    ];
+    let line = [vec![text("\\frac{")], above, vec![text("}{")], below, vec![text("}")]];
     line.into_iter().flatten().collect()
 }
 
@@ -172,11 +157,7 @@ fn power(base: &Expr, exponent: &Expr) -> Vec<Piece> {
     let exponent = match exponent.as_number() {
         Some(number) if number.is_one() => return vec![Piece::Expr(base.clone(), Place::Factor)],
         Some(number) if *number == half => {
-            return vec![
-                text("\\sqrt{"),
-                Piece::Expr(base.clone(), Place::Inside),
-                text("}"),
-            ];
+            return vec![text("\\sqrt{"), Piece::Expr(base.clone(), Place::Inside), text("}")];
         }
         Some(number) if !number.is_integer() => {
             text(format!("{}/{}", number.numer(), number.denom()))
@@ -197,11 +178,7 @@ fn power(base: &Expr, exponent: &Expr) -> Vec<Piece> {
 }
 
 fn in_parentheses(expr: &Expr) -> Vec<Piece> {
-    vec![
-        text("\\left("),
-        Piece::Expr(expr.clone(), Place::Inside),
-        text("\\right)"),
-    ]
+    vec![text("\\left("), Piece::Expr(expr.clone(), Place::Inside), text("\\right)")]
 }
 
 /// A factor that needs no sign between itself and its neighbours.
@@ -312,14 +289,8 @@ mod tests {
     #[test]
     fn expressions_as_in_an_article() {
         for (text, expected) in [
-            (
-                "1 - A^2/8 + 7*A^4/1536",
-                r"1 - \frac{A^{2}}{8} + \frac{7 A^{4}}{1536}",
-            ),
-            (
-                "x'' + 2*zeta*x' + sin(x)",
-                r"\ddot{x} + 2 \zeta \dot{x} + \sin\left(x\right)",
-            ),
+            ("1 - A^2/8 + 7*A^4/1536", r"1 - \frac{A^{2}}{8} + \frac{7 A^{4}}{1536}"),
+            ("x'' + 2*zeta*x' + sin(x)", r"\ddot{x} + 2 \zeta \dot{x} + \sin\left(x\right)"),
             (
                 "omega0 + 3*eps*A^2/(8*omega0)",
                 r"\omega_{0} + \frac{3 \varepsilon A^{2}}{8 \omega_{0}}",
@@ -332,10 +303,7 @@ mod tests {
             ("-x/2", r"-\frac{x}{2}"),
             ("x'^2*abs(x)", r"{\dot{x}}^{2} \left|x\right|"),
             ("mass1*x", r"\mathrm{mass}_{1} x"),
-            (
-                "exp(-x)/(1 + x^2)",
-                r"\frac{\exp\left(-x\right)}{1 + x^{2}}",
-            ),
+            ("exp(-x)/(1 + x^2)", r"\frac{\exp\left(-x\right)}{1 + x^{2}}"),
             ("-2*y*(1 + x)/3", r"-\frac{2 y \left(1 + x\right)}{3}"),
             ("(x^2)^(3/2)", r"\left(x^{2}\right)^{3/2}"),
             ("1/(1 + sin(x))", r"\frac{1}{1 + \sin\left(x\right)}"),
@@ -393,9 +361,7 @@ mod tests {
             ends.extend(longer);
         }
         let mut seen = std::collections::BTreeMap::new();
-        for name in stems
-            .iter()
-            .flat_map(|stem| ends.iter().map(move |end| format!("{stem}{end}")))
+        for name in stems.iter().flat_map(|stem| ends.iter().map(move |end| format!("{stem}{end}")))
         {
             if let Some(other) = seen.insert(symbol(Symbol::new(&name)), name.clone()) {
                 assert_eq!(other, name);

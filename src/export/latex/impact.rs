@@ -85,9 +85,7 @@ pub(super) fn si_quantities(columns: &[Reading], rows: &[(Quantity, &str)]) -> T
             unit => format!("{}, ${}$", row.name, upright(unit)),
         };
         let values = std::iter::once(&row.runge_kutta).chain(&row.closed_forms);
-        std::iter::once(name)
-            .chain(values.map(|value| number(*value)))
-            .collect()
+        std::iter::once(name).chain(values.map(|value| number(*value))).collect()
     };
     let names = columns.iter().map(|column| column.name());
     let head: Vec<&str> = ["", "Runge--Kutta"].into_iter().chain(names).collect();
@@ -109,16 +107,7 @@ pub(super) fn contact_laws(rows: &[ContactRow]) -> Table {
         let cells = std::iter::once(row.law.to_string()).chain(pairs.into_iter().flatten());
         Some(cells.chain([last]).collect())
     };
-    let head = [
-        "law",
-        "duration",
-        "\\%",
-        "penetration",
-        "\\%",
-        "peak force",
-        "\\%",
-        "motion, \\%",
-    ];
+    let head = ["law", "duration", "\\%", "penetration", "\\%", "peak force", "\\%", "motion, \\%"];
     Table::of_numbers(table::head(&head), rows.iter().filter_map(row).collect())
 }
 
@@ -129,9 +118,7 @@ pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5]) -> Table {
         false => format!("${}$", scientific_text(&significant(100.0 * value, 3))),
     };
     let known = truth.map(number).into_iter().chain(vec![String::new(); 3]);
-    let known = std::iter::once("Runge--Kutta".to_owned())
-        .chain(known)
-        .collect();
+    let known = std::iter::once("Runge--Kutta".to_owned()).chain(known).collect();
     let row = |row: &ImpactRow| {
         let cells = row.errors.iter().chain(&row.deviations);
         let cells = cells.map(|value| percent(*value));
@@ -153,11 +140,7 @@ pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5]) -> Table {
 }
 
 fn signed(value: f64) -> String {
-    format!(
-        "{} {}",
-        if value < 0.0 { '-' } else { '+' },
-        scientific(value.abs())
-    )
+    format!("{} {}", if value < 0.0 { '-' } else { '+' }, scientific(value.abs()))
 }
 
 /// The name of a phase and when it is, and its closed form: a few waves to a row.
@@ -169,27 +152,15 @@ pub(super) fn phase(phase: &Phase, letters: Letters) -> Vec<String> {
     };
     let mut waves: Vec<String> = Vec::new();
     match &phase.form {
-        &Form::Cosine {
-            amplitude,
-            frequency,
-            phase,
-        } => {
-            let shift = if phase == 0.0 {
-                String::new()
-            } else {
-                format!(" {}", signed(phase))
-            };
+        &Form::Cosine { amplitude, frequency, phase } => {
+            let shift = if phase == 0.0 { String::new() } else { format!(" {}", signed(phase)) };
             waves.push(format!(
                 "{} \\cos\\left({}\\,{clock}{shift}\\right)",
                 scientific(amplitude),
                 scientific(frequency)
             ));
         }
-        &Form::Oscillation {
-            centre,
-            amplitude,
-            frequency,
-        } => {
+        &Form::Oscillation { centre, amplitude, frequency } => {
             let angle = format!("\\left({}\\,{clock}\\right)", scientific(frequency));
             let centre = scientific_text(&significant(centre, 9));
             waves.push(format!(
@@ -200,18 +171,11 @@ pub(super) fn phase(phase: &Phase, letters: Letters) -> Vec<String> {
         }
         Form::Harmonics { .. } | Form::Contact { .. } => {
             for (term, value) in phase.form.felt_terms() {
-                let size = if waves.is_empty() {
-                    scientific(value)
-                } else {
-                    signed(value)
-                };
+                let size = if waves.is_empty() { scientific(value) } else { signed(value) };
                 waves.push(match term {
                     Term::Constant => scientific_text(&significant(value, 9)),
                     Term::Parabola => format!("{size}\\,{clock}(t_{{2}} - t)"),
-                    Term::Wave {
-                        function,
-                        frequency,
-                    } => {
+                    Term::Wave { function, frequency } => {
                         format!(
                             "{size} \\{function}\\left({}\\,{clock}\\right)",
                             scientific(frequency)
@@ -229,10 +193,7 @@ pub(super) fn phase(phase: &Phase, letters: Letters) -> Vec<String> {
         }
         _ => ("t_{2}", scientific(phase.end)),
     };
-    let mut rows = vec![format!(
-        "&\\text{{{},}} \\quad {from} \\le t \\le {to}",
-        phase.name
-    )];
+    let mut rows = vec![format!("&\\text{{{},}} \\quad {from} \\le t \\le {to}", phase.name)];
     for (index, waves) in waves.chunks(WAVES_IN_A_ROW).enumerate() {
         let left = match index {
             0 => format!("{}(t) &= ", symbol(letters.coordinate)),

@@ -55,14 +55,8 @@ pub(super) fn table(head: &[Heading], rows: &[Vec<String>]) -> Table {
     }
     Table {
         places,
-        head: head
-            .iter()
-            .map(|heading| heading.latex.to_owned())
-            .collect(),
-        rows: rows
-            .iter()
-            .map(|row| row.iter().map(cell).collect())
-            .collect(),
+        head: head.iter().map(|heading| heading.latex.to_owned()).collect(),
+        rows: rows.iter().map(|row| row.iter().map(cell).collect()).collect(),
         framed: false,
     }
 }

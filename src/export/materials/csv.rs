@@ -51,9 +51,8 @@ pub fn materials(study: &MaterialStudy) -> String {
                 first.restitution,
             ]
         });
-        let first: Vec<String> = (0..6)
-            .map(|place| optional(first.map(|first| first[place])))
-            .collect();
+        let first: Vec<String> =
+            (0..6).map(|place| optional(first.map(|first| first[place]))).collect();
         let rest = row.course.rest_time.ok();
         let energies: Vec<String> = row.course.energies.iter().map(f64::to_string).collect();
         let _ = writeln!(

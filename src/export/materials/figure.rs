@@ -80,11 +80,7 @@ pub fn materials(study: &MaterialStudy) -> Result<String, MaterialsFigureError> 
     }
     let [softest, _] = study.softest_and_hardest();
     let beside = [
-        (
-            "no barrier",
-            study.motion_without(None, end)?,
-            CurveStyle::SERIES[4],
-        ),
+        ("no barrier", study.motion_without(None, end)?, CurveStyle::SERIES[4]),
         (
             "barrier without loss",
             study.motion_without(Some(softest), end)?,
@@ -93,53 +89,37 @@ pub fn materials(study: &MaterialStudy) -> Result<String, MaterialsFigureError> 
     ];
     let beside = beside.map(|(label, motion, style)| (label, decay(&motion, second), style));
     let form = |held: &Option<&HeldFixed>| {
-        held.map_or(study.dissipation.contact, |held| held.damping)
-            .form()
-            .name()
+        held.map_or(study.dissipation.contact, |held| held.damping).form().name()
     };
     let has_own = study.rows.iter().any(|row| row.material.damping.is_some());
     let title = |what: &str, held: &Option<&HeldFixed>| match has_own && held.is_none() {
         true => format!("{what}, each as given"),
         false => format!("{what}, {} held fixed", form(held)),
     };
-    let titles: Vec<[String; 2]> = sides
-        .iter()
-        .map(|held| ["Swing", "Decay"].map(|what| title(what, held)))
-        .collect();
-    let barriers: Vec<f64> = [study.model.left, study.model.right]
-        .into_iter()
-        .flatten()
-        .collect();
-    let swings = motions
-        .iter()
-        .zip(&titles)
-        .map(|([swings, _], [title, _])| Panel {
+    let titles: Vec<[String; 2]> =
+        sides.iter().map(|held| ["Swing", "Decay"].map(|what| title(what, held))).collect();
+    let barriers: Vec<f64> = [study.model.left, study.model.right].into_iter().flatten().collect();
+    let swings = motions.iter().zip(&titles).map(|([swings, _], [title, _])| Panel {
+        title,
+        x_label: "time t (s)",
+        y_label: "displacement x (rad)",
+        curves: of_materials(study, swings),
+        guides: barriers.iter().map(|barrier| Guide::Y(*barrier, "barrier x_c")).collect(),
+        ..Panel::default()
+    });
+    let decays = motions.iter().zip(&titles).map(|([_, decays], [_, title])| {
+        let beside = beside.iter().filter(|(_, points, _)| points.len() > 1);
+        let beside = beside.map(|(label, points, style)| curve(label, points, *style));
+        Panel {
             title,
             x_label: "time t (s)",
-            y_label: "displacement x (rad)",
-            curves: of_materials(study, swings),
-            guides: barriers
-                .iter()
-                .map(|barrier| Guide::Y(*barrier, "barrier x_c"))
-                .collect(),
+            y_label: "amplitude (% of the first swing)",
+            y_scale: Scale::Logarithmic,
+            curves: beside.chain(of_materials(study, decays)).collect(),
+            guides: vec![Guide::Y(100.0 * REST_FRACTION, "rest, 10 %")],
             ..Panel::default()
-        });
-    let decays = motions
-        .iter()
-        .zip(&titles)
-        .map(|([_, decays], [_, title])| {
-            let beside = beside.iter().filter(|(_, points, _)| points.len() > 1);
-            let beside = beside.map(|(label, points, style)| curve(label, points, *style));
-            Panel {
-                title,
-                x_label: "time t (s)",
-                y_label: "amplitude (% of the first swing)",
-                y_scale: Scale::Logarithmic,
-                curves: beside.chain(of_materials(study, decays)).collect(),
-                guides: vec![Guide::Y(100.0 * REST_FRACTION, "rest, 10 %")],
-                ..Panel::default()
-            }
-        });
+        }
+    });
     let panels: Vec<Panel> = swings.chain(decays).collect();
     Ok(figure(&panels, &caption(study, contrast, drawn))?)
 }
@@ -147,10 +127,7 @@ pub fn materials(study: &MaterialStudy) -> Result<String, MaterialsFigureError> 
 /// When the last of them rests; the end of the run where one does not.
 fn last_rest(study: &MaterialStudy) -> f64 {
     let of_rows = study.rows.iter().map(|row| row.course.rest_time);
-    let of_held = study
-        .held_fixed
-        .iter()
-        .flat_map(|held| held.rest_times.iter().copied());
+    let of_held = study.held_fixed.iter().flat_map(|held| held.rest_times.iter().copied());
     let all: Result<Vec<f64>, _> = of_rows.chain(of_held).chain([study.no_barrier]).collect();
     let longest = all.map(|times| times.into_iter().fold(0.0, f64::max));
     longest.unwrap_or(study.question.settings.duration)
@@ -163,10 +140,7 @@ fn contrast(study: &MaterialStudy) -> Option<&HeldFixed> {
         matches!(damping.form(), Parameter::Mu | Parameter::ContactDamping)
     };
     let given = by_mu(study.dissipation.contact);
-    study
-        .held_fixed
-        .iter()
-        .find(|held| by_mu(held.damping) != given)
+    study.held_fixed.iter().find(|held| by_mu(held.damping) != given)
 }
 
 /// A curve for each material; one point alone is none.
@@ -178,19 +152,13 @@ fn of_materials<'a>(study: &'a MaterialStudy, points: &'a [Points]) -> Vec<Curve
 }
 
 fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
-    Curve {
-        label,
-        points,
-        style,
-    }
+    Curve { label, points, style }
 }
 
 /// The displacement in this window of time, the time in seconds.
 fn swing(motion: &Simulation, [from, to]: [f64; 2], second: f64) -> Points {
     let times = (0..=POINTS).map(|index| from + (to - from) * (index as f64 / POINTS as f64));
-    times
-        .filter_map(|t| Some((t * second, motion.path.at(t)?.0)))
-        .collect()
+    times.filter_map(|t| Some((t * second, motion.path.at(t)?.0))).collect()
 }
 
 /// The amplitude at the turning points of the envelope, in percent of the first, the time in
@@ -198,9 +166,7 @@ fn swing(motion: &Simulation, [from, to]: [f64; 2], second: f64) -> Points {
 fn decay(motion: &Simulation, second: f64) -> Points {
     let envelope = motion.envelope();
     let first = envelope.first().map_or(1.0, |turn| turn.x.abs());
-    let points = envelope
-        .iter()
-        .map(|turn| (turn.t * second, 100.0 * turn.x.abs() / first));
+    let points = envelope.iter().map(|turn| (turn.t * second, 100.0 * turn.x.abs() / first));
     points.filter(|(_, amplitude)| *amplitude > 0.0).collect()
 }
 
@@ -216,11 +182,8 @@ fn caption(study: &MaterialStudy, contrast: Option<&HeldFixed>, drawn: usize) ->
         .trim_end()
         .to_owned()
     };
-    let mut text = format!(
-        "Pendulum of {} m, ζ = {}",
-        decimal(study.units.length),
-        decimal(study.model.zeta)
-    );
+    let mut text =
+        format!("Pendulum of {} m, ζ = {}", decimal(study.units.length), decimal(study.model.zeta));
     if study.model.alpha != 0.0 {
         text += &format!(", α = {}", decimal(study.model.alpha));
     }
@@ -229,21 +192,16 @@ fn caption(study: &MaterialStudy, contrast: Option<&HeldFixed>, drawn: usize) ->
         text += &format!(", or {}", words(held.damping));
     }
     let spread = |held: &HeldFixed| {
-        held.spread()
-            .map(|spread| format!("{} %", significant(100.0 * spread, 3)))
+        held.spread().map(|spread| format!("{} %", significant(100.0 * spread, 3)))
     };
-    if let (Some(first), Some(second)) = (
-        study.held_fixed.first().and_then(spread),
-        contrast.and_then(spread),
-    ) {
+    if let (Some(first), Some(second)) =
+        (study.held_fixed.first().and_then(spread), contrast.and_then(spread))
+    {
         text += &format!(": rest times {first} apart, or {second}");
     }
     text += ".";
     if drawn < study.rows.len() {
-        text += &format!(
-            " The first {drawn} of {} materials are drawn.",
-            study.rows.len()
-        );
+        text += &format!(" The first {drawn} of {} materials are drawn.", study.rows.len());
     }
     text
 }

@@ -21,22 +21,10 @@ pub fn optimization(study: &Study) -> String {
         let fields: Vec<&str> = columns.iter().map(|column| of(column).as_str()).collect();
         fields.join(",")
     };
-    let mut text = format!(
-        "# {}\n{}\n",
-        joined(|column| &column.1),
-        joined(|column| &column.0)
-    );
+    let mut text = format!("# {}\n{}\n", joined(|column| &column.1), joined(|column| &column.0));
     let rows: Vec<Vec<String>> = match question.objectives.len() {
-        1 => study
-            .runs
-            .iter()
-            .map(|run| best_of(run, question))
-            .collect(),
-        _ => study
-            .finalists
-            .iter()
-            .map(|one| compromise(one, question))
-            .collect(),
+        1 => study.runs.iter().map(|run| best_of(run, question)).collect(),
+        _ => study.finalists.iter().map(|one| compromise(one, question)).collect(),
     };
     for row in rows {
         let _ = writeln!(text, "{}", row.join(","));
@@ -72,12 +60,8 @@ fn columns(question: &Question) -> Vec<(String, String)> {
 
 /// The variables that have a column of their own: the mass may be an objective, which has one.
 fn own_variables(question: &Question) -> impl Iterator<Item = usize> {
-    let is_objective = |name: &str| {
-        question
-            .objectives
-            .iter()
-            .any(|objective| objective.name() == name)
-    };
+    let is_objective =
+        |name: &str| question.objectives.iter().any(|objective| objective.name() == name);
     (0..question.variables.len())
         .filter(move |&index| !is_objective(question.variables[index].parameter.name()))
 }
@@ -98,10 +82,7 @@ fn others(question: &Question) -> impl Iterator<Item = Objective> {
 /// The best design of a run for one objective, and how the run went.
 fn best_of(run: &SearchRun, question: &Question) -> Vec<String> {
     let found = run.found.first();
-    let mut fields = vec![
-        run.number.to_string(),
-        number(found.map(|found| found.values[0])),
-    ];
+    let mut fields = vec![run.number.to_string(), number(found.map(|found| found.values[0]))];
     fields
         .extend(own_variables(question).map(|index| number(found.map(|found| found.point[index]))));
     if !question.materials.is_empty() {

@@ -91,10 +91,7 @@ impl Convergence {
         let (crossed, mutated) = study.question.genetic.children();
         let born = (crossed + mutated) as f64;
         let finite = |points: Points| -> Points {
-            points
-                .into_iter()
-                .filter(|(_, value)| value.is_finite())
-                .collect()
+            points.into_iter().filter(|(_, value)| value.is_finite()).collect()
         };
         let after = |curve: &[f64]| -> Points {
             let place = |(index, value): (usize, &f64)| (population + born * index as f64, *value);
@@ -114,19 +111,14 @@ impl Convergence {
 
     fn curves<'a>(&'a self, study: &'a Study) -> Vec<Curve<'a>> {
         let runs = self.runs.iter();
-        let mut curves: Vec<Curve> = runs
-            .map(|points| curve("each run", points, CurveStyle::ONE_OF_MANY))
-            .collect();
+        let mut curves: Vec<Curve> =
+            runs.map(|points| curve("each run", points, CurveStyle::ONE_OF_MANY)).collect();
         let beside = [CurveStyle::SERIES[1], CurveStyle::SERIES[2]];
         let rivals = study.rivals.iter().zip(&self.rivals).zip(beside);
         let drawn = rivals.filter(|((_, points), _)| points.len() > 1);
         curves.extend(drawn.map(|((rival, points), style)| curve(rival.name, points, style)));
         if self.median.len() > 1 {
-            curves.push(curve(
-                "genetic algorithm, median",
-                &self.median,
-                CurveStyle::SERIES[0],
-            ));
+            curves.push(curve("genetic algorithm, median", &self.median, CurveStyle::SERIES[0]));
         }
         curves
     }
@@ -159,19 +151,11 @@ impl Designs {
             [
                 near.take(1500).map(|point| at(point)).collect(),
                 best.map(|found| at(&found.point)).collect(),
-                study
-                    .default_design
-                    .iter()
-                    .map(|papers| at(&papers.point))
-                    .collect(),
+                study.default_design.iter().map(|papers| at(&papers.point)).collect(),
             ]
         };
         let label = |variable: &Variable| {
-            format!(
-                "{} ({})",
-                variable.parameter.name(),
-                variable.parameter.unit()
-            )
+            format!("{} ({})", variable.parameter.name(), variable.parameter.unit())
         };
         Self {
             points: pairs.iter().map(points).collect(),
@@ -189,11 +173,8 @@ impl Designs {
         };
         let panel = |(pair, points): (&[usize; 2], &'a [Points; 3])| {
             let names = [&self.within, "best of each run", "the paper's Table 5"];
-            let styles = [
-                CurveStyle::POINTS,
-                CurveStyle::MARKED_POINTS,
-                CurveStyle::SECOND_MARKED_POINTS,
-            ];
+            let styles =
+                [CurveStyle::POINTS, CurveStyle::MARKED_POINTS, CurveStyle::SECOND_MARKED_POINTS];
             let all = names.into_iter().zip(points).zip(styles);
             let curves: Vec<Curve> = all
                 .filter(|((_, points), _)| !points.is_empty())
@@ -214,11 +195,7 @@ impl Designs {
                     .collect(),
             })
         };
-        self.pairs
-            .iter()
-            .zip(&self.points)
-            .filter_map(panel)
-            .collect()
+        self.pairs.iter().zip(&self.points).filter_map(panel).collect()
     }
 }
 
@@ -233,9 +210,7 @@ fn front(study: &Study) -> Result<String, FigureError> {
                 .finalists
                 .iter()
                 .map(|finalist| (value(&finalist.values, 0), value(&finalist.values, *index)));
-            pairs
-                .filter(|(x, y)| x.is_finite() && y.is_finite())
-                .collect()
+            pairs.filter(|(x, y)| x.is_finite() && y.is_finite()).collect()
         })
         .collect();
     let papers: Vec<Points> = others
@@ -243,10 +218,7 @@ fn front(study: &Study) -> Result<String, FigureError> {
         .map(|index| {
             let papers = study.default_design.as_ref();
             let pair = papers.and_then(|papers| {
-                Some((
-                    objectives[0].value(papers)?,
-                    objectives[*index].value(papers)?,
-                ))
+                Some((objectives[0].value(papers)?, objectives[*index].value(papers)?))
             });
             pair.into_iter().collect()
         })
@@ -283,10 +255,7 @@ fn front(study: &Study) -> Result<String, FigureError> {
             guides: vec![],
         });
     }
-    let names: Vec<&str> = objectives
-        .iter()
-        .map(|objective| objective.meaning())
-        .collect();
+    let names: Vec<&str> = objectives.iter().map(|objective| objective.meaning()).collect();
     let caption = format!(
         "{} designs none of which is better than another in everything: {}. {} runs of NSGA-II, seed {}.",
         study.finalists.len(),
@@ -298,9 +267,5 @@ fn front(study: &Study) -> Result<String, FigureError> {
 }
 
 fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
-    Curve {
-        label,
-        points,
-        style,
-    }
+    Curve { label, points, style }
 }

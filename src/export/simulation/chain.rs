@@ -25,18 +25,11 @@ pub(super) fn impacts(text: &mut String, motion: &Simulation, judge: &Simulation
         "", "side", "entry", "duration", "speed in", "speed out", "penetration", "restitution"
     );
     let optional = |value: Option<f64>| value.map_or("-".to_owned(), decimal);
-    for (index, (impact, error)) in motion
-        .impacts
-        .iter()
-        .zip(motion.contact_deviations(judge))
-        .enumerate()
+    for (index, (impact, error)) in
+        motion.impacts.iter().zip(motion.contact_deviations(judge)).enumerate()
     {
         if index == LISTED && index + 1 < count {
-            let _ = writeln!(
-                text,
-                "   ... {} more, all of them in --format json",
-                count - index
-            );
+            let _ = writeln!(text, "   ... {} more, all of them in --format json", count - index);
             break;
         }
         let _ = writeln!(
@@ -52,23 +45,19 @@ pub(super) fn impacts(text: &mut String, motion: &Simulation, judge: &Simulation
             optional(impact.restitution)
         );
         let _ = match error {
-            Some(ContactDeviation {
-                entry_time,
-                speed_in,
-                penetration,
-                duration,
-                speed_out,
-            }) => writeln!(
-                text,
-                "  {:>4}  {:5}  {:>12}  {:>12}  {:>11}  {:>11}  {:>12}",
-                "",
-                "",
-                format!("{entry_time:+.1e}"),
-                duration.map_or("-".to_owned(), percent),
-                speed_in.map_or("-".to_owned(), percent),
-                speed_out.map_or("-".to_owned(), percent),
-                penetration.map_or("-".to_owned(), percent)
-            ),
+            Some(ContactDeviation { entry_time, speed_in, penetration, duration, speed_out }) => {
+                writeln!(
+                    text,
+                    "  {:>4}  {:5}  {:>12}  {:>12}  {:>11}  {:>11}  {:>12}",
+                    "",
+                    "",
+                    format!("{entry_time:+.1e}"),
+                    duration.map_or("-".to_owned(), percent),
+                    speed_in.map_or("-".to_owned(), percent),
+                    speed_out.map_or("-".to_owned(), percent),
+                    penetration.map_or("-".to_owned(), percent)
+                )
+            }
             None => writeln!(text, "  {:>4}  {:5}  not there by integration", "", ""),
         };
     }
@@ -128,11 +117,9 @@ pub(super) fn formula(piece: &Piece) -> String {
 /// A rest time beside that of the chain.
 pub(super) fn beside(chain: Result<f64, NoRest>, integrated: Result<f64, NoRest>) -> String {
     match (chain, integrated) {
-        (Ok(chain), Ok(truth)) => format!(
-            "{}, by which the chain errs {}",
-            decimal(truth),
-            percent(chain / truth - 1.0)
-        ),
+        (Ok(chain), Ok(truth)) => {
+            format!("{}, by which the chain errs {}", decimal(truth), percent(chain / truth - 1.0))
+        }
         (_, Ok(truth)) => decimal(truth),
         (_, Err(reason)) => format!("none: {reason}"),
     }

@@ -26,16 +26,8 @@ const RESULTS: [(&str, Option<&str>, &str); 10] = [
         Some("1/omega"),
         "when the envelope of the amplitude falls to a tenth of the first swing; empty or null where it does not",
     ),
-    (
-        "penetration",
-        Some("rad"),
-        "the greatest depth in a barrier; 0 without contact",
-    ),
-    (
-        "speed_in",
-        Some("rad*omega"),
-        "the greatest speed at a touch; 0 without contact",
-    ),
+    ("penetration", Some("rad"), "the greatest depth in a barrier; 0 without contact"),
+    ("speed_in", Some("rad*omega"), "the greatest speed at a touch; 0 without contact"),
     ("energy_lost", Some("m*g*L"), "the energy lost in contacts"),
     ("t", Some("1/omega"), "the time at the end of the run"),
     ("x", Some("rad"), "the displacement there"),
@@ -72,9 +64,7 @@ const BASELINE: [(&str, Option<&str>, &str); 2] = [
 pub fn columns(axes: &[Axis], baseline: bool) -> Vec<Column> {
     let swept = axes.iter().map(|axis| {
         let parameter = axis.name().parse::<Parameter>().ok();
-        let unit = parameter
-            .map(Parameter::unit)
-            .filter(|unit| !unit.is_empty());
+        let unit = parameter.map(Parameter::unit).filter(|unit| !unit.is_empty());
         Column {
             name: axis.name().to_owned(),
             unit: unit.or(Some("1")),
@@ -84,10 +74,7 @@ pub fn columns(axes: &[Axis], baseline: bool) -> Vec<Column> {
     let (to_rest, others) = RESULTS.split_at(2);
     let beside: &[_] = if baseline { &BASELINE } else { &[] };
     let results = to_rest.iter().chain(beside).chain(others);
-    let results = results.map(|&(name, unit, meaning)| Column {
-        name: name.to_owned(),
-        unit,
-        meaning,
-    });
+    let results =
+        results.map(|&(name, unit, meaning)| Column { name: name.to_owned(), unit, meaning });
     swept.chain(results).collect()
 }

@@ -28,10 +28,7 @@ pub fn simulation(report: &Report) -> String {
     let motion = report.motion;
     let mut text = String::from("t,x,velocity,state,energy\n");
     let mut line = |t: f64, x: f64, velocity: f64| {
-        let state = motion
-            .path
-            .regime_at(t)
-            .map_or("free", |state| state.name());
+        let state = motion.path.regime_at(t).map_or("free", |state| state.name());
         let energy = motion.model.energy(x, velocity);
         let _ = writeln!(text, "{t},{x},{velocity},{state},{energy}");
     };

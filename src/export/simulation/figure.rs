@@ -18,9 +18,8 @@ const POINTS: usize = 1600;
 
 /// The motion at equal distances of time and at its turning points, so that no peak is cut.
 fn points(motion: &Simulation) -> Vec<(f64, f64, f64)> {
-    let mut times: Vec<f64> = (0..=POINTS)
-        .map(|index| motion.end_time * (index as f64 / POINTS as f64))
-        .collect();
+    let mut times: Vec<f64> =
+        (0..=POINTS).map(|index| motion.end_time * (index as f64 / POINTS as f64)).collect();
     times.extend(motion.turns.iter().map(|turn| turn.t));
     times.extend(
         motion
@@ -72,10 +71,7 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
     let curves = |of: fn(&Drawn) -> &Points| {
         let judge = judge.as_ref();
         let judge = judge.map(|judge| curve(judge.name, of(judge), CurveStyle::RUNGE_KUTTA));
-        judge
-            .into_iter()
-            .chain([curve(own.name, of(&own), style)])
-            .collect()
+        judge.into_iter().chain([curve(own.name, of(&own), style)]).collect()
     };
     let guides = |guide: fn(f64, &'static str) -> Guide<'static>| -> Vec<Guide<'static>> {
         let left = model.left.map(|at| guide(at, "left barrier"));
@@ -87,9 +83,7 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
         }
     };
     let works = works(motion);
-    let energies = works
-        .iter()
-        .map(|(label, points, style)| curve(label, points, *style));
+    let energies = works.iter().map(|(label, points, style)| curve(label, points, *style));
     let panel = |title, x_label, y_label, curves, guides| Panel {
         title,
         x_label,
@@ -113,13 +107,7 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
             curves(|drawn| &drawn.phase),
             guides(Guide::X),
         ),
-        panel(
-            "Energy",
-            TIME,
-            "energy (units of m g L)",
-            energies.collect(),
-            Vec::new(),
-        ),
+        panel("Energy", TIME, "energy (units of m g L)", energies.collect(), Vec::new()),
     ];
     let caption = format!(
         "Equation (7): γ = {}, μ = {}, ζ = {}, α = {}, β = {}; {} impacts until t = {}.",
@@ -149,10 +137,7 @@ impl Drawn {
         Self {
             name,
             time: points.iter().map(|&(t, x, _)| (t, x)).collect(),
-            phase: points
-                .iter()
-                .map(|&(_, x, velocity)| (x, velocity))
-                .collect(),
+            phase: points.iter().map(|&(_, x, velocity)| (x, velocity)).collect(),
         }
     }
 }
@@ -171,45 +156,19 @@ fn works(motion: &Simulation) -> Vec<(&'static str, Points, CurveStyle)> {
     });
     let all = [
         (true, "energy", energy, CurveStyle::FORMULA),
-        (
-            model.zeta != 0.0,
-            "work of viscous damping",
-            viscous,
-            CurveStyle::SECOND_DIFFERENCE,
-        ),
-        (
-            model.alpha != 0.0,
-            "work of dry friction",
-            friction,
-            CurveStyle::SERIES[5],
-        ),
-        (
-            model.mu != 0.0,
-            "work of contact damping",
-            contact,
-            CurveStyle::THIRD_DIFFERENCE,
-        ),
-        (
-            model.beta != 0.0,
-            "work of the excitation",
-            excitation,
-            CurveStyle::SECOND_FORMULA,
-        ),
+        (model.zeta != 0.0, "work of viscous damping", viscous, CurveStyle::SECOND_DIFFERENCE),
+        (model.alpha != 0.0, "work of dry friction", friction, CurveStyle::SERIES[5]),
+        (model.mu != 0.0, "work of contact damping", contact, CurveStyle::THIRD_DIFFERENCE),
+        (model.beta != 0.0, "work of the excitation", excitation, CurveStyle::SECOND_FORMULA),
     ];
     let acting = all.into_iter().filter(|(acts, ..)| *acts);
-    acting
-        .map(|(_, label, points, style)| (label, points, style))
-        .collect()
+    acting.map(|(_, label, points, style)| (label, points, style)).collect()
 }
 
 const TIME: &str = "time t (units of 1/ω)";
 
 fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
-    Curve {
-        label,
-        points,
-        style,
-    }
+    Curve { label, points, style }
 }
 
 /// Points of one curve.
@@ -326,10 +285,9 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
     match report.axes {
         [one] => {
             let (x_scale, values): (Scale, Vec<f64>) = match one.spacing() {
-                Spacing::Logarithmic => (
-                    Scale::Logarithmic,
-                    one.values().iter().map(|value| value.abs()).collect(),
-                ),
+                Spacing::Logarithmic => {
+                    (Scale::Logarithmic, one.values().iter().map(|value| value.abs()).collect())
+                }
                 Spacing::Linear | Spacing::List => (Scale::Linear, one.values().to_vec()),
             };
             // A list may go to and fro, a curve does not.
@@ -344,9 +302,7 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
                     .map(|&index| Some((values[index], (quantity.value)(report.rows.get(index)?)?)))
                     .collect();
                 let unbroken = found.split(Option::is_none).filter(|run| run.len() > 1);
-                unbroken
-                    .map(|run| run.iter().copied().flatten().collect())
-                    .collect()
+                unbroken.map(|run| run.iter().copied().flatten().collect()).collect()
             };
             let drawn: Vec<(&Quantity, Vec<Points>)> = QUANTITIES
                 .iter()
@@ -367,11 +323,7 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
                     ..Panel::default()
                 })
                 .collect();
-            let restless = report
-                .rows
-                .iter()
-                .filter(|row| row.rest_time.is_err())
-                .count();
+            let restless = report.rows.iter().filter(|row| row.rest_time.is_err()).count();
             let mut caption = format!("{} motions, {}.", report.rows.len(), range(one));
             if restless > 0 {
                 caption.push_str(&format!(" No rest time in {restless} of them."));
@@ -380,11 +332,7 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
         }
         [down, across] => {
             let [rest, impacts, ..] = &QUANTITIES;
-            let restless = report
-                .rows
-                .iter()
-                .filter(|row| row.rest_time.is_err())
-                .count();
+            let restless = report.rows.iter().filter(|row| row.rest_time.is_err()).count();
             let total = report.rows.len();
             let quantity = if restless < total { rest } else { impacts };
             let grid: Vec<Vec<f64>> = report
@@ -444,11 +392,9 @@ impl Ruler {
         let ends = axis.ends();
         let written = |value: f64| decimal((value * 1e12).round() / 1e12);
         match axis.spacing() {
-            Spacing::Linear => Self {
-                ends,
-                ticks: TickFormat::Custom(Arc::new(written)),
-                step: None,
-            },
+            Spacing::Linear => {
+                Self { ends, ticks: TickFormat::Custom(Arc::new(written)), step: None }
+            }
             Spacing::Logarithmic => {
                 let ends = ends.map(|end| end.abs().log10());
                 let span = (ends[1] - ends[0]).abs();
@@ -456,29 +402,15 @@ impl Ruler {
                     whole if (exponent - whole).abs() < 1e-9 => power_of_ten(whole as i32),
                     _ => significant(10_f64.powf(exponent), 3),
                 };
-                let small = STEPS
-                    .into_iter()
-                    .find(|step| span >= 2.0 * step)
-                    .unwrap_or(span / 3.0);
-                let step = if span > 6.0 {
-                    (span / 6.0).ceil()
-                } else {
-                    small
-                };
-                Self {
-                    ends,
-                    ticks: TickFormat::Custom(Arc::new(ticks)),
-                    step: Some(step),
-                }
+                let small = STEPS.into_iter().find(|step| span >= 2.0 * step).unwrap_or(span / 3.0);
+                let step = if span > 6.0 { (span / 6.0).ceil() } else { small };
+                Self { ends, ticks: TickFormat::Custom(Arc::new(ticks)), step: Some(step) }
             }
             Spacing::List => {
                 let values = axis.values().to_vec();
                 let last = values.len() - 1;
                 let ticks = move |place: f64| {
-                    values
-                        .get(place.round() as usize)
-                        .copied()
-                        .map_or_else(String::new, decimal)
+                    values.get(place.round() as usize).copied().map_or_else(String::new, decimal)
                 };
                 Self {
                     ends: [0.0, last as f64],
@@ -514,17 +446,12 @@ fn heat_map(
     caption: &str,
 ) -> String {
     let (down_ruler, across_ruler) = (Ruler::of(down), Ruler::of(across));
-    let (x, y) = (
-        across_ruler.range(across.values().len()),
-        down_ruler.range(down.values().len()),
-    );
+    let (x, y) = (across_ruler.range(across.values().len()), down_ruler.range(down.values().len()));
     let map = Heatmap::new()
         .with_data(rising(grid, down_ruler.rises(), across_ruler.rises()))
-        .with_color_map(ColorMap::Custom(Arc::new(|part: f64| {
-            match part.is_finite() {
-                true => ColorMap::Viridis.map(part),
-                false => MISSING.to_owned(),
-            }
+        .with_color_map(ColorMap::Custom(Arc::new(|part: f64| match part.is_finite() {
+            true => ColorMap::Viridis.map(part),
+            false => MISSING.to_owned(),
         })))
         .with_x_range(x.0, x.1)
         .with_y_range(y.0, y.1);
@@ -538,10 +465,8 @@ fn heat_map(
     (layout.x_axis_min, layout.x_axis_max) = (Some(x.0), Some(x.1));
     (layout.y_axis_min, layout.y_axis_max) = (Some(y.0), Some(y.1));
     layout.show_colorbar = true;
-    let mut scene = render_multiple(
-        vec![Plot::Heatmap(map)],
-        layout.with_width(700.0).with_height(480.0),
-    );
+    let mut scene =
+        render_multiple(vec![Plot::Heatmap(map)], layout.with_width(700.0).with_height(480.0));
     scene.width += 26.0;
     let (x, y) = (scene.width - 10.0, 0.5 * scene.height - 4.0);
     scene.add(Primitive::Text {
@@ -572,27 +497,16 @@ mod tests {
         let place = |down: &Axis, across: &Axis| {
             let svg = heat_map(&grid, [down, across], &QUANTITIES[0], "Two by two.");
             let number = |cell: &str, key: &str| -> f64 {
-                let rest = cell
-                    .split(&format!(" {key}=\""))
-                    .nth(1)
-                    .expect("a coordinate");
-                rest.split('"')
-                    .next()
-                    .and_then(|text| text.parse().ok())
-                    .expect("a number")
+                let rest = cell.split(&format!(" {key}=\"")).nth(1).expect("a coordinate");
+                rest.split('"').next().and_then(|text| text.parse().ok()).expect("a number")
             };
             // The cells are the rectangles of the clipped group, set in by four spaces.
-            let cells: Vec<&str> = svg
-                .lines()
-                .filter(|line| line.starts_with("    <rect"))
-                .collect();
+            let cells: Vec<&str> =
+                svg.lines().filter(|line| line.starts_with("    <rect")).collect();
             assert_eq!(cells.len(), 4);
             let (hot, cold): (Vec<&str>, Vec<&str>) =
                 cells.iter().partition(|cell| cell.contains("#fde725"));
-            let side = |key| {
-                cold.iter()
-                    .any(|cell| number(cell, key) > number(hot[0], key))
-            };
+            let side = |key| cold.iter().any(|cell| number(cell, key) > number(hot[0], key));
             (side("x"), side("y"))
         };
         let (left, above) = (true, true);

@@ -33,11 +33,7 @@ pub fn simulation(report: &Report) -> String {
     text.push_str("% In each line t counts from the beginning of the phase; the second argument of sn is m = k^2.\n");
     for pieces in chain::phases(motion).chunks(LINES) {
         let lines: Vec<String> = pieces.iter().map(phase).collect();
-        let _ = writeln!(
-            text,
-            "\\begin{{align*}}\n{}\n\\end{{align*}}",
-            lines.join(" \\\\\n")
-        );
+        let _ = writeln!(text, "\\begin{{align*}}\n{}\n\\end{{align*}}", lines.join(" \\\\\n"));
     }
     let _ = match motion.rest().time {
         Ok(time) => writeln!(text, "\\[ t_{{\\text{{rest}}}} = {} \\]", scientific(time)),
@@ -52,9 +48,7 @@ pub fn simulation(report: &Report) -> String {
 
 fn impacts(report: &Report) -> String {
     let motion = report.motion;
-    let errors = report
-        .judge
-        .map_or_else(Vec::new, |judge| motion.contact_deviations(judge));
+    let errors = report.judge.map_or_else(Vec::new, |judge| motion.contact_deviations(judge));
     let judged = !errors.is_empty();
     let percent = |error: f64| format!("${}\\,\\%$", scientific((1e5 * error).round() / 1e3));
     let mut text = match judged {
@@ -79,10 +73,7 @@ fn impacts(report: &Report) -> String {
                 error.map(|e| format!("${}$", scientific((1e6 * e.entry_time).round() / 1e6)))
             ),
             cell(impact.speed_in, error.and_then(|e| e.speed_in).map(percent)),
-            cell(
-                impact.penetration,
-                error.and_then(|e| e.penetration).map(percent)
-            )
+            cell(impact.penetration, error.and_then(|e| e.penetration).map(percent))
         );
     }
     text.push_str("\\end{tabular}\n");
@@ -103,14 +94,7 @@ fn phase(piece: &Piece) -> String {
         return format!("{span}&\\text{{no closed form}}");
     };
     let formula = match form {
-        ClosedForm::Swing {
-            sign,
-            modulus,
-            rate,
-            speed,
-            phase,
-            parameter,
-        } => {
+        ClosedForm::Swing { sign, modulus, rate, speed, phase, parameter } => {
             let minus = if sign < 0.0 { "-" } else { "" };
             let decay = match rate == 0.0 {
                 true => String::new(),
@@ -127,18 +111,10 @@ fn phase(piece: &Piece) -> String {
                 scientific(parameter)
             )
         }
-        ClosedForm::Contact {
-            barrier,
-            duration,
-            sines,
-        } => {
+        ClosedForm::Contact { barrier, duration, sines } => {
             let wave = std::f64::consts::PI / duration;
             let term = |(j, sine): (u32, f64)| {
-                format!(
-                    "{} \\sin({} t)",
-                    signed(sine),
-                    scientific(f64::from(j) * wave)
-                )
+                format!("{} \\sin({} t)", signed(sine), scientific(f64::from(j) * wave))
             };
             let [first, second, third] = sines;
             // In one line they are wider than a page.

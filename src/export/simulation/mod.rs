@@ -114,10 +114,7 @@ pub(super) fn notes(report: &Report) -> Vec<String> {
     // So small a part of the energy at the start is what rounding leaves of none.
     if let Some(first) = motion.impacts.first()
         && first.speed_in * first.speed_in
-            < 1e-12
-                * motion
-                    .model
-                    .swing_energy(motion.start.x, motion.start.velocity)
+            < 1e-12 * motion.model.swing_energy(motion.start.x, motion.start.velocity)
     {
         notes.push(format!(
             "the first impact is no faster than {}: the {} barrier stands where the swing turns back, and rounding decides whether it is touched",
@@ -139,11 +136,7 @@ pub(super) fn notes(report: &Report) -> Vec<String> {
             decimal(depth)
         ));
     }
-    if motion
-        .impacts
-        .last()
-        .is_some_and(|impact| impact.exit_time.is_none())
-    {
+    if motion.impacts.last().is_some_and(|impact| impact.exit_time.is_none()) {
         notes.push("the run ends in contact: the last impact has no exit".to_owned());
     }
     notes

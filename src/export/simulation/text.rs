@@ -50,18 +50,12 @@ pub fn simulation(report: &Report) -> String {
         energy(&mut text, motion);
     }
     if !report.samples.is_empty() {
-        let _ = writeln!(
-            text,
-            "\nStates asked for\n  {:>12}  {:>16}  {:>16}",
-            "t", "x", "x'"
-        );
+        let _ = writeln!(text, "\nStates asked for\n  {:>12}  {:>16}  {:>16}", "t", "x", "x'");
         for &t in report.samples {
             let state = match motion.path.at(t) {
-                Some((x, velocity)) => format!(
-                    "{:>16}  {:>16}",
-                    significant(x, 10),
-                    significant(velocity, 10)
-                ),
+                Some((x, velocity)) => {
+                    format!("{:>16}  {:>16}", significant(x, 10), significant(velocity, 10))
+                }
                 None => format!("{:>16}", "not reached"),
             };
             let _ = writeln!(text, "  {:>12}  {state}", decimal(t));
@@ -74,13 +68,7 @@ pub fn simulation(report: &Report) -> String {
         significant(motion.end_x, 10),
         significant(motion.end_velocity, 10)
     );
-    let _ = writeln!(
-        text,
-        "  {} in {} steps; {}",
-        method(motion),
-        motion.steps,
-        motion.stop
-    );
+    let _ = writeln!(text, "  {} in {} steps; {}", method(motion), motion.steps, motion.stop);
     if let Some(judge) = report.judge {
         let difference = motion.difference(judge, COMPARED);
         let _ = writeln!(
@@ -129,37 +117,20 @@ fn typed(value: f64) -> String {
 
 /// An order of magnitude is enough, and below rounding none is left.
 fn size(value: f64) -> String {
-    if value < 1e-15 {
-        "< 1e-15".to_owned()
-    } else {
-        format!("{value:.0e}")
-    }
+    if value < 1e-15 { "< 1e-15".to_owned() } else { format!("{value:.0e}") }
 }
 
 fn header(report: &Report) -> String {
     let motion = report.motion;
-    let Model {
-        zeta,
-        alpha,
-        friction: law,
-        beta,
-        frequency_ratio,
-        gamma,
-        mu,
-        left,
-        right,
-    } = motion.model;
+    let Model { zeta, alpha, friction: law, beta, frequency_ratio, gamma, mu, left, right } =
+        motion.model;
     let dry = match law {
         _ if alpha == 0.0 => "",
         crate::impact::Friction::Exact => " + alpha*sgn(x')",
         crate::impact::Friction::Arctangent => " + (2/pi)*alpha*atan(100*x')",
     };
     let viscous = if zeta == 0.0 { "" } else { " + 2*zeta*x'" };
-    let drive = if beta == 0.0 {
-        ""
-    } else {
-        " - beta*sin(eta*t)*cos(x)"
-    };
+    let drive = if beta == 0.0 { "" } else { " - beta*sin(eta*t)*cos(x)" };
     let free = left.or(right).is_none();
     let left_alone = left.is_some() && right.is_none();
     let contact = match (mu == 0.0, left_alone) {
@@ -179,11 +150,7 @@ fn header(report: &Report) -> String {
     };
     entry(
         "x(0)",
-        format!(
-            "{}, x'(0) = {}",
-            decimal(motion.start.x),
-            decimal(motion.start.velocity)
-        ),
+        format!("{}, x'(0) = {}", decimal(motion.start.x), decimal(motion.start.velocity)),
     );
     match (left, right) {
         (Some(left), Some(right)) => entry("xc", format!("{} and {}", typed(left), typed(right))),
@@ -205,11 +172,7 @@ fn header(report: &Report) -> String {
     if beta != 0.0 {
         entry(
             "beta",
-            format!(
-                "{}, eta = Omega/omega = {}",
-                decimal(beta),
-                decimal(frequency_ratio)
-            ),
+            format!("{}, eta = Omega/omega = {}", decimal(beta), decimal(frequency_ratio)),
         );
     }
     text
@@ -218,15 +181,7 @@ fn header(report: &Report) -> String {
 /// What damps, in every form, and which form is held fixed.
 fn damping(dissipation: &Dissipation, has_barrier: bool, units: Option<&Units>) -> String {
     let &Dissipation {
-        mu,
-        mu_over_gamma,
-        lambda,
-        coefficient,
-        zeta,
-        viscous,
-        alpha,
-        torque,
-        ..
+        mu, mu_over_gamma, lambda, coefficient, zeta, viscous, alpha, torque, ..
     } = dissipation;
     let contact = mu != 0.0 && has_barrier;
     if !contact && zeta == 0.0 && alpha == 0.0 {
@@ -237,10 +192,7 @@ fn damping(dissipation: &Dissipation, has_barrier: bool, units: Option<&Units>) 
         .into_iter()
         .filter(|form| contact || *form != dissipation.contact.form().name())
         .collect();
-    let mut text = format!(
-        "\nDamping, in every form; held fixed: {}\n",
-        held.join(", ")
-    );
+    let mut text = format!("\nDamping, in every form; held fixed: {}\n", held.join(", "));
     let mut entry = |name: &str, forms: Vec<String>| {
         let _ = writeln!(text, "  {name:<9} {}", forms.join(", "));
     };
@@ -249,10 +201,8 @@ fn damping(dissipation: &Dissipation, has_barrier: bool, units: Option<&Units>) 
         value.into_iter().collect::<Vec<_>>()
     };
     if contact {
-        let mut forms = vec![
-            format!("mu = {}", decimal(mu)),
-            format!("mu/gamma = {}", decimal(mu_over_gamma)),
-        ];
+        let mut forms =
+            vec![format!("mu = {}", decimal(mu)), format!("mu/gamma = {}", decimal(mu_over_gamma))];
         forms.extend(in_si("lambda", lambda, "s/m"));
         forms.extend(in_si("damping", coefficient, "N s/m^(5/2)"));
         entry("contact", forms);
@@ -272,10 +222,7 @@ fn damping(dissipation: &Dissipation, has_barrier: bool, units: Option<&Units>) 
     }
     if zeta != 0.0 {
         let zeta = vec![format!("zeta = {}", decimal(zeta))];
-        entry(
-            "viscous",
-            [zeta, in_si("viscous", viscous, "N s/m")].concat(),
-        );
+        entry("viscous", [zeta, in_si("viscous", viscous, "N s/m")].concat());
     }
     if alpha != 0.0 {
         let alpha = vec![format!("alpha = {}", decimal(alpha))];
@@ -313,30 +260,17 @@ fn impacts(text: &mut String, motion: &Simulation) {
     let optional = |value: Option<f64>| value.map_or("-".to_owned(), decimal);
     for (index, impact) in motion.impacts.iter().enumerate() {
         if count > LISTED && index == LISTED - 1 && index + 1 < count {
-            let _ = writeln!(
-                text,
-                "   ... {} more, all of them in --format json",
-                count - LISTED
-            );
+            let _ = writeln!(text, "   ... {} more, all of them in --format json", count - LISTED);
         }
         if count > LISTED && index >= LISTED - 1 && index + 1 < count {
             continue;
         }
         // What is lost in an elastic contact is rounding.
         let lost = impact.energy_lost.map(|lost| {
-            let speed = impact
-                .speed_in
-                .abs()
-                .max(impact.speed_out.unwrap_or_default());
-            if lost.abs() < 1e-9 * speed * speed {
-                0.0
-            } else {
-                lost
-            }
+            let speed = impact.speed_in.abs().max(impact.speed_out.unwrap_or_default());
+            if lost.abs() < 1e-9 * speed * speed { 0.0 } else { lost }
         });
-        let restitution = impact
-            .restitution
-            .map(|e| if (e - 1.0).abs() < 1e-9 { 1.0 } else { e });
+        let restitution = impact.restitution.map(|e| if (e - 1.0).abs() < 1e-9 { 1.0 } else { e });
         let _ = writeln!(
             text,
             "  {:>4}  {:5}  {:>12}  {:>12}  {:>10}  {:>10}  {:>12}  {:>11}  {:>12}",
@@ -376,11 +310,7 @@ fn rest(text: &mut String, report: &Report) {
     };
     let _ = match rest.amplitude {
         0.0 => writeln!(text, "\nRest"),
-        amplitude => writeln!(
-            text,
-            "\nRest: 10 % of the amplitude {}{about}",
-            decimal(amplitude)
-        ),
+        amplitude => writeln!(text, "\nRest: 10 % of the amplitude {}{about}", decimal(amplitude)),
     };
     let _ = match rest.time {
         Ok(time) => writeln!(
@@ -392,21 +322,12 @@ fn rest(text: &mut String, report: &Report) {
         Err(reason) => writeln!(text, "  rest time      none: {reason}"),
     };
     if let (Integrator::Chain, Some(judge)) = (report.motion.integrator, report.judge) {
-        let _ = writeln!(
-            text,
-            "  integrated     {}",
-            chain::beside(rest.time, judge.rest().time)
-        );
+        let _ = writeln!(text, "  integrated     {}", chain::beside(rest.time, judge.rest().time));
     }
     if let Some(last) = rest.last_crossing {
         let _ = writeln!(text, "  last crossing  {}", decimal(last));
     }
-    let Some(Baseline {
-        no_barrier,
-        lossless_barrier,
-        geometry,
-    }) = report.baseline
-    else {
+    let Some(Baseline { no_barrier, lossless_barrier, geometry }) = report.baseline else {
         return;
     };
     let written = |time: &Result<f64, NoRest>| match time {
@@ -414,11 +335,7 @@ fn rest(text: &mut String, report: &Report) {
         Err(reason) => format!("none: {reason}"),
     };
     let _ = writeln!(text, "  no barrier     {}", written(no_barrier));
-    let _ = writeln!(
-        text,
-        "  lossless       {}   (mu = 0)",
-        written(lossless_barrier)
-    );
+    let _ = writeln!(text, "  lossless       {}   (mu = 0)", written(lossless_barrier));
     if let (Ok(none), Ok(lossless), Ok(this)) = (no_barrier, lossless_barrier, rest.time) {
         let _ = writeln!(
             text,
@@ -428,12 +345,7 @@ fn rest(text: &mut String, report: &Report) {
             decimal(lossless - this)
         );
     }
-    if let Some(Geometry {
-        first_swing,
-        at_rest,
-        gain,
-    }) = geometry
-    {
+    if let Some(Geometry { first_swing, at_rest, gain }) = geometry {
         let (letters, numbers) = match *at_rest == 1.0 {
             true => ("S/Sc".to_owned(), decimal(*first_swing)),
             false => (
@@ -446,11 +358,7 @@ fn rest(text: &mut String, report: &Report) {
             "  the shorter swing by formula: ln({letters})/(2*zeta) = ln({numbers})/(2*zeta) = {}",
             decimal(*gain)
         );
-        let rested = if *at_rest == 1.0 {
-            ""
-        } else {
-            ", s and sc those at rest"
-        };
+        let rested = if *at_rest == 1.0 { "" } else { ", s and sc those at rest" };
         let _ = writeln!(
             text,
             "  S and Sc are the actions of the first swing, whole and cut at the barrier{rested}"
@@ -473,12 +381,8 @@ fn energy(text: &mut String, motion: &Simulation) {
     entry("contact", book.contact, model.mu != 0.0);
     entry("excitation", book.excitation, model.beta != 0.0);
     entry("at the end", book.end, true);
-    let _ = writeln!(
-        text,
-        "  {:<14} {:>13}   of the largest energy",
-        "residual",
-        size(book.residual)
-    );
+    let _ =
+        writeln!(text, "  {:<14} {:>13}   of the largest energy", "residual", size(book.residual));
 }
 
 /// A sweep, a line at a time, for there may be a million. Of three parameters or more the last two
@@ -534,16 +438,8 @@ pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
             }
             None => String::new(),
         };
-        let warning = if summary.stop.is_complete() {
-            ""
-        } else {
-            "  incomplete"
-        };
-        let lost = if summary.energy_lost.abs() < 1e-9 {
-            0.0
-        } else {
-            summary.energy_lost
-        };
+        let warning = if summary.stop.is_complete() { "" } else { "  incomplete" };
+        let lost = if summary.energy_lost.abs() < 1e-9 { 0.0 } else { summary.energy_lost };
         let results = match summary.is_begun() {
             true => [summary.deepest, summary.fastest, lost, summary.end_time].map(decimal),
             false => [(); 4].map(|()| "-".to_owned()),

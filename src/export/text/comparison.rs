@@ -18,19 +18,12 @@ pub(super) fn longest_title(document: &Document) -> usize {
     let length = |title: &str| title.chars().count();
     let longest = |block: &Block| match block {
         Block::Methods { rows, .. } => rows.iter().map(|row| length(&row.title)).max(),
-        Block::Refused(refused) => refused
-            .iter()
-            .map(|refused| length(refused.method.title()))
-            .max(),
+        Block::Refused(refused) => {
+            refused.iter().map(|refused| length(refused.method.title())).max()
+        }
         _ => None,
     };
-    document
-        .sections
-        .iter()
-        .flatten()
-        .filter_map(longest)
-        .max()
-        .unwrap_or(0)
+    document.sections.iter().flatten().filter_map(longest).max().unwrap_or(0)
 }
 
 pub(super) fn truth(equation: &Equation, at: &Values, frequency: &Result<f64, String>) -> String {
@@ -39,10 +32,7 @@ pub(super) fn truth(equation: &Equation, at: &Values, frequency: &Result<f64, St
 
 /// The frequency that a table is compared with.
 pub(in crate::export) fn true_frequency(at: &Values, frequency: &Result<f64, String>) -> String {
-    let at: Vec<String> = at
-        .iter()
-        .map(|(name, value)| format!("{name} = {value}"))
-        .collect();
+    let at: Vec<String> = at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let place = match at.is_empty() {
         true => String::new(),
         false => format!(" at {}", at.join(", ")),
@@ -100,9 +90,8 @@ fn reasons(heading: &str, entries: impl Iterator<Item = (String, String)>, page:
 
 /// Names and what is said of each.
 pub(super) fn entries(heading: &str, entries: &[(String, String)], page: &Page) -> String {
-    let entries = entries
-        .iter()
-        .map(|(name, words)| entry(name, words, page.longest_title, page.width));
+    let entries =
+        entries.iter().map(|(name, words)| entry(name, words, page.longest_title, page.width));
     format!("{heading}\n") + &entries.collect::<String>()
 }
 
@@ -115,55 +104,36 @@ pub(super) fn refused(refused: &[Refused], page: &Page) -> String {
 }
 
 pub(super) fn true_motion(lines: &[String], width: usize) -> String {
-    let lines = lines
-        .iter()
-        .map(|line| wrapped(line, width, "  ", "    ") + "\n");
+    let lines = lines.iter().map(|line| wrapped(line, width, "  ", "    ") + "\n");
     "True motion\n".to_owned() + &lines.collect::<String>()
 }
 
 /// Header and rows, without the formulas.
 pub(in crate::export) fn cells(rows: &[MethodRow], tolerance: f64) -> Vec<[String; 6]> {
-    let over_several_wells = rows
-        .iter()
-        .any(|row| matches!(row.row.reach, Some(Reach::Between { .. })));
+    let over_several_wells =
+        rows.iter().any(|row| matches!(row.row.reach, Some(Reach::Between { .. })));
     let range = if over_several_wells { "for" } else { "up to" };
     let within = format!("{} % {range}", significant(100.0 * tolerance, 3));
-    let header = [
-        "method",
-        FREQUENCY.written(),
-        "error",
-        "deviation",
-        "verdict",
-        &within,
-    ]
-    .map(str::to_owned);
+    let header = ["method", FREQUENCY.written(), "error", "deviation", "verdict", &within]
+        .map(str::to_owned);
     // All rows start where the first one does, whatever their formulas measure.
-    let amplitude = rows
-        .first()
-        .map(|first| first.row.solution.amplitude.symbol());
+    let amplitude = rows.first().map(|first| first.row.solution.amplitude.symbol());
     let cells = |MethodRow { row, title, .. }: &MethodRow| {
         [
             title.clone(),
-            row.frequency
-                .map_or_else(|| without_number(row).to_owned(), decimal),
+            row.frequency.map_or_else(|| without_number(row).to_owned(), decimal),
             row.relative_error.map_or("-".to_owned(), percent),
             row.max_deviation.map_or("-".to_owned(), size_in_percent),
             row.verdict.map_or("-", Verdict::name).to_owned(),
             reach(row.reach.zip(amplitude)),
         ]
     };
-    std::iter::once(header)
-        .chain(rows.iter().map(cells))
-        .collect()
+    std::iter::once(header).chain(rows.iter().map(cells)).collect()
 }
 
 fn widths(cells: &[[String; 6]]) -> [usize; 6] {
     std::array::from_fn(|column| {
-        cells
-            .iter()
-            .map(|row| row[column].chars().count())
-            .max()
-            .unwrap_or(0)
+        cells.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)
     })
 }
 
@@ -178,9 +148,7 @@ fn table(
     const NARROWEST: usize = 16;
     widths[0] = widths[0].min(width.saturating_sub(numbers + 2).max(NARROWEST));
     let header = formulas.map(|_| "formula");
-    let mut formulas = header
-        .into_iter()
-        .chain(formulas.into_iter().flatten().map(String::as_str));
+    let mut formulas = header.into_iter().chain(formulas.into_iter().flatten().map(String::as_str));
     let mut text = String::new();
     for row in cells {
         let name = wrapped(&row[0], widths[0], "", "  ");
@@ -253,9 +221,7 @@ fn without_number(row: &Row) -> &'static str {
 
 /// The formula of a row, and the hbar with which it was evaluated.
 fn formula(row: &MethodRow) -> String {
-    let value = row
-        .hbar
-        .map(|(name, value)| format!(", {name} = {}", significant(value, 6)));
+    let value = row.hbar.map(|(name, value)| format!(", {name} = {}", significant(value, 6)));
     row.row.solution.formula() + &value.unwrap_or_default()
 }
 

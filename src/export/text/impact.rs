@@ -27,10 +27,7 @@ pub(super) fn fitted(
         true => format!("{}*({line})", letters.stiffness),
         false => line,
     };
-    format!(
-        "  elastic force {force}, fitted by {rule} over the depth {}\n",
-        decimal(fitted.depth)
-    )
+    format!("  elastic force {force}, fitted by {rule} over the depth {}\n", decimal(fitted.depth))
 }
 
 pub(super) fn phase(phase: &Phase, letters: Letters, release: &str) -> String {
@@ -67,17 +64,13 @@ pub(super) fn quantities(
     for row in rows {
         let values = &mut row.closed_forms.iter().map(|value| decimal(*value));
         lines.push(line(row.name, first(values, decimal(row.runge_kutta))));
-        lines.push(line(
-            "",
-            first(&mut row.errors().map(percent), String::new()),
-        ));
+        lines.push(line("", first(&mut row.errors().map(percent), String::new())));
     }
     let size = |size: f64| format!("{} %", significant(100.0 * size, 3));
     let deviations = &mut deviations.iter().map(|deviation| size(*deviation));
     lines.push(line("largest deviation", first(deviations, String::new())));
-    for (index, name) in ["of the approach", "of the contact", "of the return"]
-        .into_iter()
-        .enumerate()
+    for (index, name) in
+        ["of the approach", "of the contact", "of the return"].into_iter().enumerate()
     {
         let shapes = &mut shapes.iter().map(|shape| size(shape[index]));
         lines.push(line(&format!("  {name}"), first(shapes, String::new())));
@@ -113,31 +106,16 @@ pub(super) fn contact_laws(rows: &[ContactRow]) -> String {
 
 /// A table of methods: the errors of each in percent, the numbers of the true motion above them.
 pub(super) fn methods(rows: &[ImpactRow], truth: [f64; 5], tolerance: f64, width: usize) -> String {
-    const HEAD: [&str; 8] = [
-        "to contact",
-        "speed",
-        "depth",
-        "duration",
-        "period",
-        "approach",
-        "contact",
-        "return",
-    ];
+    const HEAD: [&str; 8] =
+        ["to contact", "speed", "depth", "duration", "period", "approach", "contact", "return"];
     let titles: Vec<String> = rows.iter().map(ImpactRow::title).collect();
-    let longest = titles
-        .iter()
-        .map(|title| title.chars().count())
-        .max()
-        .unwrap_or(0);
+    let longest = titles.iter().map(|title| title.chars().count()).max().unwrap_or(0);
     // Names stand on lines of their own where the numbers leave no room beside them.
     let beside = longest + 88 <= width;
     let line = |name: &str, cells: [String; 8], last: &str| {
         let widths = [11, 11, 11, 11, 11, 9, 9, 9];
-        let cells: String = cells
-            .iter()
-            .zip(widths)
-            .map(|(cell, width)| format!("{cell:>width$}"))
-            .collect();
+        let cells: String =
+            cells.iter().zip(widths).map(|(cell, width)| format!("{cell:>width$}")).collect();
         let cells = format!("{cells}  {last}");
         match (beside, name) {
             (true, _) => format!("{name:<longest$}{}\n", cells.trim_end()),
@@ -223,9 +201,7 @@ pub(in crate::export) fn shortcoming(
     errors: &[(&'static str, f64)],
     cause: &str,
 ) -> String {
-    let errors: Vec<String> = errors
-        .iter()
-        .map(|(name, error)| format!("{name} {}", percent(*error)))
-        .collect();
+    let errors: Vec<String> =
+        errors.iter().map(|(name, error)| format!("{name} {}", percent(*error))).collect();
     format!("    {:<8}{}: {cause}\n", reading.name(), errors.join(", "))
 }

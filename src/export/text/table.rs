@@ -6,9 +6,7 @@ use crate::report::{Heading, are_names};
 pub(super) fn table(head: &[Heading], rows: &[Vec<String>]) -> String {
     let names = are_names(rows);
     let head: Vec<&str> = head.iter().map(|heading| heading.text).collect();
-    let rows = rows
-        .iter()
-        .map(|row| row.iter().map(String::as_str).collect());
+    let rows = rows.iter().map(|row| row.iter().map(String::as_str).collect());
     let lines: Vec<Vec<&str>> = std::iter::once(head).chain(rows).collect();
     let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {

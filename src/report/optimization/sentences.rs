@@ -22,11 +22,7 @@ pub fn optimization_sentences(study: &Study) -> Vec<String> {
     let mut sentences = Vec::new();
     if !study.complete {
         let (done, all) = (study.runs.len(), study.question.runs);
-        let cut_short = study
-            .runs
-            .iter()
-            .filter(|run| run.stop == Stop::Interrupted)
-            .count();
+        let cut_short = study.runs.iter().filter(|run| run.stop == Stop::Interrupted).count();
         let of_these = match cut_short {
             0 => String::new(),
             number => format!(", {number} of them cut short"),
@@ -74,9 +70,7 @@ fn found_better(study: &Study, decision: &Decision) -> Option<(String, f64)> {
         .filter_map(|rival| Some((rival.name.to_owned(), -apart(rival.spread()?.best, own)?)));
     let alone =
         apart(decision.least, decision.value).map(|apart| ("a look around it".to_owned(), -apart));
-    let best = rivals
-        .chain(alone)
-        .max_by(|one, other| one.1.total_cmp(&other.1));
+    let best = rivals.chain(alone).max_by(|one, other| one.1.total_cmp(&other.1));
     // What closed forms are off decides nothing.
     best.filter(|(_, better)| *better > BETTER.max(closed_forms_off(study)))
 }
@@ -87,17 +81,13 @@ fn what_decides(study: &Study) -> Vec<String> {
     };
     let objective = study.objective().meaning();
     let of = |role: Role| {
-        let found = decision
-            .sensitivities
-            .iter()
-            .filter(move |sensitivity| sensitivity.role == role);
+        let found =
+            decision.sensitivities.iter().filter(move |sensitivity| sensitivity.role == role);
         found.collect::<Vec<_>>()
     };
     let names = |found: &[&Sensitivity]| {
-        let names: Vec<&str> = found
-            .iter()
-            .map(|sensitivity| sensitivity.parameter.name())
-            .collect();
+        let names: Vec<&str> =
+            found.iter().map(|sensitivity| sensitivity.parameter.name()).collect();
         listed(&names)
     };
     let mut sentences = Vec::new();
@@ -183,27 +173,14 @@ fn flat_directions(flat: &[&Sensitivity], objective: &str) -> String {
         .iter()
         .map(|sensitivity| match sensitivity.range {
             Some([least, greatest]) => {
-                format!(
-                    "{} {}",
-                    sensitivity.parameter.name(),
-                    percent((greatest - least) / least)
-                )
+                format!("{} {}", sensitivity.parameter.name(), percent((greatest - least) / least))
             }
             None => sensitivity.parameter.name().to_owned(),
         })
         .collect();
-    let free = flat
-        .iter()
-        .all(|sensitivity| sensitivity.alone == sensitivity.limits);
-    let but = if free {
-        ""
-    } else {
-        " but where constraints end"
-    };
-    let names: Vec<&str> = flat
-        .iter()
-        .map(|sensitivity| sensitivity.parameter.name())
-        .collect();
+    let free = flat.iter().all(|sensitivity| sensitivity.alone == sensitivity.limits);
+    let but = if free { "" } else { " but where constraints end" };
+    let names: Vec<&str> = flat.iter().map(|sensitivity| sensitivity.parameter.name()).collect();
     format!(
         "Flat directions: over the whole range, the others held, {objective} changes by no more than 1 % ({}); what was found for {} says \
          nothing{but}.",
@@ -246,11 +223,8 @@ fn near_the_best(study: &Study, decision: &Decision) -> String {
 fn the_unit(study: &Study) -> Option<String> {
     let ends = study.decision.as_ref()?.ends?;
     let pair = |[short, long]: [f64; 2]| [significant(short, 4), significant(long, 4)];
-    let ([short, long], [from, to], [at, until]) = (
-        pair(ends.seconds),
-        pair(ends.dimensionless),
-        pair(ends.lengths),
-    );
+    let ([short, long], [from, to], [at, until]) =
+        (pair(ends.seconds), pair(ends.dimensionless), pair(ends.lengths));
     let [in_seconds, in_units] = ends.best.map(|length| significant(length, 3));
     let mut turned = ends.best;
     turned.sort_by(f64::total_cmp);
@@ -260,11 +234,7 @@ fn the_unit(study: &Study) -> Option<String> {
         }
         _ => format!(
             "the rest held, in seconds the best length is {in_seconds} m, in 1/omega it is {in_units} m: the choice moves the optimum{}",
-            if turned == ends.lengths {
-                " from one end to the other"
-            } else {
-                ""
-            }
+            if turned == ends.lengths { " from one end to the other" } else { "" }
         ),
     };
     Some(format!(
@@ -295,10 +265,7 @@ fn the_papers(study: &Study) -> Option<String> {
         .iter()
         .map(|(parameter, ..)| *parameter)
         .filter(|parameter| {
-            question
-                .variables
-                .iter()
-                .all(|variable| variable.parameter != *parameter)
+            question.variables.iter().all(|variable| variable.parameter != *parameter)
         })
         .filter(|parameter| question.case.get(*parameter) != papers.case.get(*parameter))
         .map(Parameter::name)
@@ -309,10 +276,7 @@ fn the_papers(study: &Study) -> Option<String> {
         remarks += &format!(" It lies outside these limits: {}.", listed(&outside));
     }
     if !other.is_empty() {
-        remarks += &format!(
-            " It differs in what is held fixed here: {}.",
-            listed(&other)
-        );
+        remarks += &format!(" It differs in what is held fixed here: {}.", listed(&other));
     }
     if !broken.is_empty() {
         remarks += &format!(" It breaks {}.", broken.join("; "));
@@ -328,11 +292,9 @@ fn the_papers(study: &Study) -> Option<String> {
     };
     let compared = match far {
         Some(0.0) => "the same as".to_owned(),
-        Some(far) => format!(
-            "{} {} than",
-            percent(far.abs()),
-            if far < 0.0 { "less" } else { "more" }
-        ),
+        Some(far) => {
+            format!("{} {} than", percent(far.abs()), if far < 0.0 { "less" } else { "more" })
+        }
         None => "more than".to_owned(),
     };
     Some(format!(
@@ -354,11 +316,7 @@ fn the_rivals(study: &Study) -> Option<String> {
         .rivals
         .iter()
         .map(|rival| {
-            let found = rival
-                .values
-                .iter()
-                .filter(|value| value.is_finite())
-                .count();
+            let found = rival.values.iter().filter(|value| value.is_finite()).count();
             let Some(spread) = rival.spread() else {
                 return format!("{} finds no design", rival.name);
             };
@@ -393,10 +351,7 @@ fn the_generations(study: &Study) -> Option<String> {
         .filter(|run| run.stop == Stop::Stalled)
         .map(|run| run.generations)
         .collect();
-    let at_once = stalled
-        .iter()
-        .filter(|generations| **generations == earliest)
-        .count();
+    let at_once = stalled.iter().filter(|generations| **generations == earliest).count();
     let settled = study.settled(1e-3)?;
     let when = match settled {
         0 => "already in its random population".to_owned(),
@@ -410,11 +365,7 @@ fn the_generations(study: &Study) -> Option<String> {
              window of {window} allows"
         ),
     };
-    let either = if count > 0 && at_once == count {
-        " either"
-    } else {
-        ""
-    };
+    let either = if count > 0 && at_once == count { " either" } else { "" };
     Some(format!(
         "Convergence: {end}; the median run was within 0.1 % of its end {when}. The paper's 51 generations are the earliest end with the usual \
          window of 50: its best value hardly moved{either}."
@@ -435,11 +386,7 @@ fn the_front(study: &Study) -> Vec<String> {
             .enumerate()
             .filter(|(other, _)| *other != index)
             .map(|(other, objective)| {
-                format!(
-                    "{} {}",
-                    objective.meaning(),
-                    with_unit(*objective, least.values[other])
-                )
+                format!("{} {}", objective.meaning(), with_unit(*objective, least.values[other]))
             })
             .collect();
         Some(format!(
@@ -449,13 +396,8 @@ fn the_front(study: &Study) -> Vec<String> {
             others.join(", ")
         ))
     };
-    let mut sentences: Vec<String> = study
-        .question
-        .objectives
-        .iter()
-        .enumerate()
-        .filter_map(extreme)
-        .collect();
+    let mut sentences: Vec<String> =
+        study.question.objectives.iter().enumerate().filter_map(extreme).collect();
     if study.finalists.len() == 1 {
         sentences
             .push("Of the designs that were followed one is the best in everything.".to_owned());

@@ -66,20 +66,14 @@ fn driven_motions_of_second_order() {
             let solution = solve(&oscillator, &options).expect(equation);
             let judged = judge(&oscillator, &solution, &at, 0.1).expect(equation);
             assert_eq!(judged.verdict, Verdict::Pass, "{equation}: {judged:?}");
-            let scales = Options {
-                method: Some(Method::MultipleScales),
-                ..options
-            };
+            let scales = Options { method: Some(Method::MultipleScales), ..options };
             if !solution.small_parameter.name().contains("delta") {
                 let scales = solve(&oscillator, &scales).expect(equation);
                 let [own, other] = [&solution, &scales]
                     .map(|solution| solution.modulation.as_ref().expect("slow equations"));
                 let same =
                     |one: &Expr, other: &Expr| (one - other).expand().expect(equation).is_zero();
-                assert!(
-                    same(&own.amplitude_rate, &other.amplitude_rate),
-                    "{equation}"
-                );
+                assert!(same(&own.amplitude_rate, &other.amplitude_rate), "{equation}");
                 assert!(same(&own.phase_rate, &other.phase_rate), "{equation}");
             }
             judged.relative_error.expect(equation).abs()
@@ -94,27 +88,12 @@ fn driven_motions_are_those_of_multiple_scales() {
     for (equation, resonance) in [
         ("x'' + c*x' + w^2*x + g*x^3 = F*cos(Omega*t)", (1, 1)),
         ("x'' + c*x' + w^2*x + g*x^3 = F*sin(Omega*t + phi)", (1, 1)),
-        (
-            "x'' + c*x' + w^2*x + g*x^3 = F*cos(Omega*t) + G*sin(Omega*t)",
-            (1, 1),
-        ),
-        (
-            "x'' - mu*(1 - x^2)*x' + x + eps*x^3 = F*cos(Omega*t)",
-            (1, 1),
-        ),
+        ("x'' + c*x' + w^2*x + g*x^3 = F*cos(Omega*t) + G*sin(Omega*t)", (1, 1)),
+        ("x'' - mu*(1 - x^2)*x' + x + eps*x^3 = F*cos(Omega*t)", (1, 1)),
         ("x'' + c*x' + w^2*x + g*x^3 + h*x*cos(Omega*t) = 0", (2, 1)),
-        (
-            "x'' + c*x' + w^2*x + g*x'^3 + h*x'*sin(Omega*t) = 0",
-            (2, 1),
-        ),
-        (
-            "x'' + c*x' + w^2*x + g*x^3 + h*x^2*cos(Omega*t) = 0",
-            (3, 1),
-        ),
-        (
-            "x'' + c*x' + w^2*x + g*x^3 + h*x^3*cos(Omega*t) = 0",
-            (2, 1),
-        ),
+        ("x'' + c*x' + w^2*x + g*x'^3 + h*x'*sin(Omega*t) = 0", (2, 1)),
+        ("x'' + c*x' + w^2*x + g*x^3 + h*x^2*cos(Omega*t) = 0", (3, 1)),
+        ("x'' + c*x' + w^2*x + g*x^3 + h*x^3*cos(Omega*t) = 0", (2, 1)),
     ] {
         let [own, other] = [Method::Averaging, Method::MultipleScales]
             .map(|method| driven(equation, method, resonance));
@@ -141,46 +120,24 @@ fn dry_friction_under_a_drive() {
     let equation = "x'' + 2*zeta*x' + alpha*sgn(x') + x = F*cos(Omega*t)";
     let solution = driven(equation, Method::Averaging, (1, 1));
     let slow = solution.modulation.as_ref().expect("slow equations");
-    assert!(same(
-        &slow.amplitude_rate,
-        "-zeta*a - 2*alpha/pi + F/2*sin(psi)"
-    ));
+    assert!(same(&slow.amplitude_rate, "-zeta*a - 2*alpha/pi + F/2*sin(psi)"));
     assert!(same(&slow.phase_rate, "sigma + F/(2*a)*cos(psi)"));
     let response = solution.response.as_ref().expect("a response");
-    assert!(
-        response
-            .peak
-            .as_ref()
-            .is_some_and(|peak| same(peak, "(F/2 - 2*alpha/pi)/zeta"))
-    );
+    assert!(response.peak.as_ref().is_some_and(|peak| same(peak, "(F/2 - 2*alpha/pi)/zeta")));
     let notes: Vec<String> = solution.validity.iter().map(ToString::to_string).collect();
-    assert!(
-        notes.iter().any(|note| note.contains("F > 4*alpha/pi")),
-        "{notes:?}"
-    );
+    assert!(notes.iter().any(|note| note.contains("F > 4*alpha/pi")), "{notes:?}");
     let states = |force: f64| {
         let values = [("zeta", 0.01), ("alpha", 0.1), ("F", force), ("Omega", 1.0)];
-        let value_of = |name: Symbol| {
-            values
-                .iter()
-                .find(|entry| entry.0 == name.name())
-                .map(|entry| entry.1)
-        };
+        let value_of =
+            |name: Symbol| values.iter().find(|entry| entry.0 == name.name()).map(|entry| entry.1);
         let states = solution.steady_states(&value_of).into_iter();
-        states
-            .map(|state| state.amplitude > 0.0)
-            .collect::<Vec<bool>>()
+        states.map(|state| state.amplitude > 0.0).collect::<Vec<bool>>()
     };
     // Below it there is rest alone, which is the truth where friction holds against the whole
     // force.
-    assert_eq!(
-        [0.99, 1.01].map(|part| states(part * 0.4 / PI)),
-        [vec![false], vec![true]]
-    );
+    assert_eq!([0.99, 1.01].map(|part| states(part * 0.4 / PI)), [vec![false], vec![true]]);
     let oscillator = Oscillator::parse(equation).expect(equation);
-    let at = "zeta = 1/100, alpha = 1/10, F = 9/100, Omega = 1"
-        .parse()
-        .expect("values");
+    let at = "zeta = 1/100, alpha = 1/10, F = 9/100, Omega = 1".parse().expect("values");
     let held = judge(&oscillator, &solution, &at, 0.01).expect("a verdict");
     assert_eq!(held.verdict, Verdict::Pass, "{:?}", held.steady_states);
 }
@@ -195,21 +152,12 @@ fn dry_friction_under_a_drive_is_den_hartogs() {
     let error = |size: f64| {
         let (alpha, force, r) = (0.16 * size, 0.8 * size, 1.0 + 0.4 * size);
         let values = [("alpha", alpha), ("F", force), ("Omega", r)];
-        let value_of = |name: Symbol| {
-            values
-                .iter()
-                .find(|entry| entry.0 == name.name())
-                .map(|entry| entry.1)
-        };
+        let value_of =
+            |name: Symbol| values.iter().find(|entry| entry.0 == name.name()).map(|entry| entry.1);
         let states = solution.steady_states(&value_of);
-        let [state] = states.as_slice() else {
-            panic!("{states:?}")
-        };
+        let [state] = states.as_slice() else { panic!("{states:?}") };
         assert!(state.is_stable());
-        let (v, h) = (
-            1.0 / (1.0 - r * r),
-            (PI / r).sin() / (r * (1.0 + (PI / r).cos())),
-        );
+        let (v, h) = (1.0 / (1.0 - r * r), (PI / r).sin() / (r * (1.0 + (PI / r).cos())));
         let exact = force * (v * v - (alpha / force * h).powi(2)).sqrt();
         (state.amplitude / exact - 1.0).abs()
     };
@@ -253,18 +201,9 @@ fn steady_motions_without_a_series_are_the_true_ones() {
         let solution = solve(&oscillator, &options).expect(equation);
         assert_eq!(solution.method, Method::Averaging, "{equation}");
         let judged = judge(&oscillator, &solution, &at, error).expect(equation);
-        assert_eq!(
-            judged.verdict,
-            Verdict::Pass,
-            "{equation}: {:?}",
-            judged.steady_states
-        );
+        assert_eq!(judged.verdict, Verdict::Pass, "{equation}: {:?}", judged.steady_states);
         for state in &judged.steady_states {
-            assert_eq!(
-                state.true_stable,
-                Some(state.state.is_stable()),
-                "{equation}: {state:?}"
-            );
+            assert_eq!(state.true_stable, Some(state.state.is_stable()), "{equation}: {state:?}");
         }
     }
 }
@@ -277,25 +216,13 @@ fn drives_that_averaging_refuses_by_name() {
             Some((1, 3)),
             "at 1:3; it does at 1:1",
         ),
-        (
-            "x'' + 2*zeta*x' + x = F*cos(Omega*t) + G*cos(2*t)",
-            None,
-            "G*cos(2*t)",
-        ),
+        ("x'' + 2*zeta*x' + x = F*cos(Omega*t) + G*cos(2*t)", None, "G*cos(2*t)"),
         ("x'' + 2*zeta*x' + x = F*exp(-t)", None, "F*exp(-t)"),
-        (
-            "x'' + 2*zeta*x' + x = h*abs(x)*cos(Omega*t)",
-            None,
-            "h*abs(x)*cos(Omega*t)",
-        ),
+        ("x'' + 2*zeta*x' + x = h*abs(x)*cos(Omega*t)", None, "h*abs(x)*cos(Omega*t)"),
         ("x'' + x = cos(t)", None, "nothing damps or detunes"),
         ("x'' + x'/10 + x + x^3/10 = cos(7*t)", None, "far from 1:1"),
     ] {
-        let options = Options {
-            method: Some(Method::Averaging),
-            resonance,
-            ..Options::default()
-        };
+        let options = Options { method: Some(Method::Averaging), resonance, ..Options::default() };
         let refusal =
             solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
         assert!(refusal.to_string().contains(words), "{equation}: {refusal}");

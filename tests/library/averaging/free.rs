@@ -28,27 +28,12 @@ fn published_slow_equations() {
         ("x'' + x + alpha*sgn(x') = 0", 1, "-2*alpha/pi", "1"),
         ("x'' + x + c*abs(x')*x' = 0", 1, "-4*c*a^2/(3*pi)", "1"),
         // Section 2.3.1, and the exact frequency sqrt(1 - zeta^2) of a linear motion.
-        (
-            "x'' + x + eps*x^3 = 0",
-            2,
-            "0",
-            "1 + 3*eps*a^2/8 - 15*eps^2*a^4/256",
-        ),
+        ("x'' + x + eps*x^3 = 0", 2, "0", "1 + 3*eps*a^2/8 - 15*eps^2*a^4/256"),
         ("x'' + x + eps*x^2 = 0", 2, "0", "1 - 5*eps^2*a^2/12"),
         ("x'' + 2*zeta*x' + x = 0", 2, "-zeta*a", "1 - zeta^2/2"),
         // The pendulum, where the first harmonic of the sine is a Bessel function.
-        (
-            "x'' + 2*zeta*x' + sin(x) = 0",
-            1,
-            "-zeta*a",
-            "1/2 + J1(a)/a",
-        ),
-        (
-            "phi'' + 2*zeta*phi' + (g/L)*sin(phi) = 0",
-            1,
-            "-zeta*a",
-            "omega0/2 + omega0*J1(a)/a",
-        ),
+        ("x'' + 2*zeta*x' + sin(x) = 0", 1, "-zeta*a", "1/2 + J1(a)/a"),
+        ("phi'' + 2*zeta*phi' + (g/L)*sin(phi) = 0", 1, "-zeta*a", "omega0/2 + omega0*J1(a)/a"),
         // What a letter is taken to be small for has to leave a restoring force.
         (
             "x'' + c*x' + k*sin(x) + m*x^3 = 0",
@@ -63,11 +48,7 @@ fn published_slow_equations() {
             "{equation}: {}",
             found.amplitude_rate
         );
-        assert!(
-            same(&found.phase_rate, phase_rate),
-            "{equation}: {}",
-            found.phase_rate
-        );
+        assert!(same(&found.phase_rate, phase_rate), "{equation}: {}", found.phase_rate);
     }
     // By the initial displacement it is the series of Lindstedt and Poincare.
     let options = Options {
@@ -78,10 +59,7 @@ fn published_slow_equations() {
     };
     let oscillator = Oscillator::parse("x'' + x + eps*(x^2 + x^3) = 0").expect("an equation");
     let [one, other] = [Method::Averaging, Method::LindstedtPoincare].map(|method| {
-        let options = Options {
-            method: Some(method),
-            ..options.clone()
-        };
+        let options = Options { method: Some(method), ..options.clone() };
         solve(&oscillator, &options).expect("an answer")
     });
     assert_eq!(one.law.frequency(), other.law.frequency());
@@ -136,10 +114,7 @@ fn projections_are_their_integrals() {
             let expected = [sum(f64::sin) / 3.0, 1.5 + sum(f64::cos) / (3.0 * a)];
             let values = [amplitude_rate.call(&[a]), phase_rate.call(&[a])];
             for (value, expected) in values.into_iter().zip(expected) {
-                assert!(
-                    (value - expected).abs() < 1e-5,
-                    "{term} at {a}: {value}, {expected}"
-                );
+                assert!((value - expected).abs() < 1e-5, "{term} at {a}: {value}, {expected}");
             }
         }
     }
@@ -183,18 +158,11 @@ fn closed_amplitudes_solve_their_equations() {
                 };
         }
         assert!(!in_y.contains(a), "{equation}: {in_y}");
-        let left = (y.differentiate(t).expect(equation) - in_y)
-            .expand()
-            .expect(equation);
+        let left = (y.differentiate(t).expect(equation) - in_y).expand().expect(equation);
         assert!(left.is_zero(), "{equation}: {left}");
         // It begins where it should.
-        let start = transient
-            .amplitude
-            .substitute(t, &Expr::zero())
-            .expect(equation);
-        let start = Expr::power(&start, &Expr::from(q))
-            .and_then(|y| y.expand())
-            .expect(equation);
+        let start = transient.amplitude.substitute(t, &Expr::zero()).expect(equation);
+        let start = Expr::power(&start, &Expr::from(q)).and_then(|y| y.expand()).expect(equation);
         assert!(same(&start, &format!("A^({q})")), "{equation}: {start}");
     }
 }
@@ -231,9 +199,7 @@ fn closed_phases_solve_their_equations() {
             ]
             .map(|(name, value)| (Symbol::new(name), value)),
         );
-        let defined = solution
-            .defined_values(&|name| values.get(&name).copied())
-            .expect(equation);
+        let defined = solution.defined_values(&|name| values.get(&name).copied()).expect(equation);
         values.extend(defined);
         for time in [0.0, 0.5, 3.0, 11.0] {
             values.insert(t, time);
@@ -242,10 +208,7 @@ fn closed_phases_solve_their_equations() {
             for (slope, rate) in slopes.iter().zip([&slow.amplitude_rate, &slow.phase_rate]) {
                 let [slope, rate] =
                     [slope, rate].map(|value| value.evaluate(&values).expect(equation));
-                assert!(
-                    (slope - rate).abs() < 1e-12,
-                    "{equation} at {time}: {slope}, {rate}"
-                );
+                assert!((slope - rate).abs() < 1e-12, "{equation} at {time}: {slope}, {rate}");
             }
         }
     }
@@ -255,15 +218,9 @@ fn closed_phases_solve_their_equations() {
 #[test]
 fn errors_vanish_as_the_order_says() {
     for (equation, at) in [
-        (
-            "x'' + 2*zeta*x' + x + eps*x^3 = 0",
-            "zeta = 1/10 * D, eps = 2/5 * D, A = 1",
-        ),
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", "zeta = 1/10 * D, eps = 2/5 * D, A = 1"),
         ("x'' - mu*(1 - x^2)*x' + x = 0", "mu = 2/5 * D, A = 1/2"),
-        (
-            "x'' + 2*zeta*x' + x + eps*x^2 + eps*x^3 = 0",
-            "zeta = 1/10 * D, eps = 3/10 * D, A = 1",
-        ),
+        ("x'' + 2*zeta*x' + x + eps*x^2 + eps*x^3 = 0", "zeta = 1/10 * D, eps = 3/10 * D, A = 1"),
     ] {
         for (order, least) in [(1, 1.6), (2, 2.5)] {
             let errors = ["1/2", "1/4"].map(|size| {
@@ -271,10 +228,7 @@ fn errors_vanish_as_the_order_says() {
                 verdict.relative_error.expect(equation).abs()
             });
             let slope = (errors[0] / errors[1]).log2();
-            assert!(
-                slope > least,
-                "{equation} to order {order}: {slope}, {errors:?}"
-            );
+            assert!(slope > least, "{equation} to order {order}: {slope}, {errors:?}");
         }
     }
 }
@@ -291,39 +245,23 @@ fn slopes_of_motions_from_a_start() {
     ] {
         let verdict = judged(equation, order, at);
         let slope = verdict.slope.expect(equation);
-        assert!(
-            (slope - f64::from(order)).abs() < 0.15,
-            "{equation} to order {order}: {slope}"
-        );
+        assert!((slope - f64::from(order)).abs() < 0.15, "{equation} to order {order}: {slope}");
     }
     // x = A exp(-zeta t) cos(t) leaves zeta^2 x of x'' + 2 zeta x' + x.
     let residual = judged("x'' + 2*zeta*x' + x = 0", 1, "zeta = 1/100, A = 1").residual;
-    assert!(
-        residual.is_some_and(|residual| (residual / 1e-4 - 1.0).abs() < 1e-2),
-        "{residual:?}"
-    );
+    assert!(residual.is_some_and(|residual| (residual / 1e-4 - 1.0).abs() < 1e-2), "{residual:?}");
 }
 
 #[test]
 fn coulomb_friction_is_exact_at_every_turn() {
     let verdict = judged("x'' + x + alpha*sgn(x') = 0", 1, "alpha = 1/100, A = 1");
     let followed = verdict.followed.expect("followed");
-    assert!(
-        followed.amplitude_error.is_some_and(|error| error < 1e-9),
-        "{followed:?}"
-    );
+    assert!(followed.amplitude_error.is_some_and(|error| error < 1e-9), "{followed:?}");
     assert_eq!(verdict.verdict, Verdict::Pass);
     // Where a size at the velocity has no power series, values alone are followed.
-    let verdict = judged(
-        "x'' + x + c*abs(x')^p*x' = 0",
-        1,
-        "c = 1/20, p = 1/2, A = 1",
-    );
+    let verdict = judged("x'' + x + c*abs(x')^p*x' = 0", 1, "c = 1/20, p = 1/2, A = 1");
     let followed = verdict.followed.expect("followed");
-    assert!(
-        followed.amplitude_error.is_some_and(|error| error < 1e-3),
-        "{followed:?}"
-    );
+    assert!(followed.amplitude_error.is_some_and(|error| error < 1e-3), "{followed:?}");
 }
 
 /// The pendulum from 1.5 rad: by linear averaging log(10)/zeta, in truth and by its action sooner.
@@ -337,16 +275,10 @@ fn a_pendulum_decays_by_its_action() {
     assert!(near(followed.tenth, 230.2585), "{followed:?}");
     assert!(near(followed.true_tenth, 224.2246), "{followed:?}");
     assert!(near(followed.tenth_by_action, 224.2246), "{followed:?}");
-    assert!(
-        verdict.ranges.iter().any(|range| range.outside),
-        "{verdict:?}"
-    );
+    assert!(verdict.ranges.iter().any(|range| range.outside), "{verdict:?}");
     let solution = averaged("x'' + 2*zeta*x' + sin(x) = 0", 1);
     assert!(
-        solution
-            .validity
-            .iter()
-            .any(|note| note.to_string().contains("J(A)*exp(-(2*zeta)*t)"))
+        solution.validity.iter().any(|note| note.to_string().contains("J(A)*exp(-(2*zeta)*t)"))
     );
 }
 
@@ -355,15 +287,10 @@ fn a_pendulum_decays_by_its_action() {
 #[test]
 fn dry_friction_takes_its_work_from_turn_to_turn() {
     let equation = "x'' + sin(x) + alpha*sgn(x') = 0";
-    let notes: Vec<String> = averaged(equation, 1)
-        .validity
-        .iter()
-        .map(ToString::to_string)
-        .collect();
+    let notes: Vec<String> =
+        averaged(equation, 1).validity.iter().map(ToString::to_string).collect();
     assert!(
-        notes
-            .iter()
-            .any(|note| note.contains("cos(a_m) - cos(a_n) = alpha*(a_n + a_m)")),
+        notes.iter().any(|note| note.contains("cos(a_m) - cos(a_n) = alpha*(a_n + a_m)")),
         "{notes:?}"
     );
     let mut course = Course::of_equation(&Oscillator::parse(equation).expect("an equation"));
@@ -380,11 +307,7 @@ fn dry_friction_takes_its_work_from_turn_to_turn() {
             let (mut low, mut high) = (before, t);
             for _ in 0..60 {
                 let middle = (low + high) / 2.0;
-                if state(low)[1] * state(middle)[1] <= 0.0 {
-                    high = middle
-                } else {
-                    low = middle
-                }
+                if state(low)[1] * state(middle)[1] <= 0.0 { high = middle } else { low = middle }
             }
             turns.push(state(low)[0].abs());
         }
@@ -404,19 +327,11 @@ fn amplitudes_that_stay_have_their_stability() {
     let amplitudes: Vec<f64> = slow
         .steady
         .iter()
-        .map(|cycle| {
-            cycle
-                .amplitude
-                .evaluate(&BTreeMap::new())
-                .expect("a number")
-        })
+        .map(|cycle| cycle.amplitude.evaluate(&BTreeMap::new()).expect("a number"))
         .collect();
     let expected = [10.0 - 20.0_f64.sqrt(), 10.0 + 20.0_f64.sqrt()].map(f64::sqrt);
     assert!(
-        amplitudes
-            .iter()
-            .zip(expected)
-            .all(|(found, expected)| (found - expected).abs() < 1e-12),
+        amplitudes.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-12),
         "{amplitudes:?}"
     );
     let stability: Vec<String> = slow.steady.iter().map(|cycle| cycle.stability()).collect();
@@ -428,16 +343,10 @@ fn amplitudes_that_stay_have_their_stability() {
     let at_cycle = judged("x'' - mu*(1 - x^2)*x' + x = 0", 2, "mu = 1/10");
     assert!(
         at_cycle.followed.is_none()
-            && at_cycle
-                .relative_error
-                .is_some_and(|error| error.abs() < 1e-6)
+            && at_cycle.relative_error.is_some_and(|error| error.abs() < 1e-6)
     );
     let transient = judged("x'' - mu*(1 - x^2)*x' + x = 0", 2, "mu = 1/10, A = 1/2");
-    assert!(
-        transient
-            .followed
-            .is_some_and(|followed| followed.reason.contains("within 1 %"))
-    );
+    assert!(transient.followed.is_some_and(|followed| followed.reason.contains("within 1 %")));
 }
 
 /// Past the radius of its series, about 1.85, the frequency of van der Pol's cycle is resummed, and
@@ -447,22 +356,12 @@ fn van_der_pol_beyond_the_radius_of_its_series() {
     let equation = "x'' - mu*(1 - x^2)*x' + x = 0";
     let oscillator = Oscillator::parse(equation).expect("an equation");
     let at = "mu = 2".parse().expect("a value");
-    let series = Options {
-        order: Some(8),
-        ..Options::default()
-    };
-    let verdict = judge(
-        &oscillator,
-        &solve(&oscillator, &series).expect("a series"),
-        &at,
-        0.01,
-    )
-    .expect("a verdict");
+    let series = Options { order: Some(8), ..Options::default() };
+    let verdict = judge(&oscillator, &solve(&oscillator, &series).expect("a series"), &at, 0.01)
+        .expect("a verdict");
     assert_eq!(verdict.verdict, Verdict::Fail);
-    let said = verdict
-        .ranges
-        .iter()
-        .find(|range| range.text.contains("converges for |mu| < about 1.8"));
+    let said =
+        verdict.ranges.iter().find(|range| range.text.contains("converges for |mu| < about 1.8"));
     assert!(
         said.is_some_and(|range| range.outside && range.text.contains("Pade")),
         "{:?}",
@@ -473,19 +372,10 @@ fn van_der_pol_beyond_the_radius_of_its_series() {
         degrees: Some(Degrees::Quotient(2, 2)),
         ..Options::default()
     };
-    let verdict = judge(
-        &oscillator,
-        &solve(&oscillator, &quotient).expect("a quotient"),
-        &at,
-        0.01,
-    )
-    .expect("a verdict");
-    assert!(
-        verdict
-            .relative_error
-            .is_some_and(|error| error.abs() < 0.005),
-        "{verdict:?}"
-    );
+    let verdict =
+        judge(&oscillator, &solve(&oscillator, &quotient).expect("a quotient"), &at, 0.01)
+            .expect("a verdict");
+    assert!(verdict.relative_error.is_some_and(|error| error.abs() < 0.005), "{verdict:?}");
 }
 
 #[test]
@@ -497,10 +387,7 @@ fn damped_equations_are_averaged_by_default() {
         ("x'' - 0.1*x' + sin(x) = 0", None),
         ("x'' + 2*zeta*x' + x + eps*x^3 = 0", Some(4)),
     ] {
-        let options = Options {
-            order,
-            ..Options::default()
-        };
+        let options = Options { order, ..Options::default() };
         let solution =
             solve(&Oscillator::parse(equation).expect(equation), &options).expect(equation);
         assert_eq!(solution.method, Method::Averaging, "{equation}");
@@ -516,32 +403,19 @@ fn damped_equations_are_averaged_by_default() {
             "{notes:?}"
         );
     }
-    for (equation, term) in [
-        ("u'' + u + eps*u' = 0", "eps*u'"),
-        ("u'' + u + eps*sgn(u') = 0", "eps*sgn(u')"),
-    ] {
-        let options = Options {
-            method: Some(Method::LindstedtPoincare),
-            ..Options::default()
-        };
+    for (equation, term) in
+        [("u'' + u + eps*u' = 0", "eps*u'"), ("u'' + u + eps*sgn(u') = 0", "eps*sgn(u')")]
+    {
+        let options = Options { method: Some(Method::LindstedtPoincare), ..Options::default() };
         let refusal =
             solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
         assert_eq!(refusal.term(), Some(term));
-        assert!(
-            refusal
-                .help()
-                .is_some_and(|help| help.to_string().contains("averaging"))
-        );
+        assert!(refusal.help().is_some_and(|help| help.to_string().contains("averaging")));
     }
     let options = Options::default();
-    let refusal = solve(
-        &Oscillator::parse("x'' + x + tanh(x') = 0").expect("an equation"),
-        &options,
-    );
-    assert_eq!(
-        refusal.expect_err("no closed form").term(),
-        Some("tanh(x')")
-    );
+    let refusal =
+        solve(&Oscillator::parse("x'' + x + tanh(x') = 0").expect("an equation"), &options);
+    assert_eq!(refusal.expect_err("no closed form").term(), Some("tanh(x')"));
 }
 
 /// A force with the velocity in it restores where it does at rest; what is in the way is named with
@@ -549,37 +423,19 @@ fn damped_equations_are_averaged_by_default() {
 #[test]
 fn a_force_that_the_velocity_changes_is_named() {
     for (equation, method, term) in [
-        (
-            "x'' + x/sqrt(1 - x'^2) = 0",
-            Method::Averaging,
-            "x/sqrt(1 - x'^2)",
-        ),
+        ("x'' + x/sqrt(1 - x'^2) = 0", Method::Averaging, "x/sqrt(1 - x'^2)"),
         ("x'' + x*exp(x'^2) = 0", Method::Averaging, "x*exp(x'^2)"),
-        (
-            "x''*(1 + x'^2) + x = 0",
-            Method::EnergyBalance,
-            "x/(1 + x'^2)",
-        ),
-        (
-            "x'' + x/sqrt(1 - x'^2) = 0",
-            Method::EnergyBalance,
-            "x/sqrt(1 - x'^2)",
-        ),
+        ("x''*(1 + x'^2) + x = 0", Method::EnergyBalance, "x/(1 + x'^2)"),
+        ("x'' + x/sqrt(1 - x'^2) = 0", Method::EnergyBalance, "x/sqrt(1 - x'^2)"),
     ] {
-        let options = Options {
-            method: Some(method),
-            ..Options::default()
-        };
+        let options = Options { method: Some(method), ..Options::default() };
         let refusal =
             solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
         assert_eq!(refusal.term(), Some(term), "{refusal}");
     }
     // Its linear part is as small a difference as the polynomial says: x*(1 + x'^2)^2 = x +
     // 2*x*x'^2 + x*x'^4.
-    assert_eq!(
-        slow("x'' + x*(1 + x'^2)^2 = 0", 1).phase_rate.to_string(),
-        "1 + a^2/4 + a^4/16"
-    );
+    assert_eq!(slow("x'' + x*(1 + x'^2)^2 = 0", 1).phase_rate.to_string(), "1 + a^2/4 + a^4/16");
 }
 
 /// The table of `docs/averaging.md` is what comes out.
@@ -589,11 +445,7 @@ fn the_table_of_the_documentation_is_what_comes_out() {
     let rows: Vec<Vec<&str>> = page
         .lines()
         .filter(|line| line.starts_with("| `x''"))
-        .map(|line| {
-            line.split('|')
-                .map(|cell| cell.trim().trim_matches('`'))
-                .collect()
-        })
+        .map(|line| line.split('|').map(|cell| cell.trim().trim_matches('`')).collect())
         .filter(|row: &Vec<&str>| row.len() == 6)
         .collect();
     assert!(rows.len() >= 8, "{rows:?}");
@@ -602,11 +454,7 @@ fn the_table_of_the_documentation_is_what_comes_out() {
             panic!("{row:?}");
         };
         let slow = slow(&format!("{equation} = 0"), order.parse().expect("an order"));
-        assert_eq!(
-            slow.amplitude_rate.to_string(),
-            *amplitude_rate,
-            "{equation}"
-        );
+        assert_eq!(slow.amplitude_rate.to_string(), *amplitude_rate, "{equation}");
         assert_eq!(slow.phase_rate.to_string(), *phase_rate, "{equation}");
     }
 }
@@ -617,22 +465,12 @@ fn the_table_of_the_documentation_is_what_comes_out() {
 fn a_tenth_is_left_at_the_time_of_a_straight_line() {
     let oscillator = Oscillator::parse("x'' + alpha*sgn(x') + x = 0").expect("an oscillator");
     let solution = solve(&oscillator, &Options::default()).expect("an answer");
-    let judged = judge(
-        &oscillator,
-        &solution,
-        &"alpha = 1/25, A = 1".parse().expect("values"),
-        0.01,
-    )
-    .expect("a verdict");
+    let judged =
+        judge(&oscillator, &solution, &"alpha = 1/25, A = 1".parse().expect("values"), 0.01)
+            .expect("a verdict");
     let followed = judged.followed.expect("a motion that was followed");
-    let (formula, truth) = (
-        followed.tenth.expect("a time"),
-        followed.true_tenth.expect("a time"),
-    );
-    assert!(
-        (formula - 0.9 * std::f64::consts::PI / 0.08).abs() < 1e-9,
-        "{formula}"
-    );
+    let (formula, truth) = (followed.tenth.expect("a time"), followed.true_tenth.expect("a time"));
+    assert!((formula - 0.9 * std::f64::consts::PI / 0.08).abs() < 1e-9, "{formula}");
     assert!((truth - formula).abs() < 1e-6, "{truth} and {formula}");
 }
 
@@ -642,22 +480,12 @@ fn a_damped_motion_has_no_law_of_order_nought() {
     for equation in ["x'' + 2*zeta*x' + x = 0", "x'' + alpha*sgn(x') + x = 0"] {
         let oscillator = Oscillator::parse(equation).expect("an oscillator");
         for method in [None, Some(Method::LindstedtPoincare)] {
-            let options = Options {
-                method,
-                order: Some(0),
-                ..Options::default()
-            };
-            assert!(
-                solve(&oscillator, &options).is_err(),
-                "{equation}, {method:?}"
-            );
+            let options = Options { method, order: Some(0), ..Options::default() };
+            assert!(solve(&oscillator, &options).is_err(), "{equation}, {method:?}");
         }
     }
     let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0").expect("an oscillator");
-    let options = Options {
-        order: Some(0),
-        ..Options::default()
-    };
+    let options = Options { order: Some(0), ..Options::default() };
     assert!(solve(&duffing, &options).is_ok());
 }
 
@@ -690,30 +518,16 @@ fn a_force_of_one_power_is_averaged_along_its_motion() {
     for (equation, n, k, damping) in [
         ("x'' + 3*x^3 + c*x' = 0", 3.0, 3.0, [0.0, 1.0]),
         ("x'' + x*abs(x)/2 + c*x' = 0", 2.0, 0.5, [0.0, 1.0]),
-        (
-            "x'' + 2*sgn(x)*abs(x)^(1/2) + c*x' = 0",
-            0.5,
-            2.0,
-            [0.0, 1.0],
-        ),
+        ("x'' + 2*sgn(x)*abs(x)^(1/2) + c*x' = 0", 0.5, 2.0, [0.0, 1.0]),
         ("x'' + x^5 + c*x'*abs(x') = 0", 5.0, 1.0, [0.0, 2.0]),
         ("x'' + 3*x^3 + c*sgn(x') = 0", 3.0, 3.0, [0.0, 0.0]),
         ("x'' + 3*x^3 + c*x^2*x'^3 = 0", 3.0, 3.0, [2.0, 3.0]),
-        (
-            "x'' + x^3 + c*abs(x')^(1/2)*sgn(x') = 0",
-            3.0,
-            1.0,
-            [0.0, 0.5],
-        ),
+        ("x'' + x^3 + c*abs(x')^(1/2)*sgn(x') = 0", 3.0, 1.0, [0.0, 0.5]),
     ] {
         let solution = averaged(equation, 1);
         let slow = solution.slow().expect(equation);
         let chi = solution.defined_values(&|_| Some(1.0)).expect(equation);
-        let chi = chi
-            .iter()
-            .find(|(name, _)| name.name() == "chi")
-            .expect("chi")
-            .1;
+        let chi = chi.iter().find(|(name, _)| name.name() == "chi").expect("chi").1;
         let (r, c): (f64, f64) = (1.3, 0.1);
         // x = r sin(u): dx/v and |x|^p |v|^q dx are smooth in u.
         let (mut time, mut work) = (0.0, 0.0);
@@ -729,26 +543,14 @@ fn a_force_of_one_power_is_averaged_along_its_motion() {
         let expected = -chi * work / time / (k * r.powf(n));
         let numbers = [("a", chi * r), ("c", c), ("chi", chi)]
             .map(|(name, value)| (Symbol::new(name), value));
-        let found = slow
-            .amplitude_rate
-            .evaluate(&numbers.into())
-            .expect(equation);
-        assert!(
-            (found / expected - 1.0).abs() < 1e-5,
-            "{equation}: {found}, {expected}"
-        );
+        let found = slow.amplitude_rate.evaluate(&numbers.into()).expect(equation);
+        assert!((found / expected - 1.0).abs() < 1e-5, "{equation}: {found}, {expected}");
         if damping == [0.0, 1.0] {
-            assert!(
-                (found / (-2.0 * c * chi * r / (n + 3.0)) - 1.0).abs() < 1e-14,
-                "{equation}"
-            );
+            assert!((found / (-2.0 * c * chi * r / (n + 3.0)) - 1.0).abs() < 1e-14, "{equation}");
         }
         let frequency = slow.phase_rate.evaluate(&numbers.into()).expect(equation);
         let expected = PI / 2.0 / (time * PI / 2.0 / STEPS as f64);
-        assert!(
-            (frequency / expected - 1.0).abs() < 1e-5,
-            "{equation}: {frequency}, {expected}"
-        );
+        assert!((frequency / expected - 1.0).abs() < 1e-5, "{equation}: {frequency}, {expected}");
     }
 }
 
@@ -773,13 +575,8 @@ fn motions_where_nothing_linear_restores() {
     let equation = "x'' + x^3 - mu*(1 - x^2)*x' = 0";
     let oscillator = Oscillator::parse(equation).expect(equation);
     let cycle = averaged(equation, 1).on_cycle().expect("a cycle");
-    let verdict = judge(
-        &oscillator,
-        &cycle,
-        &"mu = 1/50".parse().expect("values"),
-        0.001,
-    )
-    .expect(equation);
+    let verdict =
+        judge(&oscillator, &cycle, &"mu = 1/50".parse().expect("values"), 0.001).expect(equation);
     assert_eq!(verdict.verdict, Verdict::Pass, "{verdict:?}");
 }
 
@@ -787,10 +584,7 @@ fn motions_where_nothing_linear_restores() {
 #[test]
 fn no_help_leads_in_a_circle() {
     for method in [None, Some(Method::Averaging), Some(Method::MultipleScales)] {
-        let options = Options {
-            method,
-            ..Options::default()
-        };
+        let options = Options { method, ..Options::default() };
         let refused = |equation: &str| {
             let refusal =
                 solve(&Oscillator::parse(equation).expect(equation), &options).expect_err(equation);
@@ -798,30 +592,15 @@ fn no_help_leads_in_a_circle() {
             refusal.help().expect("help").to_string()
         };
         let help = refused("x'' + 0.1*x' + x^3 + x^5 = 0");
-        assert!(
-            help.contains("lindstedt simulate") && help.contains("exact"),
-            "{help}"
-        );
+        assert!(help.contains("lindstedt simulate") && help.contains("exact"), "{help}");
         // One power alone is averaged, as whoever asked for another method is told.
         if method == Some(Method::MultipleScales) {
             let help = refused("x'' + 0.1*x' + x^3 = 0");
-            assert!(
-                help.contains("--method averaging") || help.contains("averaging"),
-                "{help}"
-            );
+            assert!(help.contains("--method averaging") || help.contains("averaging"), "{help}");
         }
     }
-    let undamped = Options {
-        method: Some(Method::Exact),
-        ..Options::default()
-    };
-    assert!(
-        solve(
-            &Oscillator::parse("x'' + x^3 = 0").expect("an equation"),
-            &undamped
-        )
-        .is_ok()
-    );
+    let undamped = Options { method: Some(Method::Exact), ..Options::default() };
+    assert!(solve(&Oscillator::parse("x'' + x^3 = 0").expect("an equation"), &undamped).is_ok());
 }
 
 /// The tables of `docs/averaging.md` and `docs/multiple-scales.md` on motions from a start are what
@@ -829,22 +608,12 @@ fn no_help_leads_in_a_circle() {
 #[test]
 fn deviations_residuals_and_slopes_of_the_documentation() {
     for (method, page) in [
-        (
-            Method::Averaging,
-            include_str!("../../../docs/averaging.md"),
-        ),
-        (
-            Method::MultipleScales,
-            include_str!("../../../docs/multiple-scales.md"),
-        ),
+        (Method::Averaging, include_str!("../../../docs/averaging.md")),
+        (Method::MultipleScales, include_str!("../../../docs/multiple-scales.md")),
     ] {
         let lines = page.lines().filter(|line| line.starts_with("| `x''"));
         let rows: Vec<Vec<&str>> = lines
-            .map(|line| {
-                line.split('|')
-                    .map(|cell| cell.trim().trim_matches('`'))
-                    .collect()
-            })
+            .map(|line| line.split('|').map(|cell| cell.trim().trim_matches('`')).collect())
             .filter(|row: &Vec<&str>| row.len() == 8)
             .collect();
         assert_eq!(rows.len(), 3, "{rows:?}");
@@ -860,10 +629,9 @@ fn deviations_residuals_and_slopes_of_the_documentation() {
             let judged =
                 judge(&oscillator, &solution, &row[2].parse().expect(row[2]), 0.01).expect(row[1]);
             let percent = |value: Option<f64>| 100.0 * value.expect(row[1]);
-            for (cell, found) in [
-                (row[4], percent(judged.max_deviation)),
-                (row[5], percent(judged.residual)),
-            ] {
+            for (cell, found) in
+                [(row[4], percent(judged.max_deviation)), (row[5], percent(judged.residual))]
+            {
                 let printed: f64 = cell.trim_end_matches(" %").parse().expect(cell);
                 assert!((found / printed - 1.0).abs() < 5e-3, "{row:?}: {found}");
             }

@@ -15,11 +15,8 @@ use lindstedt::solution::{Method, Modulation, Solution};
 use lindstedt::verify::{Verification, judge};
 
 fn averaged(equation: &str, order: u32) -> Solution {
-    let options = Options {
-        method: Some(Method::Averaging),
-        order: Some(order),
-        ..Options::default()
-    };
+    let options =
+        Options { method: Some(Method::Averaging), order: Some(order), ..Options::default() };
     solve(&Oscillator::parse(equation).expect(equation), &options).expect(equation)
 }
 

@@ -51,18 +51,9 @@ fn harmonic_balance_converges_to_the_exact_motion() {
     assert!(matches!(
         by_options(
             "x'' + sin(x) = 0",
-            Options {
-                method: Some(Method::HarmonicBalance),
-                order: Some(0),
-                ..Options::default()
-            }
+            Options { method: Some(Method::HarmonicBalance), order: Some(0), ..Options::default() }
         ),
-        Err(Refusal::Unsuited {
-            reason: Unsuited::HighestOrder {
-                highest: MOST_HARMONICS
-            },
-            ..
-        })
+        Err(Refusal::Unsuited { reason: Unsuited::HighestOrder { highest: MOST_HARMONICS }, .. })
     ));
 }
 
@@ -73,11 +64,7 @@ fn the_printed_balance_is_the_one_that_is_solved() {
         ("x'' + x + eps*x^3 = 0", 2, vec![("eps", 0.7), ("A", 1.4)]),
         ("x'' + x + x^2 - x^5/9 = 0", 3, vec![("A", 0.4)]),
         ("x'' + exp(x) - 1 = 0", 1, vec![("A", 0.8)]),
-        (
-            "x'' + x + k*(x - xc)*H(x - xc) = 0",
-            1,
-            vec![("k", 2.0), ("xc", 0.5), ("A", 1.0)],
-        ),
+        ("x'' + x + k*(x - xc)*H(x - xc) = 0", 1, vec![("k", 2.0), ("xc", 0.5), ("A", 1.0)]),
     ] {
         let options = Options {
             method: Some(Method::HarmonicBalance),
@@ -97,19 +84,12 @@ fn the_printed_balance_is_the_one_that_is_solved() {
                     motion.evaluate(theta) * (k as f64 * theta).cos()
                 })
                 .sum();
-            if k == 0 {
-                sum / points as f64
-            } else {
-                2.0 * sum / points as f64
-            }
+            if k == 0 { sum / points as f64 } else { 2.0 * sum / points as f64 }
         };
         let mut values = numbers(&entries);
         values.insert("omega".into(), found.frequency_squared.sqrt());
         for name in &system.unknowns[1..] {
-            values.insert(
-                *name,
-                harmonic(name.name()[1..].parse().expect("a harmonic")),
-            );
+            values.insert(*name, harmonic(name.name()[1..].parse().expect("a harmonic")));
         }
         for line in &system.equations {
             let value = line.evaluate(&values).expect("a number");
@@ -141,9 +121,7 @@ fn balances_about_several_wells_come_from_large_amplitudes() {
         let exact = by(equation, Method::Exact).unwrap();
         for amplitude in amplitudes {
             let values = numbers(&[("A", amplitude)]);
-            let expected = evaluate(&oscillator, &exact, &values)
-                .unwrap()
-                .frequency_squared;
+            let expected = evaluate(&oscillator, &exact, &values).unwrap().frequency_squared;
             let error = |order: u32| {
                 let found = evaluate(&oscillator, &by_order(order), &values).unwrap();
                 let remark = found.remark.expect("a remark");
@@ -151,10 +129,7 @@ fn balances_about_several_wells_come_from_large_amplitudes() {
                 (found.frequency_squared / expected - 1.0).abs()
             };
             let (few, many) = (error(3), error(12));
-            assert!(
-                many < tolerance && many < few,
-                "{equation} {amplitude}: {few} {many}"
-            );
+            assert!(many < tolerance && many < few, "{equation} {amplitude}: {few} {many}");
         }
     }
 }
@@ -166,25 +141,15 @@ fn balances_about_several_wells_come_from_large_amplitudes() {
 fn a_single_well_is_balanced_from_large_amplitudes_too() {
     let equation = "x'' + x + 1.34*x^2 - 0.00509*x^3 + 0.441*x^5 = 0";
     let oscillator = Oscillator::parse(equation).unwrap();
-    let options = Options {
-        method: Some(Method::HarmonicBalance),
-        order: Some(1),
-        ..Options::default()
-    };
+    let options =
+        Options { method: Some(Method::HarmonicBalance), order: Some(1), ..Options::default() };
     let solution = by_options(equation, options).unwrap();
     let values = numbers(&[("A", 464.0)]);
     let found = evaluate(&oscillator, &solution, &values).unwrap();
     // omega^2 = 5/8 c A^4, beside which the other terms are of the order of 1/A^2.
     let power = 0.625 * 0.441 * 464.0_f64.powi(4);
-    assert!(
-        (found.frequency_squared / power - 1.0).abs() < 1e-5,
-        "{found:?}"
-    );
-    assert!(
-        found
-            .remark
-            .is_some_and(|remark| remark.contains("from large amplitudes"))
-    );
+    assert!((found.frequency_squared / power - 1.0).abs() < 1e-5, "{found:?}");
+    assert!(found.remark.is_some_and(|remark| remark.contains("from large amplitudes")));
 }
 
 /// Close to the edge of its well a motion may have no balance, and those about several wells are
@@ -193,11 +158,8 @@ fn a_single_well_is_balanced_from_large_amplitudes_too() {
 fn balances_of_other_motions_are_not_taken() {
     let equation = "x'' + 0.206*x - 3.51*x^2 + 2.29*x^3 = 0";
     let oscillator = Oscillator::parse(equation).unwrap();
-    let options = Options {
-        method: Some(Method::HarmonicBalance),
-        order: Some(3),
-        ..Options::default()
-    };
+    let options =
+        Options { method: Some(Method::HarmonicBalance), order: Some(3), ..Options::default() };
     let solution = by_options(equation, options).unwrap();
     let at = |amplitude: f64| evaluate(&oscillator, &solution, &numbers(&[("A", amplitude)]));
     let refused = at(-0.0298).unwrap_err();
@@ -214,9 +176,6 @@ fn a_balance_of_thousands_of_waves_is_refused() {
     let oscillator = Oscillator::parse(equation).unwrap();
     let solution = by(equation, Method::HarmonicBalance).unwrap();
     let refused = evaluate(&oscillator, &solution, &numbers(&[("A", 7550.0)])).unwrap_err();
-    assert!(
-        refused.to_string().contains("changes too often"),
-        "{refused}"
-    );
+    assert!(refused.to_string().contains("changes too often"), "{refused}");
     assert!(evaluate(&oscillator, &solution, &numbers(&[("A", 7.5)])).is_ok());
 }

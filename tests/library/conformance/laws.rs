@@ -19,11 +19,8 @@ fn the_methods_of_the_shared_integral_agree_exactly() {
         Method::Hamiltonian,
         Method::VariationalIteration,
     ];
-    let with_order = |method, order| Options {
-        method: Some(method),
-        order: Some(order),
-        ..Options::default()
-    };
+    let with_order =
+        |method, order| Options { method: Some(method), order: Some(order), ..Options::default() };
     let law = |solution: &Solution| -> Expr {
         match (solution.law.frequency_squared(), solution.law.closed_form()) {
             (Some(law), _) => Expr::from(law),
@@ -57,10 +54,7 @@ fn the_methods_of_the_shared_integral_agree_exactly() {
     }
     // Where the force is a polynomial, homotopy perturbation and homotopy analysis begin there as
     // well.
-    for equation in [
-        "x'' + x + eps*x^3 = 0",
-        "x'' + alpha*x + eps*x^3 + beta*x^7 = 0",
-    ] {
+    for equation in ["x'' + x + eps*x^3 = 0", "x'' + alpha*x + eps*x^3 + beta*x^7 = 0"] {
         let reference =
             law(&by_options(equation, with_order(Method::HarmonicBalance, 1)).expect(equation));
         let homotopy =
@@ -69,11 +63,7 @@ fn the_methods_of_the_shared_integral_agree_exactly() {
         let analysis =
             by_options(equation, with_order(Method::HomotopyAnalysis, 1)).expect(equation);
         let root = &analysis.definitions.last().expect("w0").meaning;
-        assert_eq!(
-            root.integer_power(2).unwrap().expand().unwrap(),
-            reference,
-            "{equation}"
-        );
+        assert_eq!(root.integer_power(2).unwrap().expand().unwrap(), reference, "{equation}");
     }
 }
 
@@ -87,14 +77,8 @@ fn closed_forms_of_the_shared_integral() {
         ("x'' + sinh(x) = 0", "2*I1(A)/A"),
         ("x'' + x + eps*x*abs(x) = 0", "1 + 8*eps*A/(3*pi)"),
         ("x'' + sgn(x) = 0", "4/(pi*A)"),
-        (
-            "x'' + x^(1/3) = 0",
-            "2*Gamma(7/6)/(sqrt(pi)*Gamma(5/3)*A^(2/3))",
-        ),
-        (
-            "x'' + x^3/(1 + x^2) = 0",
-            "1 - 2/A^2 + 2/(A^2*sqrt(1 + A^2))",
-        ),
+        ("x'' + x^(1/3) = 0", "2*Gamma(7/6)/(sqrt(pi)*Gamma(5/3)*A^(2/3))"),
+        ("x'' + x^3/(1 + x^2) = 0", "1 - 2/A^2 + 2/(A^2*sqrt(1 + A^2))"),
     ] {
         let solution = by(equation, Method::Hamiltonian)
             .or_else(|_| by(equation, Method::IterationPerturbation))
@@ -102,9 +86,8 @@ fn closed_forms_of_the_shared_integral() {
         let expected: Expr = law.parse().unwrap();
         for amplitude in [0.4, 1.3, 2.2, -1.3] {
             let found = squared(equation, &solution, &[("A", amplitude), ("eps", 0.7)]);
-            let value = expected
-                .evaluate(&numbers(&[("A", f64::abs(amplitude)), ("eps", 0.7)]))
-                .unwrap();
+            let value =
+                expected.evaluate(&numbers(&[("A", f64::abs(amplitude)), ("eps", 0.7)])).unwrap();
             assert!(
                 (found / value - 1.0).abs() < 1e-12,
                 "{equation} at {amplitude}: {found} {value}"
@@ -131,15 +114,8 @@ fn barriers_by_arcs() {
         .unwrap()
         .0;
         let expected = 1.0 + 4.0 * k * integral / (std::f64::consts::PI * amplitude);
-        let found = squared(
-            equation,
-            &solution,
-            &[("A", amplitude), ("k", k), ("xc", edge)],
-        );
-        assert!(
-            (found / expected - 1.0).abs() < 1e-11,
-            "{amplitude}: {found} {expected}"
-        );
+        let found = squared(equation, &solution, &[("A", amplitude), ("k", k), ("xc", edge)]);
+        assert!((found / expected - 1.0).abs() < 1e-11, "{amplitude}: {found} {expected}");
     }
     // A fractional power is done by numbers.
     let hertz = "x'' + x + k*(x - xc)^(3/2)*H(x - xc) - k*(-x - xc)^(3/2)*H(-x - xc) = 0";
@@ -149,9 +125,8 @@ fn barriers_by_arcs() {
     let arc = f64::acos(edge / 2.0);
     // theta = arc (1 - u^2) takes the root out of the end.
     let smooth = |u: f64| 2.0 * arc * u * integrand(arc * (1.0 - u * u));
-    let integral = lindstedt::numeric::ode::quadrature::integrate_smooth(smooth, 0.0, 1.0, 1e-13)
-        .unwrap()
-        .0;
+    let integral =
+        lindstedt::numeric::ode::quadrature::integrate_smooth(smooth, 0.0, 1.0, 1e-13).unwrap().0;
     let expected = 1.0 + 4.0 * k * integral / (std::f64::consts::PI * 2.0);
     let found = squared(hertz, &solution, &[("A", 2.0), ("k", k), ("xc", edge)]);
     assert!((found / expected - 1.0).abs() < 1e-8, "{found} {expected}");
@@ -165,29 +140,17 @@ fn laws_derived_by_hand() {
         ("x'' + sin(x) = 0", Method::EnergyBalance, &|a| {
             4.0 * ((a / 2f64.sqrt()).cos() - a.cos()) / (a * a)
         }),
-        ("x'' + sin(x) = 0", Method::FrequencyFormula, &|a| {
-            (a / 2.0).cos()
-        }),
+        ("x'' + sin(x) = 0", Method::FrequencyFormula, &|a| (a / 2.0).cos()),
         ("x'' + sin(x) = 0", Method::AmplitudeFrequency, &|a| {
             let place = 0.75f64.sqrt() * a;
             place.sin() / place
         }),
-        ("x'' + x + x^3 = 0", Method::EnergyBalance, &|a| {
-            1.0 + 0.75 * a * a
-        }),
-        ("x'' + x + x^3 = 0", Method::FrequencyFormula, &|a| {
-            1.0 + 0.75 * a * a
-        }),
-        ("x'' + x + x^3 = 0", Method::AmplitudeFrequency, &|a| {
-            1.0 + 0.75 * a * a
-        }),
+        ("x'' + x + x^3 = 0", Method::EnergyBalance, &|a| 1.0 + 0.75 * a * a),
+        ("x'' + x + x^3 = 0", Method::FrequencyFormula, &|a| 1.0 + 0.75 * a * a),
+        ("x'' + x + x^3 = 0", Method::AmplitudeFrequency, &|a| 1.0 + 0.75 * a * a),
         ("x'' + x + x^3 = 0", Method::MaxMin, &|a| 1.0 + 0.75 * a * a),
-        ("x'' + x + x^5 = 0", Method::FrequencyFormula, &|a| {
-            1.0 + 5.0 * (a / 2.0).powi(4)
-        }),
-        ("x'' + x + x^5 = 0", Method::EnergyBalance, &|a| {
-            1.0 + 7.0 / 12.0 * a.powi(4)
-        }),
+        ("x'' + x + x^5 = 0", Method::FrequencyFormula, &|a| 1.0 + 5.0 * (a / 2.0).powi(4)),
+        ("x'' + x + x^5 = 0", Method::EnergyBalance, &|a| 1.0 + 7.0 / 12.0 * a.powi(4)),
     ];
     for (equation, method, by_hand) in cases {
         let solution = by(equation, method).expect(equation);
@@ -213,10 +176,7 @@ fn exact_frequencies() {
         ("x'' + x + eps*x^3 = 0", &[("eps", 0.8)]),
         ("x'' + x + eps*x^3 = 0", &[("eps", -0.3)]),
         ("x'' + 2*x + eps*x^5 = 0", &[("eps", 0.5)]),
-        (
-            "x'' + x + eps*x^3 + beta*x^5 = 0",
-            &[("eps", -0.5), ("beta", 0.4)],
-        ),
+        ("x'' + x + eps*x^3 + beta*x^5 = 0", &[("eps", -0.5), ("beta", 0.4)]),
         ("x'' + x^3 + x^5 = 0", &[]),
         ("x'' + x + eps*x^2 = 0", &[("eps", 0.3)]),
         ("x'' + x + eps*x^2 = 0", &[("eps", -0.3)]),
@@ -253,11 +213,8 @@ fn exact_frequencies() {
             };
             // The cube root has no smooth force at the middle: the quadrature is good to less
             // there.
-            let tolerance = if equation.contains("^(1/3)") || equation.contains("abs") {
-                1e-8
-            } else {
-                1e-11
-            };
+            let tolerance =
+                if equation.contains("^(1/3)") || equation.contains("abs") { 1e-8 } else { 1e-11 };
             assert!(
                 (found / expected - 1.0).abs() < tolerance,
                 "{equation} {entries:?}: {found} {expected}"
@@ -273,12 +230,8 @@ fn exact_frequencies() {
         ("x'' + x*abs(x) = 0", 1.0, 0.914681356502),
         ("x'' + x^(1/3) = 0", 1.0, 1.07045051404),
     ] {
-        let found = squared(
-            equation,
-            &by(equation, Method::Exact).unwrap(),
-            &[("A", amplitude)],
-        )
-        .sqrt();
+        let found =
+            squared(equation, &by(equation, Method::Exact).unwrap(), &[("A", amplitude)]).sqrt();
         assert!((found / value - 1.0).abs() < 1e-11, "{equation}: {found}");
     }
 }
@@ -317,16 +270,10 @@ fn the_table_of_the_pendulum() {
         ),
     ] {
         let mut values = Values::default();
-        values
-            .insert("A".into(), amplitude.parse().unwrap())
-            .unwrap();
+        values.insert("A".into(), amplitude.parse().unwrap()).unwrap();
         let table = compare(&oscillator, &values, None, 0.01).unwrap();
         for (name, printed) in errors {
-            let row = table
-                .rows
-                .iter()
-                .find(|row| row.solution.method.name() == name)
-                .expect(name);
+            let row = table.rows.iter().find(|row| row.solution.method.name() == name).expect(name);
             let error: f64 = 100.0 * row.relative_error.unwrap();
             let digits = if f64::abs(printed) < 0.01 {
                 0.0001

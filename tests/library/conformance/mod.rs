@@ -21,13 +21,7 @@ use lindstedt::verify::{Verdict, judge, needed_values};
 use lindstedt::{Oscillator, Symbol};
 
 fn by(equation: &str, method: Method) -> Result<Solution, Refusal> {
-    by_options(
-        equation,
-        Options {
-            method: Some(method),
-            ..Options::default()
-        },
-    )
+    by_options(equation, Options { method: Some(method), ..Options::default() })
 }
 
 fn by_options(equation: &str, options: Options) -> Result<Solution, Refusal> {
@@ -35,10 +29,7 @@ fn by_options(equation: &str, options: Options) -> Result<Solution, Refusal> {
 }
 
 fn numbers(entries: &[(&str, f64)]) -> BTreeMap<Symbol, f64> {
-    entries
-        .iter()
-        .map(|(name, value)| (Symbol::new(name), *value))
-        .collect()
+    entries.iter().map(|(name, value)| (Symbol::new(name), *value)).collect()
 }
 
 /// omega^2 of an answer at an amplitude.
@@ -61,8 +52,7 @@ fn at(solution: &Solution, size: &str) -> Values {
             "lambda" => "1/10",
             _ => "1/2",
         };
-        at.insert(name, value.parse().expect("a number"))
-            .expect("a value");
+        at.insert(name, value.parse().expect("a number")).expect("a value");
     }
     at
 }
@@ -114,11 +104,7 @@ fn every_method_on_every_entry_it_claims() {
                 verdict.max_deviation.is_some_and(|value| value < deviation),
                 "{context}: {verdict:?}"
             );
-            let residual = if is_scale_free(entry.equation) {
-                1.1
-            } else {
-                0.1
-            };
+            let residual = if is_scale_free(entry.equation) { 1.1 } else { 0.1 };
             match &verdict.followed {
                 // Not periodic: followed to a tenth of its amplitude.
                 Some(followed) => assert!(
@@ -144,10 +130,7 @@ fn every_method_on_every_entry_it_claims() {
             }
         }
     }
-    assert!(
-        judged > 180 && slopes > 70,
-        "{judged} answers judged, {slopes} slopes"
-    );
+    assert!(judged > 180 && slopes > 70, "{judged} answers judged, {slopes} slopes");
 }
 
 /// The exponent of the first term in which a law differs from the exact series: of a polynomial by
@@ -168,23 +151,16 @@ fn expected_slope(oscillator: &Oscillator, solution: &Solution) -> Option<f64> {
     // Symbols that either answer introduced, and one half for the parameters of the shape, as in
     // `at`.
     let half = |name: &Symbol| (*name, Expr::number(ratio(1, 2)));
-    let values: BTreeMap<Symbol, Expr> = oscillator
-        .parameters
-        .iter()
-        .filter(|&&name| name != small)
-        .map(half)
-        .collect();
+    let values: BTreeMap<Symbol, Expr> =
+        oscillator.parameters.iter().filter(|&&name| name != small).map(half).collect();
     let definitions = series.definitions.iter().chain(&solution.definitions);
-    let meanings = definitions
-        .map(|definition| (definition.symbol, definition.meaning.clone()))
-        .collect();
+    let meanings =
+        definitions.map(|definition| (definition.symbol, definition.meaning.clone())).collect();
     let difference = if let Some(law) = solution.law.frequency_squared() {
         Expr::from(law) - Expr::from(exact)
     } else if let Some(relation) = solution.law.relation() {
         let root = Expr::from(exact).sqrt().ok()?;
-        Expr::from(relation)
-            .substitute("omega".into(), &root)
-            .ok()?
+        Expr::from(relation).substitute("omega".into(), &root).ok()?
     } else {
         // Powers of A below the line are multiplied away first: 2*J1(A)/A, (cos(..) - cos(A))/A^2.
         let form = solution.law.closed_form().filter(|form| form.squared)?;
@@ -194,16 +170,8 @@ fn expected_slope(oscillator: &Oscillator, solution: &Solution) -> Option<f64> {
         let parts = lindstedt::series::taylor(&numerator, &[(small, zero)], HIGHEST + 2).ok()?;
         Expr::divide(&Expr::sum(parts), &scale).ok()? - Expr::from(exact)
     };
-    let difference = difference
-        .substitute_all(&meanings)
-        .ok()?
-        .substitute_all(&values)
-        .ok()?;
-    let difference = difference
-        .expand()
-        .ok()?
-        .to_polynomial(&mut |_| None)
-        .ok()??;
+    let difference = difference.substitute_all(&meanings).ok()?.substitute_all(&values).ok()?;
+    let difference = difference.expand().ok()?.to_polynomial(&mut |_| None).ok()??;
     let lowest = f64::from(difference.exponent_range(small)?.0);
     (lowest <= f64::from(HIGHEST)).then_some(lowest)
 }

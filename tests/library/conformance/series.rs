@@ -60,55 +60,31 @@ fn homotopy_analysis_and_homotopy_perturbation() {
     // The best hbar is better than -1, by the residual that it minimises.
     let free = by(equation, Method::HomotopyAnalysis).unwrap();
     let oscillator = Oscillator::parse(equation).unwrap();
-    let chosen = evaluate(&oscillator, &free, &numbers(&[("eps", 2.0), ("A", 1.0)]))
-        .unwrap()
-        .chosen;
-    assert!(
-        chosen.len() == 1 && chosen[0].1 < -0.8 && chosen[0].1 > -1.3,
-        "{chosen:?}"
-    );
+    let chosen =
+        evaluate(&oscillator, &free, &numbers(&[("eps", 2.0), ("A", 1.0)])).unwrap().chosen;
+    assert!(chosen.len() == 1 && chosen[0].1 < -0.8 && chosen[0].1 > -1.3, "{chosen:?}");
     let residual = |solution: &Solution| {
         let mut values = Values::default();
         values.insert("A".into(), Expr::one()).unwrap();
         values.insert("eps".into(), Expr::from(2)).unwrap();
-        judge(&oscillator, solution, &values, 0.01)
-            .unwrap()
-            .residual
-            .unwrap()
+        judge(&oscillator, solution, &values, 0.01).unwrap().residual.unwrap()
     };
-    assert!(
-        residual(&free) <= residual(&second),
-        "{} {}",
-        residual(&free),
-        residual(&second)
-    );
+    assert!(residual(&free) <= residual(&second), "{} {}", residual(&free), residual(&second));
     // Orders converge on the exact frequency at hbar = -1.
     let exact = at(&by(equation, Method::Exact).unwrap(), 5.0);
-    let errors: Vec<f64> = (1..=5)
-        .map(|order| (at(&analysis(order), 5.0) / exact - 1.0).abs())
-        .collect();
-    assert!(
-        errors[4] < 1e-5 && errors[4] < errors[1] / 10.0,
-        "{errors:?}"
-    );
+    let errors: Vec<f64> =
+        (1..=5).map(|order| (at(&analysis(order), 5.0) / exact - 1.0).abs()).collect();
+    assert!(errors[4] < 1e-5 && errors[4] < errors[1] / 10.0, "{errors:?}");
 }
 
 /// A Pade approximant re-expands to the exact series through its last coefficient.
 #[test]
 fn pade_approximants_agree_with_the_series() {
     for (equation, small, degrees) in [
-        (
-            "x'' + x + eps*x^3 = 0",
-            "eps",
-            [(1, 1), (2, 1), (3, 2), (2, 3)],
-        ),
+        ("x'' + x + eps*x^3 = 0", "eps", [(1, 1), (2, 1), (3, 2), (2, 3)]),
         ("x'' + sin(x) = 0", "A", [(1, 1), (2, 1), (3, 2), (2, 2)]),
         ("x'' + x + x^2 = 0", "A", [(2, 1), (3, 1), (2, 2), (3, 3)]),
-        (
-            "x'' + x + eps*(alpha*x^3 + beta*x^5) = 0",
-            "eps",
-            [(1, 1), (2, 1), (1, 2), (2, 2)],
-        ),
+        ("x'' + x + eps*(alpha*x^3 + beta*x^5) = 0", "eps", [(1, 1), (2, 1), (1, 2), (2, 2)]),
     ] {
         for degrees in degrees {
             let options = Options {
@@ -141,15 +117,9 @@ fn pade_approximants_agree_with_the_series() {
             }
             // A rational function of several symbols: zero where it is tried, at fractions.
             for (alpha, beta, amplitude) in [(2, 3, 1), (-1, 5, 2), (7, -2, 3)] {
-                let point = [
-                    ("alpha", alpha),
-                    ("beta", beta),
-                    ("A", amplitude),
-                    ("eps", 5),
-                ];
-                let point = point
-                    .map(|(name, value)| (Symbol::new(name), Expr::from(value)))
-                    .into();
+                let point = [("alpha", alpha), ("beta", beta), ("A", amplitude), ("eps", 5)];
+                let point =
+                    point.map(|(name, value)| (Symbol::new(name), Expr::from(value))).into();
                 let value = difference.substitute_all(&point).unwrap().expand().unwrap();
                 assert!(value.is_zero(), "{equation} {degrees:?}: {value}");
             }
@@ -162,10 +132,7 @@ fn pade_approximants_agree_with_the_series() {
         let [found, expected] = [&duffing, &exact].map(|solution| {
             squared("x'' + x + eps*x^3 = 0", solution, &[("eps", s), ("A", 1.0)]).sqrt()
         });
-        assert!(
-            (found / expected - 1.0).abs() < 6.95e-4,
-            "{s}: {found} {expected}"
-        );
+        assert!((found / expected - 1.0).abs() < 6.95e-4, "{s}: {found} {expected}");
     }
     // omega^2 = 1 - 5/6 A^2 + ... has no A^1: [1/1] in A does not exist.
     let singular = Options {
@@ -173,19 +140,13 @@ fn pade_approximants_agree_with_the_series() {
         degrees: Some(Degrees::Quotient(1, 1)),
         ..Options::default()
     };
-    assert!(matches!(
-        by_options("x'' + x + x^2 = 0", singular),
-        Err(Refusal::Approximant { .. })
-    ));
+    assert!(matches!(by_options("x'' + x + x^2 = 0", singular), Err(Refusal::Approximant { .. })));
     let linear = Options {
         method: Some(Method::Pade),
         degrees: Some(Degrees::Quotient(1, 1)),
         ..Options::default()
     };
-    assert!(matches!(
-        by_options("x'' + x = 0", linear),
-        Err(Refusal::Approximant { .. })
-    ));
+    assert!(matches!(by_options("x'' + x = 0", linear), Err(Refusal::Approximant { .. })));
 }
 
 /// P + Q f + R f^2 of a quadratic approximant begins with the power that its degrees promise, f the
@@ -207,11 +168,7 @@ fn hermite_pade_approximants_agree_with_the_series() {
         };
         let solution = by_options(equation, options).expect(equation);
         // Even series run in the square.
-        let step = if small == "eps" || equation.contains("x^2 = 0") {
-            1
-        } else {
-            2
-        };
+        let step = if small == "eps" || equation.contains("x^2 = 0") { 1 } else { 2 };
         let powers = step * (p + q + r + 2);
         let series = Options {
             method: Some(Method::LindstedtPoincare),
@@ -221,32 +178,22 @@ fn hermite_pade_approximants_agree_with_the_series() {
         };
         let series = by_options(equation, series).expect(equation);
         let law = Expr::from(series.law.frequency_squared().expect("a series"));
-        let at_rest = law
-            .substitute(small.into(), &Expr::zero())
-            .expect("a number");
+        let at_rest = law.substitute(small.into(), &Expr::zero()).expect("a number");
         let f = Expr::divide(&law, &at_rest).expect("no division by zero");
         let letter = |name: &str| {
-            let own = solution
-                .definitions
-                .iter()
-                .find(|own| own.symbol.name() == name);
+            let own = solution.definitions.iter().find(|own| own.symbol.name() == name);
             own.expect("a definition").meaning.clone()
         };
         let defect = &(&letter("P") + &(&letter("Q") * &f)) + &(&letter("R") * &(&f * &f));
         let defect = defect.expand().expect("a sum");
-        let polynomial = defect
-            .to_polynomial(&mut |_| None)
-            .expect("no error")
-            .expect("a polynomial");
+        let polynomial =
+            defect.to_polynomial(&mut |_| None).expect("no error").expect("a polynomial");
         let (lowest, _) = polynomial.exponent_range(small.into()).expect("terms");
         assert_eq!(lowest, powers as i32, "{equation}: {defect}");
         // Beside rest, where the series itself is good.
         let size = if small == "eps" { 1e-3 } else { 0.03 };
-        let values: Vec<(&str, f64)> = vec![
-            (small, size),
-            ("A", if small == "A" { size } else { 1.0 }),
-            ("k", 2.0),
-        ];
+        let values: Vec<(&str, f64)> =
+            vec![(small, size), ("A", if small == "A" { size } else { 1.0 }), ("k", 2.0)];
         let values: Vec<(&str, f64)> = values
             .into_iter()
             .filter(|(name, value)| {
@@ -254,10 +201,7 @@ fn hermite_pade_approximants_agree_with_the_series() {
             })
             .collect();
         let [found, expected] = [&solution, &series].map(|own| squared(equation, own, &values));
-        assert!(
-            (found / expected - 1.0).abs() < 1e-13,
-            "{equation}: {found} {expected}"
-        );
+        assert!((found / expected - 1.0).abs() < 1e-13, "{equation}: {found} {expected}");
     }
 }
 
@@ -271,11 +215,7 @@ fn lindstedt_poincare_is_the_expansion_of_the_exact_frequency() {
     let mut coefficient = ratio(1, 1);
     let m: Expr = "eps/(2*(1 + eps))".parse().unwrap();
     for k in 0..=i64::from(order) {
-        let power = if k == 0 {
-            Expr::one()
-        } else {
-            m.integer_power(k).unwrap()
-        };
+        let power = if k == 0 { Expr::one() } else { m.integer_power(k).unwrap() };
         series = series + Expr::number(&coefficient * &coefficient) * power;
         coefficient *= ratio(2 * k + 1, 2 * k + 2);
     }
@@ -292,9 +232,8 @@ fn lindstedt_poincare_is_the_expansion_of_the_exact_frequency() {
         },
     )
     .unwrap();
-    let found = Expr::from(solution.law.frequency().unwrap())
-        .substitute("A".into(), &Expr::one())
-        .unwrap();
+    let found =
+        Expr::from(solution.law.frequency().unwrap()).substitute("A".into(), &Expr::one()).unwrap();
     assert_eq!(found.expand().unwrap(), expected);
 }
 
@@ -302,11 +241,7 @@ fn lindstedt_poincare_is_the_expansion_of_the_exact_frequency() {
 /// itself.
 #[test]
 fn amplitude_conventions_agree_after_conversion() {
-    for equation in [
-        "x'' + x + eps*x^3 = 0",
-        "x'' + sin(x) = 0",
-        "x'' + x + eps*x^2 = 0",
-    ] {
+    for equation in ["x'' + x + eps*x^3 = 0", "x'' + sin(x) = 0", "x'' + x + eps*x^2 = 0"] {
         let with = |amplitude| {
             let order = if equation.contains("eps") { 4 } else { 8 };
             let options = Options {
@@ -317,15 +252,11 @@ fn amplitude_conventions_agree_after_conversion() {
             };
             by_options(equation, options).unwrap()
         };
-        let (initial, first) = (
-            with(AmplitudeConvention::Initial),
-            with(AmplitudeConvention::FirstHarmonic),
-        );
+        let (initial, first) =
+            (with(AmplitudeConvention::Initial), with(AmplitudeConvention::FirstHarmonic));
         let difference = |size: f64| {
-            let values = numbers(&[
-                ("a", size),
-                ("eps", if equation.contains("eps") { size } else { 1.0 }),
-            ]);
+            let values =
+                numbers(&[("a", size), ("eps", if equation.contains("eps") { size } else { 1.0 })]);
             let value = |symbol| values.get(&symbol).copied();
             // x(0) of the motion with first harmonic a is the A of the other convention.
             let motion = first.motion(&value).unwrap();
@@ -333,9 +264,7 @@ fn amplitude_conventions_agree_after_conversion() {
             let mut converted = values.clone();
             converted.insert("A".into(), motion.evaluate(0.0) - equilibrium);
             let omega = |solution: &Solution, values: &BTreeMap<Symbol, f64>| {
-                solution
-                    .frequency_squared_at(&|symbol| values.get(&symbol).copied())
-                    .unwrap()
+                solution.frequency_squared_at(&|symbol| values.get(&symbol).copied()).unwrap()
             };
             (omega(&initial, &converted) - omega(&first, &values)).abs()
         };

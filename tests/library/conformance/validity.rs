@@ -14,100 +14,44 @@ fn validity_is_measured() {
         let solution = by(equation, method).unwrap();
         let mut values = Values::default();
         for (name, value) in entries {
-            values
-                .insert((*name).into(), value.parse().unwrap())
-                .unwrap();
+            values.insert((*name).into(), value.parse().unwrap()).unwrap();
         }
-        let verification = judge(
-            &Oscillator::parse(equation).unwrap(),
-            &solution,
-            &values,
-            0.01,
-        )
-        .unwrap();
+        let verification =
+            judge(&Oscillator::parse(equation).unwrap(), &solution, &values, 0.01).unwrap();
         verification
             .ranges
             .iter()
             .map(|range| format!("{} {}\n", range.outside, range.text))
             .collect()
     };
-    let pendulum = ranges(
-        "x'' + sin(x) = 0",
-        Method::LindstedtPoincare,
-        &[("A", "1.5")],
-    );
-    assert!(
-        pendulum.contains("periodic for |A| < 3.14159"),
-        "{pendulum}"
-    );
-    assert!(
-        pendulum.contains("false the series converges for |A| < about 3.14"),
-        "{pendulum}"
-    );
-    let cubic = ranges(
-        "x'' + x - x^3/6 = 0",
-        Method::HomotopyPerturbation,
-        &[("A", "1.5")],
-    );
+    let pendulum = ranges("x'' + sin(x) = 0", Method::LindstedtPoincare, &[("A", "1.5")]);
+    assert!(pendulum.contains("periodic for |A| < 3.14159"), "{pendulum}");
+    assert!(pendulum.contains("false the series converges for |A| < about 3.14"), "{pendulum}");
+    let cubic = ranges("x'' + x - x^3/6 = 0", Method::HomotopyPerturbation, &[("A", "1.5")]);
     assert!(cubic.contains("periodic for |A| < 2.44949"), "{cubic}");
-    let first = ranges(
-        "x'' + sin(x) = 0",
-        Method::FrequencyFormula,
-        &[("A", "2.5")],
-    );
-    assert!(
-        first.contains("omega^2 of the formula reaches zero at A = 3.14159"),
-        "{first}"
-    );
+    let first = ranges("x'' + sin(x) = 0", Method::FrequencyFormula, &[("A", "2.5")]);
+    assert!(first.contains("omega^2 of the formula reaches zero at A = 3.14159"), "{first}");
     assert!(first.contains("true within 1 % up to A = 1.6"), "{first}");
     // Duffing: the separatrix of the softening side, s = -1, bounds the series of the hardening one
     // as well.
-    let duffing = ranges(
-        "x'' + x + eps*x^3 = 0",
-        Method::LindstedtPoincare,
-        &[("A", "1"), ("eps", "2")],
-    );
-    let (_, radius) = duffing
-        .split_once("true the series converges for |eps| < about ")
-        .expect("a radius");
-    let radius: f64 = radius
-        .split(':')
-        .next()
-        .and_then(|number| number.parse().ok())
-        .expect("a number");
-    assert!(
-        (radius - 1.0).abs() < 0.01 && duffing.contains("at eps = -"),
-        "{duffing}"
-    );
+    let duffing =
+        ranges("x'' + x + eps*x^3 = 0", Method::LindstedtPoincare, &[("A", "1"), ("eps", "2")]);
+    let (_, radius) =
+        duffing.split_once("true the series converges for |eps| < about ").expect("a radius");
+    let radius: f64 =
+        radius.split(':').next().and_then(|number| number.parse().ok()).expect("a number");
+    assert!((radius - 1.0).abs() < 0.01 && duffing.contains("at eps = -"), "{duffing}");
     // V(-1) = 1/6 is V(1/2): released on the right, the motion leaves over the left edge.
-    let quadratic = ranges(
-        "x'' + x + x^2 = 0",
-        Method::LindstedtPoincare,
-        &[("A", "1/4")],
-    );
-    assert!(
-        quadratic.contains("periodic for -1 < A < 0.5:"),
-        "{quadratic}"
-    );
-    let quadratic = ranges(
-        "x'' + x + x^2 = 0",
-        Method::LindstedtPoincare,
-        &[("A", "-1/4")],
-    );
-    assert!(
-        quadratic.contains("periodic for -1 < A < 0.5:"),
-        "{quadratic}"
-    );
+    let quadratic = ranges("x'' + x + x^2 = 0", Method::LindstedtPoincare, &[("A", "1/4")]);
+    assert!(quadratic.contains("periodic for -1 < A < 0.5:"), "{quadratic}");
+    let quadratic = ranges("x'' + x + x^2 = 0", Method::LindstedtPoincare, &[("A", "-1/4")]);
+    assert!(quadratic.contains("periodic for -1 < A < 0.5:"), "{quadratic}");
 }
 
 /// Negative amplitudes are the same motion half a period on, where the force is odd.
 #[test]
 fn negative_amplitudes() {
-    for equation in [
-        "x'' + sin(x) = 0",
-        "x'' + x*abs(x) = 0",
-        "x'' + x + x^3 = 0",
-    ] {
+    for equation in ["x'' + sin(x) = 0", "x'' + x*abs(x) = 0", "x'' + x + x^3 = 0"] {
         let oscillator = Oscillator::parse(equation).unwrap();
         for method in Method::ALL {
             let Ok(solution) = by(equation, method) else {
@@ -160,17 +104,11 @@ fn limit_cycles_attract_or_repel_as_said() {
                 -oscillator.force.evaluate(&values).unwrap()
             };
             let drift = |start: f64| {
-                lindstedt::numeric::period::swing(&acceleration, 0.0, start, 20.0)
-                    .unwrap()
-                    .end()
-                    .x
+                lindstedt::numeric::period::swing(&acceleration, 0.0, start, 20.0).unwrap().end().x
                     - start
             };
             let (inside, outside) = (drift(0.9 * amplitude), drift(1.1 * amplitude));
-            assert!(
-                inside * outside < 0.0,
-                "{equation} {value}: {inside} {outside}"
-            );
+            assert!(inside * outside < 0.0, "{equation} {value}: {inside} {outside}");
             assert_eq!(attracts, inside > 0.0, "{equation} {value}: {said}");
         }
     }

@@ -14,10 +14,7 @@ const FORCED_DUFFING: &str = "x'' + c*x' + w^2*x + g*x^3 = F*cos(Omega*t)";
 
 fn driven(equation: &str, resonance: (u32, u32), order: u32) -> Solution {
     let oscillator = Oscillator::parse(equation).expect("an oscillator");
-    let asked = Options {
-        resonance: Some(resonance),
-        ..options(order)
-    };
+    let asked = Options { resonance: Some(resonance), ..options(order) };
     solve(&oscillator, &asked)
         .unwrap_or_else(|refusal| panic!("{equation} at {resonance:?}: {refusal}"))
 }
@@ -89,16 +86,12 @@ fn published_slow_equations_of_driven_motions() {
         let order = if equation.contains("sin(x)") { 2 } else { 1 };
         let solution = driven(equation, resonance, order);
         let slow = solution.modulation.as_ref().expect("slow equations");
-        for (found, expected) in [
-            (&slow.amplitude_rate, amplitude_rate),
-            (&slow.phase_rate, phase_rate),
-        ] {
+        for (found, expected) in
+            [(&slow.amplitude_rate, amplitude_rate), (&slow.phase_rate, phase_rate)]
+        {
             let difference = found - &parse_expression(expected).expect("an expression");
             let left = difference.expand().expect("short");
-            assert!(
-                left.is_zero(),
-                "{equation} at {resonance:?}: {found} is not {expected}"
-            );
+            assert!(left.is_zero(), "{equation} at {resonance:?}: {found} is not {expected}");
         }
     }
 }
@@ -114,27 +107,17 @@ fn frequency_response_of_the_primary_resonance() {
     let peak = parse_expression("F/(2*zeta)").expect("an expression");
     assert_eq!(response.peak, Some(peak));
     // Where two branches meet the relation has a double root, and the discriminant vanishes.
-    let at: Values = "zeta = 1/100, eps = 1/10, F = 1/10"
-        .parse()
-        .expect("values");
+    let at: Values = "zeta = 1/100, eps = 1/10, F = 1/10".parse().expect("values");
     let value = |polynomial: &Polynomial, sigma: f64| {
         let value_of = |name: Symbol| {
-            if name.name() == "sigma" {
-                Some(sigma)
-            } else {
-                at.get(name)
-            }
+            if name.name() == "sigma" { Some(sigma) } else { at.get(name) }
         };
         polynomial.evaluate(value_of).expect("a value")
     };
     let jumps = response.jumps.as_ref().expect("a discriminant");
     let count = |omega: f64| {
         let value_of = |name: Symbol| {
-            if name.name() == "Omega" {
-                Some(omega)
-            } else {
-                at.get(name)
-            }
+            if name.name() == "Omega" { Some(omega) } else { at.get(name) }
         };
         solution.steady_states(&value_of).len()
     };
@@ -143,11 +126,7 @@ fn frequency_response_of_the_primary_resonance() {
     for pair in grid.windows(2) {
         let signs = [pair[0], pair[1]].map(|omega| value(jumps, omega - 1.0) > 0.0);
         let counts = [count(pair[0]), count(pair[1])];
-        assert_eq!(
-            signs.map(|positive| if positive { 3 } else { 1 }),
-            counts,
-            "{pair:?}"
-        );
+        assert_eq!(signs.map(|positive| if positive { 3 } else { 1 }), counts, "{pair:?}");
         changes += usize::from(signs[0] != signs[1]);
     }
     assert_eq!(changes, 2, "one jump up, one jump down");
@@ -158,10 +137,7 @@ fn frequency_response_of_the_primary_resonance() {
 #[test]
 fn frequency_response_of_a_wave_that_comes_first() {
     let equation = "x'' + x'/20 + x + x^2/5 = cos(Omega*t)/5";
-    let asked = Options {
-        resonance: Some((1, 2)),
-        ..options(1)
-    };
+    let asked = Options { resonance: Some((1, 2)), ..options(1) };
     let refusal = solve(&Oscillator::parse(equation).expect("an oscillator"), &asked)
         .expect_err("nothing holds it");
     assert!(refusal.to_string().contains("needs order 2"), "{refusal}");
@@ -197,70 +173,14 @@ fn steady_motions_are_the_true_ones() {
     let pendulum = "x'' + x'/100 + sin(x) = cos(19*t/20)/50";
     let quadratic = "x'' + x'/20 + x + x^2/5 = cos(Omega*t)/5";
     for (equation, at, order, count, stable, error) in [
-        (
-            duffing,
-            "zeta = 1/100, eps = 1/50, F = 1/20, Omega = 26/25",
-            1,
-            3,
-            2,
-            4e-2,
-        ),
-        (
-            duffing,
-            "zeta = 1/100, eps = 1/50, F = 1/20, Omega = 26/25",
-            2,
-            3,
-            2,
-            4e-3,
-        ),
-        (
-            by_sine,
-            "zeta = 1/200, eps = -1/100, F = 1/50, Omega = 247/250",
-            1,
-            1,
-            1,
-            1e-2,
-        ),
-        (
-            duffing,
-            "zeta = 1/1000, eps = 1/200, F = 1, Omega = 67/200",
-            1,
-            1,
-            1,
-            2e-2,
-        ),
-        (
-            duffing,
-            "zeta = 1/1000, eps = 1/200, F = 1, Omega = 67/200",
-            2,
-            1,
-            1,
-            2e-4,
-        ),
-        (
-            duffing,
-            "zeta = 1/2000, eps = 1/200, F = 10, Omega = 31/10",
-            1,
-            3,
-            2,
-            1e-2,
-        ),
-        (
-            parametric,
-            "zeta = 1/200, h = 1/20, eps = 1/100, Omega = 2",
-            1,
-            2,
-            1,
-            1e-3,
-        ),
-        (
-            helmholtz,
-            "zeta = 1/200, eps = 1/50, F = 1, Omega = 101/200",
-            1,
-            1,
-            1,
-            8e-2,
-        ),
+        (duffing, "zeta = 1/100, eps = 1/50, F = 1/20, Omega = 26/25", 1, 3, 2, 4e-2),
+        (duffing, "zeta = 1/100, eps = 1/50, F = 1/20, Omega = 26/25", 2, 3, 2, 4e-3),
+        (by_sine, "zeta = 1/200, eps = -1/100, F = 1/50, Omega = 247/250", 1, 1, 1, 1e-2),
+        (duffing, "zeta = 1/1000, eps = 1/200, F = 1, Omega = 67/200", 1, 1, 1, 2e-2),
+        (duffing, "zeta = 1/1000, eps = 1/200, F = 1, Omega = 67/200", 2, 1, 1, 2e-4),
+        (duffing, "zeta = 1/2000, eps = 1/200, F = 10, Omega = 31/10", 1, 3, 2, 1e-2),
+        (parametric, "zeta = 1/200, h = 1/20, eps = 1/100, Omega = 2", 1, 2, 1, 1e-3),
+        (helmholtz, "zeta = 1/200, eps = 1/50, F = 1, Omega = 101/200", 1, 1, 1, 8e-2),
         // The wave comes an order before all that holds it.
         (quadratic, "Omega = 1/2", 2, 1, 1, 1e-2),
         (quadratic, "Omega = 12/25", 2, 1, 1, 3e-2),
@@ -276,17 +196,10 @@ fn steady_motions_are_the_true_ones() {
         let judged = judge(&oscillator, &solution, &at, error).expect(equation);
         let states = &judged.steady_states;
         assert_eq!(states.len(), count, "{equation}: {states:?}");
-        let found = states
-            .iter()
-            .filter(|judged| judged.state.is_stable())
-            .count();
+        let found = states.iter().filter(|judged| judged.state.is_stable()).count();
         assert_eq!(found, stable, "{equation}: {states:?}");
         for state in states {
-            assert_eq!(
-                state.true_stable,
-                Some(state.state.is_stable()),
-                "{equation}: {state:?}"
-            );
+            assert_eq!(state.true_stable, Some(state.state.is_stable()), "{equation}: {state:?}");
             assert!(
                 state.relative_error.is_none_or(|value| value.abs() < error),
                 "{equation}: {state:?}"
@@ -328,11 +241,7 @@ fn a_middle_motion_has_a_truth_of_its_own() {
             })
             .collect();
         followed.sort_by(|one, other| one.0.total_cmp(&other.0));
-        assert_eq!(
-            (judged.len(), followed.len()),
-            (3, 3),
-            "{omega}: {judged:?} {followed:?}"
-        );
+        assert_eq!((judged.len(), followed.len()), (3, 3), "{omega}: {judged:?} {followed:?}");
         for (one, other) in judged.iter().zip(&followed) {
             assert!(
                 (one.0 - other.0).abs() < 0.03 && one.1 == other.1,
@@ -350,58 +259,35 @@ fn slopes_of_the_error_of_driven_motions() {
     let oscillator = Oscillator::parse(equation).expect("an oscillator");
     let orders = [1, 2, 3].map(|order| driven(equation, (1, 1), order));
     let largest = |solution: &Solution, d: u32| {
-        let at = format!(
-            "zeta = 1/{d}, eps = 1/{d}, F = 3/{d}, Omega = {}/{d}",
-            d + 1
-        );
+        let at = format!("zeta = 1/{d}, eps = 1/{d}, F = 3/{d}, Omega = {}/{d}", d + 1);
         let judged =
             judge(&oscillator, solution, &at.parse().expect("values"), 0.1).expect("a verdict");
         let [state] = judged.steady_states.as_slice() else {
             panic!("{judged:?}");
         };
-        (
-            state.state.amplitude,
-            state.relative_error.expect("an error"),
-        )
+        (state.state.amplitude, state.relative_error.expect("an error"))
     };
     let page = include_str!("../../../docs/multiple-scales.md");
     let mut errors: Vec<[f64; 3]> = Vec::new();
-    for line in page
-        .lines()
-        .filter(|line| line.starts_with("| ") && line.ends_with(" % |"))
-    {
+    for line in page.lines().filter(|line| line.starts_with("| ") && line.ends_with(" % |")) {
         let cells: Vec<&str> = line.split('|').map(str::trim).collect();
-        let number = |index: usize| {
-            cells[index]
-                .trim_end_matches(" %")
-                .parse::<f64>()
-                .expect("a number")
-        };
+        let number =
+            |index: usize| cells[index].trim_end_matches(" %").parse::<f64>().expect("a number");
         let d = cells[1].parse().expect("a whole number");
         let found = orders.each_ref().map(|solution| largest(solution, d));
         for (k, (amplitude, error)) in found.iter().enumerate() {
-            assert!(
-                (amplitude - number(2 * k + 2)).abs() < 6e-5,
-                "{line}: {amplitude}"
-            );
-            let digits = cells[2 * k + 3]
-                .trim_end_matches(" %")
-                .split('.')
-                .nth(1)
-                .map_or(0, str::len);
+            assert!((amplitude - number(2 * k + 2)).abs() < 6e-5, "{line}: {amplitude}");
+            let digits =
+                cells[2 * k + 3].trim_end_matches(" %").split('.').nth(1).map_or(0, str::len);
             let last = 10.0_f64.powi(-i32::try_from(digits).expect("few digits"));
-            assert!(
-                (100.0 * error - number(2 * k + 3)).abs() < 0.6 * last,
-                "{line}: {error}"
-            );
+            assert!((100.0 * error - number(2 * k + 3)).abs() < 0.6 * last, "{line}: {error}");
         }
         errors.push(found.map(|(_, error)| error.abs()));
     }
     assert_eq!(errors.len(), 4);
     for pair in errors.windows(2) {
-        for ((order, off), (before, after)) in [(1.0, 0.1), (2.0, 0.1), (3.0, 0.15)]
-            .iter()
-            .zip(pair[0].iter().zip(pair[1]))
+        for ((order, off), (before, after)) in
+            [(1.0, 0.1), (2.0, 0.1), (3.0, 0.15)].iter().zip(pair[0].iter().zip(pair[1]))
         {
             let slope = (before / after).log2();
             assert!((slope - order).abs() < *off, "order {order}: {slope}");
@@ -417,42 +303,18 @@ fn slopes_of_the_error_at_every_resonance() {
     let quadratic = "x'' + 2*zeta*x' + x + eps*x^2 = F*cos(Omega*t)";
     let parametric = "x'' + 2*zeta*x' + (1 + h*cos(Omega*t))*x + eps*x^3 = 0";
     let at = |values: &[(&str, f64)]| {
-        values
-            .iter()
-            .map(|(name, value)| format!("{name} = {value}"))
-            .collect::<Vec<_>>()
+        values.iter().map(|(name, value)| format!("{name} = {value}")).collect::<Vec<_>>()
     };
     let superharmonic = |d: f64| {
-        at(&[
-            ("zeta", 0.2 / d),
-            ("eps", 1.0 / d),
-            ("F", 1.0),
-            ("Omega", (1.0 + 2.0 / d) / 3.0),
-        ])
+        at(&[("zeta", 0.2 / d), ("eps", 1.0 / d), ("F", 1.0), ("Omega", (1.0 + 2.0 / d) / 3.0)])
     };
-    let subharmonic = |d: f64| {
-        at(&[
-            ("zeta", 0.1 / d),
-            ("eps", 1.0 / d),
-            ("F", 10.0),
-            ("Omega", 3.0 + 20.0 / d),
-        ])
-    };
+    let subharmonic =
+        |d: f64| at(&[("zeta", 0.1 / d), ("eps", 1.0 / d), ("F", 10.0), ("Omega", 3.0 + 20.0 / d)]);
     let of_square = |d: f64| {
-        at(&[
-            ("zeta", 0.1 / d),
-            ("eps", 1.0 / d),
-            ("F", 1.0),
-            ("Omega", (1.0 + 0.3 / d) / 2.0),
-        ])
+        at(&[("zeta", 0.1 / d), ("eps", 1.0 / d), ("F", 1.0), ("Omega", (1.0 + 0.3 / d) / 2.0)])
     };
     let principal = |d: f64| {
-        at(&[
-            ("zeta", 0.1 / d),
-            ("eps", 1.0 / d),
-            ("h", 1.0 / d),
-            ("Omega", 2.0 + 0.5 / d),
-        ])
+        at(&[("zeta", 0.1 / d), ("eps", 1.0 / d), ("h", 1.0 / d), ("Omega", 2.0 + 0.5 / d)])
     };
     type At<'a> = &'a dyn Fn(f64) -> Vec<String>;
     // Equation, resonance, values by d, the first d, how many motions swing.
@@ -470,10 +332,8 @@ fn slopes_of_the_error_at_every_resonance() {
             let errors = [d, 2.0 * d].map(|d| {
                 let values = at(d).join(", ").parse().expect("values");
                 let judged = judge(&oscillator, &solution, &values, 0.1).expect(equation);
-                let moving = judged
-                    .steady_states
-                    .iter()
-                    .filter(|judged| judged.state.amplitude > 0.0);
+                let moving =
+                    judged.steady_states.iter().filter(|judged| judged.state.amplitude > 0.0);
                 let errors: Vec<f64> = moving
                     .map(|judged| {
                         assert_eq!(
@@ -484,11 +344,7 @@ fn slopes_of_the_error_at_every_resonance() {
                         judged.relative_error.expect(equation).abs()
                     })
                     .collect();
-                assert_eq!(
-                    errors.len(),
-                    count,
-                    "{equation} to order {order}: {judged:?}"
-                );
+                assert_eq!(errors.len(), count, "{equation} to order {order}: {judged:?}");
                 errors
             });
             for (before, after) in errors[0].iter().zip(&errors[1]) {
@@ -507,17 +363,10 @@ fn slopes_of_the_error_at_every_resonance() {
 #[test]
 fn without_a_drive_the_motion_is_free() {
     let free = derive("x'' + 2*zeta*x' + x + eps*(x^2 + x^3) = 0", 3);
-    let driven = driven(
-        "x'' + 2*zeta*x' + x + eps*(x^2 + x^3) = F*cos(Omega*t)",
-        (1, 1),
-        3,
-    );
+    let driven = driven("x'' + 2*zeta*x' + x + eps*(x^2 + x^3) = F*cos(Omega*t)", (1, 1), 3);
     let [free, driven] =
         [&free, &driven].map(|solution| solution.modulation.as_ref().expect("slow equations"));
-    let still = |rate: &Expr| {
-        rate.substitute(Symbol::new("F"), &Expr::zero())
-            .expect("a rate")
-    };
+    let still = |rate: &Expr| rate.substitute(Symbol::new("F"), &Expr::zero()).expect("a rate");
     let turning = &(&Expr::symbol("sigma") + &Expr::one()) - &still(&driven.phase_rate);
     for (one, other) in [
         (free.amplitude_rate.clone(), still(&driven.amplitude_rate)),
@@ -535,18 +384,11 @@ fn without_a_drive_the_motion_is_free() {
 #[test]
 fn the_second_tongue_needs_the_second_order() {
     for method in [Method::MultipleScales, Method::Averaging] {
-        let asked = Options {
-            method: Some(method),
-            resonance: Some((1, 1)),
-            ..Options::default()
-        };
+        let asked = Options { method: Some(method), resonance: Some((1, 1)), ..Options::default() };
         let mathieu = Oscillator::parse("x'' + (delta + eps*cos(t))*x = 0").expect("an oscillator");
         let solution = solve(&mathieu, &asked).expect("an answer");
         assert_eq!(solution.order, 2);
-        let relation = solution
-            .response
-            .as_ref()
-            .and_then(|response| response.relation.as_ref());
+        let relation = solution.response.as_ref().and_then(|response| response.relation.as_ref());
         let relation = relation.expect("a relation");
         let value = |eps: f64, delta: f64| {
             let value_of = |name: Symbol| match name.name() {
@@ -581,10 +423,7 @@ fn the_second_tongue_needs_the_second_order() {
             );
             let judged = judge(&oscillator, &solution, &at.parse().expect("values"), 0.1)
                 .expect("a verdict");
-            let stable = judged
-                .steady_states
-                .iter()
-                .filter(|judged| judged.state.is_stable());
+            let stable = judged.steady_states.iter().filter(|judged| judged.state.is_stable());
             let errors: Vec<f64> = stable.filter_map(|judged| judged.relative_error).collect();
             // x(t) and -x(t) both.
             assert_eq!(errors.len(), 2, "{judged:?}");
@@ -599,10 +438,7 @@ fn the_second_tongue_needs_the_second_order() {
 fn drives_that_are_refused_by_name() {
     let refused = |equation: &str| {
         let oscillator = Oscillator::parse(equation).expect("an oscillator");
-        let options = Options {
-            method: Some(Method::MultipleScales),
-            ..Options::default()
-        };
+        let options = Options { method: Some(Method::MultipleScales), ..Options::default() };
         solve(&oscillator, &options).expect_err("refused")
     };
     for (equation, term) in [
@@ -610,10 +446,7 @@ fn drives_that_are_refused_by_name() {
         ("x'' + t*x = 0", "t*x"),
         ("x'' + x = exp(-t)", "exp(-t)"),
         ("x'' + x + x^3 = cos(t)^2", "cos(t)^2"),
-        (
-            "x'' + x + x^3 = cos(2*t) + cos(sqrt(3)*t)",
-            "cos(sqrt(3)*t)",
-        ),
+        ("x'' + x + x^3 = cos(2*t) + cos(sqrt(3)*t)", "cos(sqrt(3)*t)"),
     ] {
         let refusal = refused(equation);
         assert_eq!(refusal.term(), Some(term), "{equation}: {refusal}");
@@ -621,16 +454,9 @@ fn drives_that_are_refused_by_name() {
     }
     // A cubic force knows no resonance 2:1 to first order; the refusal says which it knows.
     let oscillator = Oscillator::parse(FORCED_DUFFING).expect("an oscillator");
-    let asked = Options {
-        resonance: Some((2, 1)),
-        ..options(1)
-    };
+    let asked = Options { resonance: Some((2, 1)), ..options(1) };
     let others = vec![(1, 1), (3, 1), (1, 3)];
-    let expected = Unsuited::NoResonance {
-        asked: (2, 1),
-        others,
-    }
-    .to(Method::MultipleScales);
+    let expected = Unsuited::NoResonance { asked: (2, 1), others }.to(Method::MultipleScales);
     assert_eq!(solve(&oscillator, &asked), Err(expected));
 }
 
@@ -639,18 +465,9 @@ fn drives_that_are_refused_by_name() {
 #[test]
 fn a_motion_does_not_depend_on_how_the_small_terms_are_spelt() {
     let spellings = [
-        (
-            "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)",
-            "zeta = 1/50, eps = 1/10, F = 1/20",
-        ),
-        (
-            "x'' + 2*eps*mu*x' + x + eps*x^3 = eps*f*cos(Omega*t)",
-            "mu = 1/5, eps = 1/10, f = 1/2",
-        ),
-        (
-            "x'' + 2*eps*mu*x' + x + eps*x^3 = F*cos(Omega*t)",
-            "mu = 1/5, eps = 1/10, F = 1/20",
-        ),
+        ("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)", "zeta = 1/50, eps = 1/10, F = 1/20"),
+        ("x'' + 2*eps*mu*x' + x + eps*x^3 = eps*f*cos(Omega*t)", "mu = 1/5, eps = 1/10, f = 1/2"),
+        ("x'' + 2*eps*mu*x' + x + eps*x^3 = F*cos(Omega*t)", "mu = 1/5, eps = 1/10, F = 1/20"),
         ("x'' + x'/25 + x + x^3/10 = cos(Omega*t)/20", ""),
     ];
     for order in [1, 2] {
@@ -726,13 +543,8 @@ fn phases_of_a_drive() {
         let at: Values = at.parse().expect("values");
         let asked =
             lindstedt::method::with_resonance_at(&oscillator, &options(1), &at).expect(equation);
-        let judged = judge(
-            &oscillator,
-            &solve(&oscillator, &asked).expect(equation),
-            &at,
-            error,
-        )
-        .expect(equation);
+        let judged = judge(&oscillator, &solve(&oscillator, &asked).expect(equation), &at, error)
+            .expect(equation);
         assert_eq!(
             judged.verdict,
             lindstedt::Verdict::Pass,
@@ -776,10 +588,7 @@ fn drives_about_an_equilibrium() {
             oscillator = oscillator.about(parse_expression(place).expect(place));
         }
         let at: Values = at.parse().expect("values");
-        let asked = lindstedt::Options {
-            resonance: Some((1, 1)),
-            ..lindstedt::Options::default()
-        };
+        let asked = lindstedt::Options { resonance: Some((1, 1)), ..lindstedt::Options::default() };
         let solution = solve(&oscillator, &asked).expect(equation);
         let judged = judge(&oscillator, &solution, &at, tolerance).expect(equation);
         assert_eq!(
@@ -798,24 +607,9 @@ fn drives_about_an_equilibrium() {
 fn verdicts_measure_the_order_of_steady_motions() {
     let forced = "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)";
     for (equation, order, at, slope) in [
-        (
-            forced,
-            1,
-            "zeta = 1/40, eps = 1/40, F = 3/40, Omega = 41/40",
-            1.0,
-        ),
-        (
-            forced,
-            3,
-            "zeta = 1/40, eps = 1/40, F = 3/40, Omega = 41/40",
-            3.0,
-        ),
-        (
-            forced,
-            2,
-            "zeta = 1/500, eps = 1/100, F = 1, Omega = 17/50",
-            2.0,
-        ),
+        (forced, 1, "zeta = 1/40, eps = 1/40, F = 3/40, Omega = 41/40", 1.0),
+        (forced, 3, "zeta = 1/40, eps = 1/40, F = 3/40, Omega = 41/40", 3.0),
+        (forced, 2, "zeta = 1/500, eps = 1/100, F = 1, Omega = 17/50", 2.0),
         ("x'' + x'/20 + x + x^3/40 = 3*cos(41*t/40)/40", 4, "", 4.0),
         ("x'' + x'/20 + x + x^3/40 = 3*cos(41*t/40)/40", 6, "", 6.0),
         (
@@ -824,31 +618,11 @@ fn verdicts_measure_the_order_of_steady_motions() {
             "zeta = 1/400, h = 1/40, eps = 1/40, Omega = 161/80",
             2.0,
         ),
-        (
-            "x'' + x'/50 + x + x^2/10 - 1 = cos(11*t/10)/200",
-            4,
-            "",
-            4.0,
-        ),
+        ("x'' + x'/50 + x + x^2/10 - 1 = cos(11*t/10)/200", 4, "", 4.0),
         // A pendulum whose support is shaken upwards, sideways, and far from resonance.
-        (
-            "x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0",
-            2,
-            "",
-            2.0,
-        ),
-        (
-            "x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0",
-            4,
-            "",
-            4.0,
-        ),
-        (
-            "x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0",
-            6,
-            "",
-            6.0,
-        ),
+        ("x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0", 2, "", 2.0),
+        ("x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0", 4, "", 4.0),
+        ("x'' + x'/100 + (1 + cos(199*t/100)/20)*sin(x) = 0", 6, "", 6.0),
         ("x'' + x'/20 + sin(x) = cos(x)*cos(39*t/40)/40", 2, "", 2.0),
         ("x'' + x'/20 + sin(x) = cos(x)*cos(39*t/40)/40", 4, "", 4.0),
         ("x'' + x'/500 + sin(x) = cos(x)*cos(33*t/100)/5", 2, "", 2.0),
@@ -858,18 +632,10 @@ fn verdicts_measure_the_order_of_steady_motions() {
         let at: Values = at.parse().unwrap_or_default();
         let asked = lindstedt::method::with_resonance_at(&oscillator, &options(order), &at)
             .expect(equation);
-        let judged = judge(
-            &oscillator,
-            &solve(&oscillator, &asked).expect(equation),
-            &at,
-            0.1,
-        )
-        .expect(equation);
+        let judged = judge(&oscillator, &solve(&oscillator, &asked).expect(equation), &at, 0.1)
+            .expect(equation);
         let measured = judged.slope.expect(equation);
-        assert!(
-            (measured - slope).abs() < 0.3,
-            "{equation} to order {order}: {measured}"
-        );
+        assert!((measured - slope).abs() < 0.3, "{equation} to order {order}: {measured}");
         assert!(
             judged.residual.is_some_and(|residual| residual < 0.05),
             "{equation}: {:?}",
@@ -883,22 +649,11 @@ fn verdicts_measure_the_order_of_steady_motions() {
 fn a_drive_far_from_resonance_is_refused() {
     let oscillator =
         Oscillator::parse("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)").expect("an oscillator");
-    let at: Values = "zeta = 1/100, eps = 1/20, F = 1, Omega = 7"
-        .parse()
-        .expect("values");
+    let at: Values = "zeta = 1/100, eps = 1/20, F = 1, Omega = 7".parse().expect("values");
     let refusal =
         lindstedt::method::with_resonance_at(&oscillator, &options(1), &at).expect_err("far");
-    assert!(
-        refusal
-            .to_string()
-            .contains("Omega : omega0 = 7 is far from 3:1"),
-        "{refusal}"
-    );
-    assert!(
-        refusal
-            .help()
-            .is_some_and(|help| help.to_string().contains("response"))
-    );
+    assert!(refusal.to_string().contains("Omega : omega0 = 7 is far from 3:1"), "{refusal}");
+    assert!(refusal.help().is_some_and(|help| help.to_string().contains("response")));
 }
 
 /// Driven motions are compared by the amplitude of their largest stable steady motion: both
@@ -912,11 +667,7 @@ fn driven_motions_are_compared() {
             lindstedt::verify::comparison::compare(&oscillator, &at, None, 0.01).expect(equation);
         let rows = table.rows.iter();
         rows.map(|row| {
-            (
-                row.solution.method,
-                row.solution.order,
-                row.relative_error.expect("an error").abs(),
-            )
+            (row.solution.method, row.solution.order, row.relative_error.expect("an error").abs())
         })
         .collect::<Vec<_>>()
     };
@@ -932,15 +683,9 @@ fn driven_motions_are_compared() {
     ];
     assert_eq!(kinds, expected);
     assert!(rows[0].2 < 6e-3, "{rows:?}");
-    assert!(
-        rows[1].2 < rows[0].2 && rows[3].2 < rows[2].2 && rows[4].2 < rows[3].2,
-        "{rows:?}"
-    );
+    assert!(rows[1].2 < rows[0].2 && rows[3].2 < rows[2].2 && rows[4].2 < rows[3].2, "{rows:?}");
     let friction = "x'' + 2*zeta*x' + alpha*sgn(x') + x = F*cos(Omega*t)";
-    let rows = compared(
-        friction,
-        "zeta = 1/200, alpha = 1/200, F = 1/40, Omega = 201/200",
-    );
+    let rows = compared(friction, "zeta = 1/200, alpha = 1/200, F = 1/40, Omega = 201/200");
     assert!(
         matches!(rows.as_slice(), [(Method::Averaging, 1, error)] if *error < 5e-3),
         "{rows:?}"
@@ -962,10 +707,7 @@ fn a_wave_that_runs_past() {
     ] {
         let [past, apart] = [past, apart].map(|equation| {
             let oscillator = Oscillator::parse(equation).expect(equation);
-            let in_amplitude = Options {
-                small: Some("A".to_owned()),
-                ..options(2)
-            };
+            let in_amplitude = Options { small: Some("A".to_owned()), ..options(2) };
             solve(&oscillator, &in_amplitude).expect(equation)
         });
         let rates = |solution: Solution| {

@@ -14,12 +14,8 @@ fn derived(
     order: Option<u32>,
 ) -> (Oscillator, Solution) {
     let oscillator = Oscillator::parse(equation).expect(equation);
-    let options = Options {
-        method: Some(Method::MultipleScales),
-        order,
-        resonance,
-        ..Options::default()
-    };
+    let options =
+        Options { method: Some(Method::MultipleScales), order, resonance, ..Options::default() };
     let solution =
         solve(&oscillator, &options).unwrap_or_else(|refusal| panic!("{equation}: {refusal}"));
     (oscillator, solution)
@@ -39,9 +35,7 @@ fn are_the_true_ones(equation: &str, resonance: (u32, u32), at: &str, within: f6
         assert!(!judged.steady_states.is_empty(), "{equation} {at}");
         for state in &judged.steady_states {
             let near = state.state.amplitude == 0.0
-                || state
-                    .relative_error
-                    .is_some_and(|error| error.abs() < within);
+                || state.relative_error.is_some_and(|error| error.abs() < within);
             assert!(
                 near && state.true_stable == Some(state.state.is_stable()),
                 "{equation} {at}: {state:?}"
@@ -91,13 +85,8 @@ fn slow_equations_of_both_drives_are_their_sum() {
         solution.modulation.expect("slow equations").amplitude_rate
     };
     let both = rates("x'' + (1 + h*cos(2*w*t))*x + eps*x^3 = F*cos(w*t)", (1, 1));
-    let expected: Expr = "F*sin(psi)/2 - h*a*sin(2*psi)/4"
-        .parse()
-        .expect("an expression");
-    assert!(
-        (&both - &expected).expand().expect("short").is_zero(),
-        "{both}"
-    );
+    let expected: Expr = "F*sin(psi)/2 - h*a*sin(2*psi)/4".parse().expect("an expression");
+    assert!((&both - &expected).expand().expect("short").is_zero(), "{both}");
 }
 
 #[test]
@@ -105,10 +94,7 @@ fn frequencies_without_a_ratio_are_refused_by_name() {
     let oscillator =
         Oscillator::parse("x'' + x + x^3 = F*cos(W*t) + G*cos(V*t)").expect("an oscillator");
     let refusal = solve(&oscillator, &Options::default()).expect_err("no ratio");
-    assert!(
-        refusal.term().is_some_and(|term| term.contains("cos(V*t)")),
-        "{refusal}"
-    );
+    assert!(refusal.term().is_some_and(|term| term.contains("cos(V*t)")), "{refusal}");
 }
 
 /// A base that moves: the answer is in the relative coordinate and says so, and the true motion of
@@ -116,29 +102,20 @@ fn frequencies_without_a_ratio_are_refused_by_name() {
 #[test]
 fn a_base_that_moves_is_left_out_of_the_force() {
     for (equation, at) in [
-        (
-            "x'' + x + eps*(x - Y*sin(w*t))^3 = 0",
-            "eps = 1/10, Y = 1/5, w = 6/5",
-        ),
+        ("x'' + x + eps*(x - Y*sin(w*t))^3 = 0", "eps = 1/10, Y = 1/5, w = 6/5"),
         (
             "x'' + 2*zeta*(x' - Y*w*cos(w*t)) + (x - Y*sin(w*t)) + eps*(x - Y*sin(w*t))^3 = 0",
             "zeta = 1/50, eps = 1/20, Y = 1/50, w = 101/100",
         ),
-        (
-            "x'' + 2*zeta*x' + sin(x - Y*cos(w*t)) = 0",
-            "zeta = 1/50, Y = 1/50, w = 99/100",
-        ),
+        ("x'' + 2*zeta*x' + sin(x - Y*cos(w*t)) = 0", "zeta = 1/50, Y = 1/50, w = 99/100"),
     ] {
         let (oscillator, solution) = derived(equation, Some((1, 1)), None);
         let said = |note: &Note| matches!(note, Note::RelativeCoordinate { .. });
         assert!(solution.validity.iter().any(said), "{equation}");
         assert_eq!(solution.coordinate().name(), "z");
         let judged = judge(&oscillator, &solution, &at.parse().expect(at), 0.2).expect(equation);
-        let moving: Vec<_> = judged
-            .steady_states
-            .iter()
-            .filter_map(|state| state.relative_error)
-            .collect();
+        let moving: Vec<_> =
+            judged.steady_states.iter().filter_map(|state| state.relative_error).collect();
         assert!(
             !moving.is_empty() && moving.iter().all(|error| error.abs() < 0.2),
             "{equation}: {moving:?}"
@@ -159,10 +136,7 @@ fn bases_that_move_differently_are_refused() {
     ] {
         let oscillator = Oscillator::parse(equation).expect(equation);
         for method in Method::ALL {
-            let options = Options {
-                method: Some(method),
-                ..Options::default()
-            };
+            let options = Options { method: Some(method), ..Options::default() };
             let refusal = solve(&oscillator, &options).expect_err(equation);
             assert!(refusal.term().is_some(), "{equation}: {refusal}");
         }
@@ -200,16 +174,9 @@ fn an_order_at_which_nothing_holds_the_motion_is_refused() {
     };
     let refusal = solve(&oscillator, &options).expect_err("nothing holds it");
     assert!(refusal.to_string().contains("needs order 2"), "{refusal}");
-    let held = Options {
-        order: Some(2),
-        ..options
-    };
+    let held = Options { order: Some(2), ..options };
     let solution = solve(&oscillator, &held).expect("an answer");
-    assert!(
-        solution
-            .response
-            .is_some_and(|response| response.relation.is_some())
-    );
+    assert!(solution.response.is_some_and(|response| response.relation.is_some()));
 }
 
 /// The amplitude with which the true motion swings at a frequency, once what was free has died out,
@@ -233,9 +200,7 @@ fn true_line(
         v += STEP / 6.0 * (a.1 + 2.0 * b.1 + 2.0 * c.1 + d.1);
         t += STEP;
         if t > dies_out {
-            let weight = (std::f64::consts::PI * (t - dies_out) / window)
-                .sin()
-                .powi(4);
+            let weight = (std::f64::consts::PI * (t - dies_out) / window).sin().powi(4);
             cosine += weight * x * (frequency * t).cos();
             sine += weight * x * (frequency * t).sin();
             whole += weight;
@@ -255,29 +220,13 @@ fn drives_without_a_ratio_act_together() {
     let resonance = slow.resonance.as_ref().expect("a drive");
     let near = resonance.driving_frequency.to_string();
     assert!(["V", "W"].contains(&near.as_str()), "{near}");
-    let (weak, strong, far) = if near == "W" {
-        ("F", "G", "V")
-    } else {
-        ("G", "F", "W")
-    };
+    let (weak, strong, far) = if near == "W" { ("F", "G", "V") } else { ("G", "F", "W") };
     let rate: Expr = format!("sigma - 3*eps*a^2/8 - 3*eps*Lambda^2 + {weak}*cos(psi)/(2*a)")
         .parse()
         .expect("a rate");
-    assert!(
-        (&slow.phase_rate - &rate)
-            .expand()
-            .expect("short")
-            .is_zero(),
-        "{}",
-        slow.phase_rate
-    );
-    let size: Expr = format!("{strong}/(2*(1 - {far}^2))")
-        .parse()
-        .expect("a size");
-    let lambda = solution
-        .definitions
-        .iter()
-        .find(|own| own.symbol == Symbol::new("Lambda"));
+    assert!((&slow.phase_rate - &rate).expand().expect("short").is_zero(), "{}", slow.phase_rate);
+    let size: Expr = format!("{strong}/(2*(1 - {far}^2))").parse().expect("a size");
+    let lambda = solution.definitions.iter().find(|own| own.symbol == Symbol::new("Lambda"));
     assert_eq!(lambda.expect("Lambda").meaning, size);
     let error = |eps: f64| {
         let (zeta, weak_size, strong_size) = (0.5 * eps, eps, 3.0);
@@ -294,9 +243,7 @@ fn drives_without_a_ratio_act_together() {
             })
         };
         let states = solution.steady_states(&number);
-        let [only] = states.as_slice() else {
-            panic!("{states:?}")
-        };
+        let [only] = states.as_slice() else { panic!("{states:?}") };
         let force = |t: f64, x: f64, v: f64| {
             let drives = weak_size * (near_rate * t).cos() + strong_size * (far_rate * t).cos();
             2.0 * zeta * v + x + eps * x.powi(3) - drives
@@ -305,19 +252,12 @@ fn drives_without_a_ratio_act_together() {
         only.amplitude / truth - 1.0
     };
     let [coarse, fine] = [0.04, 0.02].map(error);
-    assert!(
-        coarse.abs() < 0.08 && fine.abs() < 0.6 * coarse.abs(),
-        "{coarse} {fine}"
-    );
+    assert!(coarse.abs() < 0.08 && fine.abs() < 0.6 * coarse.abs(), "{coarse} {fine}");
     // Without a period there is no verdict.
     let oscillator = Oscillator::parse(duffing).expect("an oscillator");
-    let at: Values = "zeta = 1/50, eps = 1/25, F = 1/25, G = 3, W = 1.02, V = 2.01"
-        .parse()
-        .expect("values");
-    assert_eq!(
-        judge(&oscillator, &solution, &at, 0.01),
-        Err(VerificationError::NeverRepeats)
-    );
+    let at: Values =
+        "zeta = 1/50, eps = 1/25, F = 1/25, G = 3, W = 1.02, V = 2.01".parse().expect("values");
+    assert_eq!(judge(&oscillator, &solution, &at, 0.01), Err(VerificationError::NeverRepeats));
 }
 
 /// Of drives with numbers the nearest to the linear frequency is the one in resonance; what is
@@ -339,10 +279,7 @@ fn drives_without_a_ratio_say_which_is_near() {
         near("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(sqrt(2)*t) + G*cos(21*t/20)"),
         one("21/20", 1)
     );
-    assert_eq!(
-        near("x'' + 2*eps*z*x' + x + eps*x^3 = F*cos(W*t) + eps*G*cos(Z*t)"),
-        one("Z", 1)
-    );
+    assert_eq!(near("x'' + 2*eps*z*x' + x + eps*x^3 = F*cos(W*t) + eps*G*cos(Z*t)"), one("Z", 1));
     assert_eq!(
         near("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(U*t) + G*cos(V*t) + H1*sin(W*t)")
             .map(|found| found.1),
@@ -355,9 +292,7 @@ fn drives_without_a_ratio_say_which_is_near() {
         "x'' + 2*zeta*x' + x + eps*x^3 = F*cos(sqrt(2)*t) + G*cos(3*t)",
     ] {
         let oscillator = Oscillator::parse(equation).expect(equation);
-        let refusal = solve(&oscillator, &Options::default())
-            .expect_err(equation)
-            .to_string();
+        let refusal = solve(&oscillator, &Options::default()).expect_err(equation).to_string();
         assert!(
             refusal.contains("drives whose frequencies are small multiples of one"),
             "{refusal}"

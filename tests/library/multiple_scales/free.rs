@@ -27,12 +27,7 @@ fn published_slow_equations() {
             "1 - mu^2*(1/8 - a^2/8 + 7*a^4/256)",
         ),
         ("x'' + 2*zeta*x' + x = 0", 3, "-zeta*a", "1 - zeta^2/2"),
-        (
-            "x'' + 2*zeta*x' + x + eps*x^3 = 0",
-            1,
-            "-zeta*a",
-            "1 + 3*eps*a^2/8",
-        ),
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 1, "-zeta*a", "1 + 3*eps*a^2/8"),
         ("x'' + x + eps*x'^3 = 0", 1, "-3*eps*a^3/8", "1"),
         ("x'' + x + eps*x^2 = 0", 2, "0", "1 - 5*eps^2*a^2/12"),
     ] {
@@ -49,11 +44,7 @@ fn what_is_left_of_the_equation_is_of_the_next_order() {
         ("x'' + x + eps*x^3 = 0", "eps", 3),
         ("x'' + x + eps*(alpha*x^2 + beta*x^3) = 0", "eps", 3),
         ("x'' + eps*x' + x + eps*x^3 + eps*x^2*x'^3 = 0", "eps", 3),
-        (
-            "x'' + x + eps*x^2 + eps^2*x'*x^2 + 3*eps^3*x^5 = 0",
-            "eps",
-            3,
-        ),
+        ("x'' + x + eps*x^2 + eps^2*x'*x^2 + 3*eps^3*x^5 = 0", "eps", 3),
         ("x'' + x + eps*x*x'^2 - eps^2*x' = 0", "eps", 2),
         ("x'' + 4*x + eps*(1 + x)*x'^2 = 0", "eps", 3),
     ] {
@@ -61,22 +52,16 @@ fn what_is_left_of_the_equation_is_of_the_next_order() {
         let [amplitude_rate, phase_rate] = slow(&solution);
         let (eps, a) = (Symbol::new(small), Symbol::new("a"));
         let cut = |series: FourierSeries<_>, highest: i32| {
-            series.map(POLYNOMIALS, |coefficient: &Polynomial, _| {
-                coefficient.truncated(eps, highest)
-            })
+            series
+                .map(POLYNOMIALS, |coefficient: &Polynomial, _| coefficient.truncated(eps, highest))
         };
         let highest = order as i32;
         let constant =
             |polynomial: &Polynomial| FourierSeries::constant(POLYNOMIALS, polynomial.clone());
         let rate = |series: &FourierSeries<_>| {
-            let slope = series.map(POLYNOMIALS, |coefficient: &Polynomial, _| {
-                coefficient.slope(a)
-            });
+            let slope = series.map(POLYNOMIALS, |coefficient: &Polynomial, _| coefficient.slope(a));
             let slow = slope.product(&constant(&amplitude_rate));
-            cut(
-                slow.sum(&series.derivative().product(&constant(&phase_rate))),
-                highest,
-            )
+            cut(slow.sum(&series.derivative().product(&constant(&phase_rate))), highest)
         };
         let x = &solution.displacement;
         let velocity = rate(x);
@@ -124,10 +109,7 @@ fn slopes_of_the_error() {
         let at: Values = at.parse().expect("values");
         let judged = judge(&oscillator, &solution, &at, 0.01).expect("a verdict");
         let measured = judged.slope.expect("a slope");
-        assert!(
-            (measured - slope).abs() < 0.1,
-            "{equation} to order {order}: {measured}"
-        );
+        assert!((measured - slope).abs() < 0.1, "{equation} to order {order}: {measured}");
     }
 }
 
@@ -137,33 +119,15 @@ fn several_cycles_each_on_its_own() {
     let equation = "x'' + x + eps*x'*(4 - 5*(x^2 + x'^2) + (x^2 + x'^2)^2) = 0";
     let oscillator = Oscillator::parse(equation).expect("an oscillator");
     for (cycle, amplitude) in [(1, 1), (2, 2)] {
-        let asked = Options {
-            cycle: Some(cycle),
-            ..options(2)
-        };
+        let asked = Options { cycle: Some(cycle), ..options(2) };
         let solution = solve(&oscillator, &asked).expect("a limit cycle");
         let found = solution.limit_cycle.as_ref().expect("a limit cycle");
         let leading = found.amplitude.truncated(Symbol::new("eps"), 0);
         assert_eq!(leading, Polynomial::constant(ratio(amplitude, 1)));
-        let judged = judge(
-            &oscillator,
-            &solution,
-            &"eps = 1/100".parse().expect("values"),
-            0.01,
-        )
-        .expect("a verdict");
-        assert!(
-            judged
-                .relative_error
-                .is_some_and(|error| error.abs() < 1e-6),
-            "{judged:?}"
-        );
-        assert!(
-            judged
-                .max_deviation
-                .is_some_and(|deviation| deviation < 1e-3),
-            "{judged:?}"
-        );
+        let judged = judge(&oscillator, &solution, &"eps = 1/100".parse().expect("values"), 0.01)
+            .expect("a verdict");
+        assert!(judged.relative_error.is_some_and(|error| error.abs() < 1e-6), "{judged:?}");
+        assert!(judged.max_deviation.is_some_and(|deviation| deviation < 1e-3), "{judged:?}");
     }
 }
 
@@ -184,11 +148,8 @@ fn only_terms_of_one_order_let_a_motion_stay() {
         let oscillator = Oscillator::parse(equation).unwrap();
         let solution = solve(&oscillator, &options(4)).unwrap();
         let modulation = solution.modulation.as_ref().unwrap();
-        let stays: Vec<String> = modulation
-            .steady
-            .iter()
-            .map(|cycle| cycle.amplitude.to_string())
-            .collect();
+        let stays: Vec<String> =
+            modulation.steady.iter().map(|cycle| cycle.amplitude.to_string()).collect();
         assert_eq!(stays, Vec::from_iter(amplitude), "{equation}");
     }
 }
@@ -207,10 +168,7 @@ fn refusals_name_what_is_in_the_way() {
         ("x'' + x + eps*abs(x)*x = 0", "eps*abs(x)*x"),
     ] {
         let refusal = refused(equation, 2);
-        assert!(
-            matches!(&refusal, Refusal::Oscillator(_)),
-            "{equation}: {refusal}"
-        );
+        assert!(matches!(&refusal, Refusal::Oscillator(_)), "{equation}: {refusal}");
         assert_eq!(refusal.term(), Some(term), "{equation}: {refusal}");
     }
 }
@@ -226,10 +184,7 @@ fn multiple_scales_are_averaging_where_both_apply() {
     ] {
         let oscillator = Oscillator::parse(equation).expect("an oscillator");
         let by = |method: Method| {
-            let options = Options {
-                method: Some(method),
-                ..options(2)
-            };
+            let options = Options { method: Some(method), ..options(2) };
             let solution = solve(&oscillator, &options)
                 .unwrap_or_else(|refusal| panic!("{equation}: {refusal}"));
             solution.modulation.expect("slow equations")
@@ -250,34 +205,18 @@ fn multiple_scales_are_averaging_where_both_apply() {
 #[test]
 fn a_damped_motion_shows_how_it_decays() {
     let oscillator = Oscillator::parse("x'' + x + z*x'^3 = 0").expect("an oscillator");
-    let asked = Options {
-        method: Some(Method::MultipleScales),
-        ..options(1)
-    };
+    let asked = Options { method: Some(Method::MultipleScales), ..options(1) };
     let solution = solve(&oscillator, &asked).expect("an answer");
     let slow = solution.slow().expect("slow equations");
     let expected = parse_expression("-3*z*a^3/8").expect("an expression");
     assert!(
-        (&slow.amplitude_rate - &expected)
-            .expand()
-            .expect("short")
-            .is_zero(),
+        (&slow.amplitude_rate - &expected).expand().expect("short").is_zero(),
         "{}",
         slow.amplitude_rate
     );
-    let judged = judge(
-        &oscillator,
-        &solution,
-        &"z = 1/20, A = 1".parse().expect("values"),
-        0.01,
-    )
-    .expect("a verdict");
-    assert!(
-        judged
-            .relative_error
-            .is_some_and(|error| error.abs() < 1e-3),
-        "{judged:?}"
-    );
+    let judged = judge(&oscillator, &solution, &"z = 1/20, A = 1".parse().expect("values"), 0.01)
+        .expect("a verdict");
+    assert!(judged.relative_error.is_some_and(|error| error.abs() < 1e-3), "{judged:?}");
 }
 
 /// From a start amplitude and phase are known in closed form: differentiated they are the slow
@@ -303,16 +242,10 @@ fn closed_forms_from_a_start() {
         let phase = transient.phase.as_ref().expect(equation);
         let slopes = [&transient.amplitude, phase].map(|of| of.differentiate(t).expect(equation));
         let at_size = |size: f64| {
-            let values = [
-                ("A", 0.7),
-                ("zeta", 0.3 * size),
-                ("eps", 0.8 * size),
-                ("mu", 0.6 * size),
-            ];
-            let mut values: std::collections::BTreeMap<_, _> = values
-                .into_iter()
-                .map(|(name, value)| (Symbol::new(name), value))
-                .collect();
+            let values =
+                [("A", 0.7), ("zeta", 0.3 * size), ("eps", 0.8 * size), ("mu", 0.6 * size)];
+            let mut values: std::collections::BTreeMap<_, _> =
+                values.into_iter().map(|(name, value)| (Symbol::new(name), value)).collect();
             let defined = solution.defined_values(&|name| values.get(&name).copied());
             values.extend(defined.expect(equation));
             for time in [0.0, 0.5, 3.0, 11.0] {
@@ -322,10 +255,7 @@ fn closed_forms_from_a_start() {
                 for (slope, rate) in slopes.iter().zip([&slow.amplitude_rate, &slow.phase_rate]) {
                     let [slope, rate] =
                         [slope, rate].map(|value| value.evaluate(&values).expect(equation));
-                    assert!(
-                        (slope - rate).abs() < 1e-11,
-                        "{equation} at {time}: {slope}, {rate}"
-                    );
+                    assert!((slope - rate).abs() < 1e-11, "{equation} at {time}: {slope}, {rate}");
                 }
             }
             values.insert(t, 0.0);
@@ -336,11 +266,7 @@ fn closed_forms_from_a_start() {
                 .map(|rate| rate.evaluate(&values).expect(equation));
             let position = |a: f64, theta: f64| {
                 let value_of = |name: Symbol| {
-                    if name.name() == "a" {
-                        Some(a)
-                    } else {
-                        values.get(&name).copied()
-                    }
+                    if name.name() == "a" { Some(a) } else { values.get(&name).copied() }
                 };
                 solution.motion(&value_of).expect("numbers").evaluate(theta)
             };
@@ -352,10 +278,7 @@ fn closed_forms_from_a_start() {
             (position(start, theta) - 0.7).abs() + (by_amplitude * rate + by_phase * turning).abs()
         };
         let slope = (at_size(0.02) / at_size(0.01)).log2();
-        assert!(
-            slope > f64::from(order) - 0.1,
-            "{equation} to order {order}: {slope}"
-        );
+        assert!(slope > f64::from(order) - 0.1, "{equation} to order {order}: {slope}");
     }
 }
 
@@ -364,47 +287,23 @@ fn closed_forms_from_a_start() {
 #[test]
 fn slopes_of_motions_from_a_start() {
     for (equation, order, at) in [
-        (
-            "x'' + 2*zeta*x' + x + eps*x^3 = 0",
-            1,
-            "zeta = 1/20, eps = 1/10, A = 1",
-        ),
-        (
-            "x'' + 2*zeta*x' + x + eps*x^3 = 0",
-            2,
-            "zeta = 1/20, eps = 1/10, A = 1",
-        ),
-        (
-            "x'' + 2*zeta*x' + x + eps*x^3 = 0",
-            3,
-            "zeta = 1/20, eps = 1/10, A = 1",
-        ),
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 1, "zeta = 1/20, eps = 1/10, A = 1"),
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 2, "zeta = 1/20, eps = 1/10, A = 1"),
+        ("x'' + 2*zeta*x' + x + eps*x^3 = 0", 3, "zeta = 1/20, eps = 1/10, A = 1"),
         ("x'' - mu*(1 - x^2)*x' + x = 0", 3, "mu = 1/10, A = 1/2"),
         ("x'' + x'/50 + sin(x) = 0", 4, "A = 1/2"),
         // About 0.92, a root in numbers and one in letters.
         ("x'' + x'/50 + x + x^2/10 - 1 = 0", 4, "A = 1/5"),
-        (
-            "x'' + 2*zeta*x' + x + k*x^2 - 1 = 0",
-            4,
-            "zeta = 1/100, k = 1/10, A = 1/5",
-        ),
+        ("x'' + 2*zeta*x' + x + k*x^2 - 1 = 0", 4, "zeta = 1/100, k = 1/10, A = 1/5"),
     ] {
         let oscillator = Oscillator::parse(equation).expect("an oscillator");
         let at: Values = at.parse().expect("values");
         let judged = judge(&oscillator, &derive(equation, order), &at, 0.01).expect("a verdict");
         let slope = judged.slope.expect("a slope");
-        let amplitude = judged
-            .followed
-            .and_then(|followed| followed.amplitude_slope)
-            .expect("a slope");
-        assert!(
-            (slope - f64::from(order)).abs() < 0.1,
-            "{equation} to order {order}: {slope}"
-        );
-        assert!(
-            amplitude > f64::from(order) - 0.1,
-            "{equation} to order {order}: {amplitude}"
-        );
+        let amplitude =
+            judged.followed.and_then(|followed| followed.amplitude_slope).expect("a slope");
+        assert!((slope - f64::from(order)).abs() < 0.1, "{equation} to order {order}: {slope}");
+        assert!(amplitude > f64::from(order) - 0.1, "{equation} to order {order}: {amplitude}");
         assert!(
             judged.residual.is_some_and(|residual| residual < 0.02),
             "{equation}: {:?}",
@@ -420,16 +319,12 @@ fn damping_that_changes_with_the_place() {
     let equation = "x*x'' + 3*x'^2/2 + 4*nu*x'/x - p*(x^(-3*k) - 1) = 0";
     let oscillator = Oscillator::parse(equation).expect("an oscillator");
     let solution = derive(equation, 4);
-    let deviations = [
-        "nu = 1/25, A = 1/5",
-        "nu = 1/100, A = 1/10",
-        "nu = 1/400, A = 1/20",
-    ]
-    .map(|at| {
-        let at: Values = format!("{at}, p = 1, k = 7/5").parse().expect("values");
-        let judged = judge(&oscillator, &solution, &at, 0.01).expect("a verdict");
-        judged.max_deviation.expect("a deviation")
-    });
+    let deviations =
+        ["nu = 1/25, A = 1/5", "nu = 1/100, A = 1/10", "nu = 1/400, A = 1/20"].map(|at| {
+            let at: Values = format!("{at}, p = 1, k = 7/5").parse().expect("values");
+            let judged = judge(&oscillator, &solution, &at, 0.01).expect("a verdict");
+            judged.max_deviation.expect("a deviation")
+        });
     for pair in deviations.windows(2) {
         let slope = (pair[0] / pair[1]).log2();
         assert!((slope - 4.0).abs() < 0.2, "{slope}: {deviations:?}");

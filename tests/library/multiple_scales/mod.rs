@@ -15,11 +15,7 @@ use lindstedt::method::{Options, solve};
 use lindstedt::solution::{Method, Solution};
 
 fn options(order: u32) -> Options {
-    Options {
-        method: Some(Method::MultipleScales),
-        order: Some(order),
-        ..Options::default()
-    }
+    Options { method: Some(Method::MultipleScales), order: Some(order), ..Options::default() }
 }
 
 fn derive(equation: &str, order: u32) -> Solution {
@@ -32,9 +28,7 @@ fn of_text(text: &str) -> Polynomial {
 }
 
 fn of_expression(expression: &Expr) -> Polynomial {
-    let polynomial = expression
-        .expand()
-        .and_then(|sum| sum.to_polynomial(&mut |_| None));
+    let polynomial = expression.expand().and_then(|sum| sum.to_polynomial(&mut |_| None));
     polynomial.expect("short").expect("a polynomial")
 }
 

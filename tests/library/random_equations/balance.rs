@@ -76,11 +76,7 @@ impl Question<'_> {
 
     /// The harmonics that are balanced.
     pub fn balanced(&self, order: usize) -> Vec<usize> {
-        if self.is_odd() {
-            (0..order).map(|k| 2 * k + 1).collect()
-        } else {
-            (0..=order).collect()
-        }
+        if self.is_odd() { (0..order).map(|k| 2 * k + 1).collect() } else { (0..=order).collect() }
     }
 
     /// Whether the force vanishes between rest and half as much again as the amplitude, on either
@@ -91,11 +87,7 @@ impl Question<'_> {
         // Wells may be far smaller than the motion.
         let even =
             even.chain((0..4 * SAMPLES).map(|k| 1.5 * self.size() * (-f64::from(k) / 200.0).exp()));
-        let places = self
-            .force
-            .places()
-            .into_iter()
-            .map(|place| (place - self.origin).abs());
+        let places = self.force.places().into_iter().map(|place| (place - self.origin).abs());
         let mut sizes = even.chain(places.filter(|size| *size > 0.0 && *size < 1.5 * self.size()));
         sizes.any(|y| self.f(y) <= 0.0 || self.f(-y) >= 0.0)
     }
@@ -110,9 +102,8 @@ impl Question<'_> {
         order: usize,
     ) -> Option<f64> {
         const PANELS: i32 = 64;
-        let mut panels: Vec<f64> = (0..=PANELS)
-            .map(|k| PI * f64::from(k) / f64::from(PANELS))
-            .collect();
+        let mut panels: Vec<f64> =
+            (0..=PANELS).map(|k| PI * f64::from(k) / f64::from(PANELS)).collect();
         let distance = |theta: f64| -> f64 {
             let wave = |(k, a): (usize, &f64)| a * (k as f64 * theta).cos();
             coefficients.iter().enumerate().map(wave).sum()
@@ -153,17 +144,11 @@ impl Question<'_> {
         near: Option<&[f64]>,
     ) -> Option<Vec<f64>> {
         let count = harmonics.len();
-        let first = harmonics
-            .iter()
-            .position(|&k| k == 1)
-            .expect("the first harmonic");
+        let first = harmonics.iter().position(|&k| k == 1).expect("the first harmonic");
         let table: Vec<Vec<f64>> = (0..points)
             .map(|i| {
                 let theta = PI * (i as f64 + 0.5) / points as f64;
-                harmonics
-                    .iter()
-                    .map(|&k| (k as f64 * theta).cos())
-                    .collect()
+                harmonics.iter().map(|&k| (k as f64 * theta).cos()).collect()
             })
             .collect();
         // Unknowns in units of the amplitude `part A`: omega^2, a_k.
@@ -208,9 +193,7 @@ impl Question<'_> {
                 let change = solve(rows)?;
                 unknowns[0] += unit * change[0];
                 (1..=count).for_each(|i| unknowns[i] += change[i]);
-                let moved = change
-                    .iter()
-                    .fold(0.0, |most: f64, value| most.max(value.abs()));
+                let moved = change.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
                 if !moved.is_finite() || unknowns[0] <= 0.0 {
                     return None;
                 }
@@ -227,15 +210,11 @@ impl Question<'_> {
         }
         let mut part = self.gentle_part();
         let mut current = vec![0.0; count + 1];
-        current[0] = match (Question {
-            amplitude: part * self.amplitude,
-            ..*self
-        })
-        .shared_integral()
-        {
-            Answer::Value(squared, _) if squared > 0.0 => squared,
-            _ => return None,
-        };
+        current[0] =
+            match (Question { amplitude: part * self.amplitude, ..*self }).shared_integral() {
+                Answer::Value(squared, _) if squared > 0.0 => squared,
+                _ => return None,
+            };
         current[first + 1] = 1.0;
         current = newton(part, &current)?;
         let (mut before, mut step) = ((part, current.clone()), 0.05_f64);

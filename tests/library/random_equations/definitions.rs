@@ -50,11 +50,8 @@ impl Question<'_> {
     /// equilibrium itself.
     pub fn noise(&self, y: f64) -> f64 {
         let x = self.origin + y;
-        let moved = if self.origin == 0.0 {
-            0.0
-        } else {
-            self.origin.abs() * self.force.slope(x).abs()
-        };
+        let moved =
+            if self.origin == 0.0 { 0.0 } else { self.origin.abs() * self.force.slope(x).abs() };
         let terms = if self.origin == 0.0 {
             self.terms(y)
         } else {
@@ -81,11 +78,8 @@ impl Question<'_> {
     /// Angles at which a motion of one term passes the places where the force turns fast.
     fn angles(&self) -> Vec<f64> {
         let mut angles = vec![0.0, 0.25 * PI, FRAC_PI_2, 0.75 * PI, PI];
-        let cosines = self
-            .force
-            .places()
-            .into_iter()
-            .map(|place| (place - self.origin) / self.size());
+        let cosines =
+            self.force.places().into_iter().map(|place| (place - self.origin) / self.size());
         angles.extend(cosines.filter(|cosine| cosine.abs() < 1.0).map(f64::acos));
         angles.sort_by(f64::total_cmp);
         angles
@@ -148,10 +142,7 @@ impl Question<'_> {
         let slope = self.force.slope(self.origin + 0.5 * self.size());
         let near =
             [0.5 - 1e-6, 0.5 + 1e-6].map(|part| self.force.slope(self.origin + part * self.size()));
-        if near
-            .iter()
-            .any(|value| (value - slope).abs() > 1e-2 * slope.abs())
-        {
+        if near.iter().any(|value| (value - slope).abs() > 1e-2 * slope.abs()) {
             return Answer::Unknown;
         }
         // The slope is a difference of slopes of the terms.
@@ -160,10 +151,7 @@ impl Question<'_> {
             .terms
             .iter()
             .map(|term| {
-                let alone = Force {
-                    terms: vec![*term],
-                    ..self.force.clone()
-                };
+                let alone = Force { terms: vec![*term], ..self.force.clone() };
                 alone.slope(self.origin + 0.5 * self.size()).abs()
             })
             .sum();
@@ -175,18 +163,9 @@ impl Question<'_> {
     pub fn scaled_taylor(&self, degree: usize) -> Option<Vec<f64>> {
         let series = self.force.taylor(self.origin, degree)?;
         let scaled: Vec<f64> = (0..=degree)
-            .map(|k| {
-                if k == 0 {
-                    0.0
-                } else {
-                    series[k] * self.amplitude.powi(k as i32 - 1)
-                }
-            })
+            .map(|k| if k == 0 { 0.0 } else { series[k] * self.amplitude.powi(k as i32 - 1) })
             .collect();
-        scaled
-            .iter()
-            .all(|value| value.is_finite())
-            .then_some(scaled)
+        scaled.iter().all(|value| value.is_finite()).then_some(scaled)
     }
 
     /// `omega^2 = sum e_k A^k`: each `e_k A^k`, through the period as a function of the energy.
@@ -200,9 +179,8 @@ impl Question<'_> {
             return None;
         }
         // 2V/(g_1 z^2) = 1 + ..., and u/z = its root.
-        let square: Vec<f64> = (0..=order)
-            .map(|k| 2.0 * g[k + 1] / ((k + 2) as f64 * g[1]))
-            .collect();
+        let square: Vec<f64> =
+            (0..=order).map(|k| 2.0 * g[k + 1] / ((k + 2) as f64 * g[1])).collect();
         let root = power(&square, 0.5);
         // Lagrange: b_k = [z^(k-1)] (z/u)^k / k.
         let b = |k: usize| power(&root, -(k as f64))[k - 1] / k as f64;
@@ -220,12 +198,7 @@ impl Question<'_> {
             }
             energy = series_product(&energy, &square);
         }
-        Some(
-            power(&period, -2.0)
-                .into_iter()
-                .map(|value| g[1] * value)
-                .collect(),
-        )
+        Some(power(&period, -2.0).into_iter().map(|value| g[1] * value).collect())
     }
 
     /// The series of omega^2 cut after a power of the amplitude.
@@ -254,11 +227,7 @@ impl Question<'_> {
             .map(|k| (c[k] / c[0]).abs().powf(1.0 / k as f64))
             .fold(f64::MIN_POSITIVE, f64::max);
         let at = |k: i64| {
-            if k < 0 {
-                0.0
-            } else {
-                c[k as usize] / growth.powi(k as i32)
-            }
+            if k < 0 { 0.0 } else { c[k as usize] / growth.powi(k as i32) }
         };
         let row = |k: i64| -> Vec<f64> {
             let (l, m) = (above as i64, below as i64);
@@ -269,22 +238,12 @@ impl Question<'_> {
         };
         let q: Vec<f64> = [1.0].into_iter().chain(q).collect();
         let p: Vec<f64> = (0..=above)
-            .map(|i| {
-                (0..=i.min(below))
-                    .map(|j| q[j] * at(i as i64 - j as i64))
-                    .sum()
-            })
+            .map(|i| (0..=i.min(below)).map(|j| q[j] * at(i as i64 - j as i64)).sum())
             .collect();
         let sum = |terms: &[f64]| -> (f64, f64) {
-            let terms: Vec<f64> = terms
-                .iter()
-                .enumerate()
-                .map(|(k, t)| t * growth.powi(k as i32))
-                .collect();
-            (
-                terms.iter().sum(),
-                terms.iter().map(|term| term.abs()).sum(),
-            )
+            let terms: Vec<f64> =
+                terms.iter().enumerate().map(|(k, t)| t * growth.powi(k as i32)).collect();
+            (terms.iter().sum(), terms.iter().map(|term| term.abs()).sum())
         };
         let (numerator, denominator) = (sum(&p), sum(&q));
         let noise = numerator.1 / numerator.0.abs() + denominator.1 / denominator.0.abs();
@@ -299,9 +258,7 @@ impl Question<'_> {
 }
 
 pub fn series_product(a: &[f64], b: &[f64]) -> Vec<f64> {
-    (0..a.len())
-        .map(|n| (0..=n).map(|k| a[k] * b[n - k]).sum())
-        .collect()
+    (0..a.len()).map(|n| (0..=n).map(|k| a[k] * b[n - k]).sum()).collect()
 }
 
 /// The series of a power of a series (J. C. P. Miller's recurrence).

@@ -40,38 +40,19 @@ pub struct Case {
 pub fn case(random: &mut Random) -> Case {
     let chosen = asked_for();
     let asked = |name: &str| chosen.as_ref().is_none_or(|part| name.contains(part));
-    let asked: Vec<_> = FAMILIES
-        .iter()
-        .copied()
-        .filter(|(name, _)| asked(name))
-        .collect();
+    let asked: Vec<_> = FAMILIES.iter().copied().filter(|(name, _)| asked(name)).collect();
     let (family, terms) = random.choose(&asked);
     let terms = terms(random);
     let (length, rate) = if random.percent(50.0) {
         (0, 0)
     } else {
         // Lengths in steps of a million keep fractional powers of ten whole.
-        (
-            6 * random.whole(-2, 2) as i32,
-            2 * random.whole(-8, 8) as i32,
-        )
+        (6 * random.whole(-2, 2) as i32, 2 * random.whole(-8, 8) as i32)
     };
     let wide = random.percent(30.0);
-    let size = if wide {
-        random.between(1e-8, 1e8)
-    } else {
-        random.between(0.03, 4.0)
-    };
+    let size = if wide { random.between(1e-8, 1e8) } else { random.between(0.03, 4.0) };
     let amplitude = number(if random.percent(30.0) { -size } else { size });
-    Case {
-        family,
-        force: Force {
-            terms,
-            length,
-            rate,
-        },
-        amplitude,
-    }
+    Case { family, force: Force { terms, length, rate }, amplitude }
 }
 
 /// Three digits of a value.
@@ -87,46 +68,24 @@ pub fn number(value: f64) -> Number {
 }
 
 fn term(coefficient: Number, shape: Shape) -> Term {
-    Term {
-        coefficient,
-        shape,
-        name: None,
-    }
+    Term { coefficient, shape, name: None }
 }
 
 /// A coefficient of ordinary size, now and then a far smaller or larger one.
 fn positive(random: &mut Random) -> Number {
     let wide = random.percent(15.0);
-    let value = if wide {
-        random.between(1e-4, 1e4)
-    } else {
-        random.between(0.2, 5.0)
-    };
+    let value = if wide { random.between(1e-4, 1e4) } else { random.between(0.2, 5.0) };
     number(value)
 }
 
 fn either(random: &mut Random) -> Number {
     let size = positive(random);
-    Number::new(
-        if random.percent(40.0) {
-            -size.mantissa
-        } else {
-            size.mantissa
-        },
-        size.exponent,
-    )
+    Number::new(if random.percent(40.0) { -size.mantissa } else { size.mantissa }, size.exponent)
 }
 
 fn stiffness(random: &mut Random) -> Term {
     let one = random.percent(50.0);
-    term(
-        if one {
-            Number::new(1, 0)
-        } else {
-            positive(random)
-        },
-        Shape::Power(1),
-    )
+    term(if one { Number::new(1, 0) } else { positive(random) }, Shape::Power(1))
 }
 
 fn odd_polynomial(random: &mut Random) -> Vec<Term> {
@@ -158,16 +117,7 @@ fn power_alone(random: &mut Random) -> Vec<Term> {
 }
 
 fn fractional_power(random: &mut Random) -> Vec<Term> {
-    let (p, q) = random.choose(&[
-        (1, 3),
-        (2, 1),
-        (3, 2),
-        (1, 2),
-        (5, 3),
-        (5, 2),
-        (2, 3),
-        (7, 3),
-    ]);
+    let (p, q) = random.choose(&[(1, 3), (2, 1), (3, 2), (1, 2), (5, 3), (5, 2), (2, 3), (7, 3)]);
     let mut terms = vec![term(positive(random), Shape::SignedPower(p, q))];
     if random.percent(60.0) {
         terms.push(stiffness(random));
@@ -176,11 +126,7 @@ fn fractional_power(random: &mut Random) -> Vec<Term> {
 }
 
 fn sine(random: &mut Random) -> Vec<Term> {
-    let b = if random.percent(50.0) {
-        Number::new(1, 0)
-    } else {
-        positive(random)
-    };
+    let b = if random.percent(50.0) { Number::new(1, 0) } else { positive(random) };
     let mut terms = vec![term(positive(random), Shape::Sine(b))];
     if random.percent(40.0) {
         terms.push(stiffness(random));
@@ -213,14 +159,8 @@ fn rational(random: &mut Random) -> Vec<Term> {
     let b = positive(random);
     match random.whole(0, 2) {
         0 => vec![term(positive(random), Shape::Saturating(b))],
-        1 => vec![
-            stiffness(random),
-            term(positive(random), Shape::Saturating(b)),
-        ],
-        _ => vec![
-            stiffness(random),
-            term(positive(random), Shape::Stiffening(b)),
-        ],
+        1 => vec![stiffness(random), term(positive(random), Shape::Saturating(b))],
+        _ => vec![stiffness(random), term(positive(random), Shape::Stiffening(b))],
     }
 }
 
@@ -237,11 +177,8 @@ fn with_pole(random: &mut Random) -> Vec<Term> {
 fn barrier(random: &mut Random) -> Vec<Term> {
     let d = positive(random);
     let shape = random.choose(&[Shape::Barrier(d), Shape::Step(d), Shape::Walls(d)]);
-    let stiff = if random.percent(30.0) {
-        number(random.between(1e2, 1e6))
-    } else {
-        positive(random)
-    };
+    let stiff =
+        if random.percent(30.0) { number(random.between(1e2, 1e6)) } else { positive(random) };
     let first = if random.percent(30.0) {
         term(positive(random), Shape::Sine(Number::new(1, 0)))
     } else {
@@ -261,15 +198,8 @@ fn bump(random: &mut Random) -> Vec<Term> {
         )
     };
     // The slope of the bump in its middle is its coefficient.
-    let steep = if place.mantissa == 0 {
-        height
-    } else {
-        height * sharp.value().sqrt()
-    };
-    vec![
-        stiffness(random),
-        term(number(steep), Shape::Bump(place, sharp)),
-    ]
+    let steep = if place.mantissa == 0 { height } else { height * sharp.value().sqrt() };
+    vec![stiffness(random), term(number(steep), Shape::Bump(place, sharp))]
 }
 
 fn static_load(random: &mut Random) -> Vec<Term> {
@@ -284,10 +214,7 @@ fn static_load(random: &mut Random) -> Vec<Term> {
         }
     }
     let load = number(random.between(0.05, 2.0));
-    terms.push(term(
-        Number::new(-load.mantissa, load.exponent),
-        Shape::Constant,
-    ));
+    terms.push(term(Number::new(-load.mantissa, load.exponent), Shape::Constant));
     terms
 }
 
@@ -295,10 +222,7 @@ fn cosine_load(random: &mut Random) -> Vec<Term> {
     let load = number(random.between(0.05, 0.9));
     vec![
         stiffness(random),
-        term(
-            Number::new(-load.mantissa, load.exponent),
-            Shape::Cosine(Number::new(1, 0)),
-        ),
+        term(Number::new(-load.mantissa, load.exponent), Shape::Cosine(Number::new(1, 0))),
     ]
 }
 
@@ -328,12 +252,5 @@ fn parameters(random: &mut Random) -> Vec<Term> {
         Shape::Power(2),
         Shape::SignedPower(2, 1),
     ]);
-    vec![
-        stiffness(random),
-        Term {
-            coefficient: either(random),
-            shape,
-            name: Some(name),
-        },
-    ]
+    vec![stiffness(random), Term { coefficient: either(random), shape, name: Some(name) }]
 }

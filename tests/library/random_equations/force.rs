@@ -18,11 +18,7 @@ pub struct Number {
 impl Number {
     pub fn new(mantissa: i64, exponent: i32) -> Self {
         let value = format!("{mantissa}e{exponent}").parse().expect("a number");
-        Self {
-            mantissa,
-            exponent,
-            value,
-        }
+        Self { mantissa, exponent, value }
     }
 
     pub fn value(self) -> f64 {
@@ -107,9 +103,8 @@ impl Force {
         let mut text = "x''".to_owned();
         let mut values = BTreeMap::new();
         for term in &self.terms {
-            let coefficient = term
-                .coefficient
-                .times_ten_to(term.power_of_ten(self.length, self.rate));
+            let coefficient =
+                term.coefficient.times_ten_to(term.power_of_ten(self.length, self.rate));
             let shape = term.shape.text(self.length);
             match term.name {
                 Some(name) => {
@@ -123,40 +118,25 @@ impl Force {
                 None => text += &format!(" + {}*{shape}", coefficient.text()),
             }
         }
-        (
-            text.replace("+ 1*", "+ ").replace("- 1*", "- ") + " = 0",
-            values,
-        )
+        (text.replace("+ 1*", "+ ").replace("- 1*", "- ") + " = 0", values)
     }
 
     /// `g(origin + y) - g(origin)`, without cancellation where that is easy.
     pub fn rise(&self, origin: f64, y: f64) -> f64 {
-        self.terms
-            .iter()
-            .map(|term| term.coefficient.value() * term.shape.rise(origin, y))
-            .sum()
+        self.terms.iter().map(|term| term.coefficient.value() * term.shape.rise(origin, y)).sum()
     }
 
     pub fn value(&self, x: f64) -> f64 {
-        self.terms
-            .iter()
-            .map(|term| term.coefficient.value() * term.shape.value(x))
-            .sum()
+        self.terms.iter().map(|term| term.coefficient.value() * term.shape.value(x)).sum()
     }
 
     /// The sum of the sizes of the terms.
     pub fn size(&self, x: f64) -> f64 {
-        self.terms
-            .iter()
-            .map(|term| (term.coefficient.value() * term.shape.value(x)).abs())
-            .sum()
+        self.terms.iter().map(|term| (term.coefficient.value() * term.shape.value(x)).abs()).sum()
     }
 
     pub fn slope(&self, x: f64) -> f64 {
-        self.terms
-            .iter()
-            .map(|term| term.coefficient.value() * term.shape.slope(x))
-            .sum()
+        self.terms.iter().map(|term| term.coefficient.value() * term.shape.slope(x)).sum()
     }
 
     /// Taylor coefficients about `origin`; `None` where there are none.
@@ -173,10 +153,7 @@ impl Force {
 
     /// Places where the force has a corner or turns fast.
     pub fn places(&self) -> Vec<f64> {
-        self.terms
-            .iter()
-            .flat_map(|term| term.shape.places())
-            .collect()
+        self.terms.iter().flat_map(|term| term.shape.places()).collect()
     }
 
     /// The interval about `origin` on which the force is finite.
@@ -186,11 +163,7 @@ impl Force {
             _ => None,
         });
         poles.fold((f64::NEG_INFINITY, f64::INFINITY), |(low, high), pole| {
-            if pole > origin {
-                (low, high.min(pole))
-            } else {
-                (low.max(pole), high)
-            }
+            if pole > origin { (low, high.min(pole)) } else { (low.max(pole), high) }
         })
     }
 
@@ -215,10 +188,7 @@ impl Force {
             Shape::Power(n) => Some(n as usize),
             _ => None,
         };
-        self.terms
-            .iter()
-            .map(degree)
-            .try_fold(0, |most, degree| Some(most.max(degree?)))
+        self.terms.iter().map(degree).try_fold(0, |most, degree| Some(most.max(degree?)))
     }
 }
 
@@ -277,11 +247,7 @@ impl Shape {
     fn text(self, length: i32) -> String {
         let inverse = |b: Number| {
             let text = b.times_ten_to(-length).text();
-            if text == "1" {
-                "x".to_owned()
-            } else {
-                format!("{text}*x")
-            }
+            if text == "1" { "x".to_owned() } else { format!("{text}*x") }
         };
         let long = |d: Number| d.times_ten_to(length).text();
         let squared = |b: Number| b.times_ten_to(-2 * length).text();
@@ -410,10 +376,7 @@ impl Shape {
             series
         };
         let scaled = |series: &[f64], factor: f64| {
-            series
-                .iter()
-                .map(|value| value * factor)
-                .collect::<Vec<_>>()
+            series.iter().map(|value| value * factor).collect::<Vec<_>>()
         };
         let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a + b).collect::<Vec<_>>();
         let one = constant(1.0);
@@ -423,14 +386,7 @@ impl Shape {
             Self::Power(n) => (0..n).fold(one, |power, _| product(&power, &identity)),
             Self::SignedPower(..) => return None,
             Self::Sine(b) | Self::Cosine(b) => {
-                let (b, turn) = (
-                    b.value(),
-                    if matches!(self, Self::Cosine(_)) {
-                        1
-                    } else {
-                        0
-                    },
-                );
+                let (b, turn) = (b.value(), if matches!(self, Self::Cosine(_)) { 1 } else { 0 });
                 let (sine, cosine) = (b * x).sin_cos();
                 let values = [sine, cosine, -sine, -cosine];
                 let mut factor = 1.0;
@@ -459,10 +415,7 @@ impl Shape {
             Self::Arctangent(b) => {
                 let inside = linear(b.value(), 0.0);
                 let below = sum(&one, &product(&inside, &inside));
-                integral(
-                    (b.value() * x).atan(),
-                    &quotient(&constant(b.value()), &below),
-                )
+                integral((b.value() * x).atan(), &quotient(&constant(b.value()), &below))
             }
             Self::Exponential(b) => {
                 let mut series = exponential(&linear(b.value(), 0.0));
@@ -475,15 +428,11 @@ impl Shape {
             }
             Self::Stiffening(b) => {
                 let square = product(&identity, &identity);
-                quotient(
-                    &product(&square, &identity),
-                    &sum(&one, &scaled(&square, b.value())),
-                )
+                quotient(&product(&square, &identity), &sum(&one, &scaled(&square, b.value())))
             }
-            Self::Pole(d) => quotient(
-                &scaled(&identity, d.value().recip()),
-                &linear(-1.0, d.value()),
-            ),
+            Self::Pole(d) => {
+                quotient(&scaled(&identity, d.value().recip()), &linear(-1.0, d.value()))
+            }
             Self::Gap(d) => {
                 let gap = linear(-1.0, d.value());
                 quotient(&identity, &product(&gap, &gap))
@@ -494,10 +443,7 @@ impl Shape {
             Self::Barrier(_) | Self::Step(_) | Self::Walls(_) => return None,
             Self::Bump(d, s) => {
                 let from = linear(1.0, -d.value());
-                product(
-                    &from,
-                    &exponential(&scaled(&product(&from, &from), -s.value())),
-                )
+                product(&from, &exponential(&scaled(&product(&from, &from), -s.value())))
             }
         })
     }
@@ -505,9 +451,7 @@ impl Shape {
     fn places(self) -> Vec<f64> {
         let around = |middle: f64, width: f64| {
             let side = [0.0, 0.5, 1.0, 2.0, 3.0, 4.5, 6.0, 9.0, 20.0, 60.0];
-            side.iter()
-                .flat_map(|&n| [middle - n * width, middle + n * width])
-                .collect()
+            side.iter().flat_map(|&n| [middle - n * width, middle + n * width]).collect()
         };
         match self {
             Self::SignedPower(..) => vec![0.0],
@@ -520,9 +464,7 @@ impl Shape {
             Self::Saturating(b) | Self::Stiffening(b) => around(0.0, b.value().sqrt().recip()),
             Self::Gap(d) | Self::Pole(d) => {
                 let side = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4, 1e-5];
-                side.iter()
-                    .flat_map(|n| [d.value() * (1.0 - n), d.value() * (1.0 + n)])
-                    .collect()
+                side.iter().flat_map(|n| [d.value() * (1.0 - n), d.value() * (1.0 + n)]).collect()
             }
             _ => vec![],
         }

@@ -22,11 +22,7 @@ use super::random::Random;
 use super::{AGREEMENT, setting};
 
 fn term(coefficient: Number, shape: Shape) -> Term {
-    Term {
-        coefficient,
-        shape,
-        name: None,
-    }
+    Term { coefficient, shape, name: None }
 }
 
 /// A force and where its first well has its bottom.
@@ -51,11 +47,8 @@ fn two_wells(random: &mut Random) -> (Force, f64) {
         };
         vec![shape, pull]
     };
-    let force = Force {
-        terms,
-        length: random.choose(&[0, 0, -6, 6]),
-        rate: random.choose(&[0, 0, -4, 8]),
-    };
+    let force =
+        Force { terms, length: random.choose(&[0, 0, -6, 6]), rate: random.choose(&[0, 0, -4, 8]) };
     let place = |step: u32| 1e-3 * 1.01_f64.powi(step as i32);
     let crossing = (0..2000)
         .find(|&step| force.value(place(step)) < 0.0 && force.value(place(step + 1)) >= 0.0);
@@ -70,9 +63,7 @@ fn edge(force: &Force, bottom: f64) -> Option<f64> {
         integrate(&|y| force.value(y), &[0.0, bottom.min(x), x], 1e-14).unwrap_or(f64::NAN)
     };
     let outside = (1..4000).map(|k| bottom * (1.0 + 0.01 * f64::from(k)));
-    let beyond = outside
-        .take_while(|x| force.value(*x) > 0.0)
-        .find(|x| risen(*x) > 0.0)?;
+    let beyond = outside.take_while(|x| force.value(*x) > 0.0).find(|x| risen(*x) > 0.0)?;
     Some(bisect(&risen, bottom, beyond))
 }
 
@@ -92,20 +83,11 @@ fn motions_over_both_wells_are_those_of_every_definition() {
         let (force, bottom) = two_wells(random);
         let amplitude = number(random.choose(&[-1.0, 1.0]) * bottom * random.between(0.4, 6.0));
         let (text, _) = force.equation();
-        let oscillator = Oscillator::parse(&text)
-            .expect("an equation")
-            .about(Expr::zero());
+        let oscillator = Oscillator::parse(&text).expect("an equation").about(Expr::zero());
         let length = 10_f64.powi(force.length);
-        let at: BTreeMap<Symbol, f64> = [(
-            Symbol::new("A"),
-            amplitude.times_ten_to(force.length).value(),
-        )]
-        .into();
-        let question = Question {
-            force: &force,
-            origin: 0.0,
-            amplitude: amplitude.value(),
-        };
+        let at: BTreeMap<Symbol, f64> =
+            [(Symbol::new("A"), amplitude.times_ten_to(force.length).value())].into();
+        let question = Question { force: &force, origin: 0.0, amplitude: amplitude.value() };
         let unit = 10_f64.powi(force.rate);
         let of = |method: Method, order: Option<u32>| Options {
             method: Some(method),
@@ -139,11 +121,7 @@ fn motions_over_both_wells_are_those_of_every_definition() {
             match inner {
                 Some(inner) if edge >= question.size() || inner.place == 0.0 => {
                     if (inner.amplitude / (edge * length) - 1.0).abs() > 1e-6 {
-                        say(format!(
-                            "begins at {:e}, not {:e}",
-                            inner.amplitude,
-                            edge * length
-                        ));
+                        say(format!("begins at {:e}, not {:e}", inner.amplitude, edge * length));
                     }
                 }
                 Some(_) => {}
@@ -164,24 +142,15 @@ fn motions_over_both_wells_are_those_of_every_definition() {
             (of(Method::MaxMin, None), shared),
             (of(Method::HarmonicBalance, Some(1)), shared),
             (of(Method::EnergyBalance, None), question.energy_balance()),
-            (
-                of(Method::AmplitudeFrequency, None),
-                question.amplitude_frequency(),
-            ),
-            (
-                of(Method::FrequencyFormula, None),
-                question.frequency_formula(),
-            ),
+            (of(Method::AmplitudeFrequency, None), question.amplitude_frequency()),
+            (of(Method::FrequencyFormula, None), question.frequency_formula()),
         ];
         let order = random.choose(&[1, 2, 3]);
         let hbar = Options {
             hbar: Some(Expr::from(-1)),
             ..of(Method::HomotopyAnalysis, Some(order as u32))
         };
-        list.push((
-            hbar,
-            question.homotopy_analysis(order, degree.unwrap_or(2 * order + 1), -1.0),
-        ));
+        list.push((hbar, question.homotopy_analysis(order, degree.unwrap_or(2 * order + 1), -1.0)));
         for (options, expected) in list {
             let method = options.method.expect("a method").name();
             let found = found_by(&options).map(|found| found.frequency_squared / unit);
@@ -193,9 +162,7 @@ fn motions_over_both_wells_are_those_of_every_definition() {
                 (Some(found), Answer::Value(expected, noise))
                     if (found / expected - 1.0).abs() <= AGREEMENT + noise => {}
                 (Some(found), Answer::Value(expected, noise)) => {
-                    say(format!(
-                        "{method}: {found}, not {expected} (good to {noise:.0e})"
-                    ));
+                    say(format!("{method}: {found}, not {expected} (good to {noise:.0e})"));
                 }
                 (Some(found), Answer::Nothing(why)) if found > 0.0 => {
                     say(format!("{method}: {found}, but {why}"))
@@ -221,10 +188,7 @@ fn motions_over_both_wells_are_those_of_every_definition() {
                 let defect =
                     question.defect_of_homotopy(order, degree, found.frequency_squared / unit);
                 if defect.is_none_or(|defect| defect > 1e-8) {
-                    say(format!(
-                        "{}: the relation is missed by {defect:?}",
-                        method.name()
-                    ));
+                    say(format!("{}: the relation is missed by {defect:?}", method.name()));
                 }
             }
         }
@@ -232,9 +196,8 @@ fn motions_over_both_wells_are_those_of_every_definition() {
             compared += 1;
             let motion = found.motion.expect("a motion");
             let highest = *question.balanced(order).last().expect("a harmonic");
-            let coefficients: Vec<f64> = (0..=highest)
-                .map(|k| motion.cosine(k).mean().0 / length)
-                .collect();
+            let coefficients: Vec<f64> =
+                (0..=highest).map(|k| motion.cosine(k).mean().0 / length).collect();
             let squared = found.frequency_squared / unit;
             let defect = question.defect_of_balance(squared, &coefficients, order);
             if defect.is_some_and(|defect| defect > 1e-7) {
@@ -246,16 +209,11 @@ fn motions_over_both_wells_are_those_of_every_definition() {
                 && degree.is_some()
                 && (squared / truth).sqrt().ln().abs() > 0.1
             {
-                say(format!(
-                    "another branch of the balance: {squared} beside a true {truth}"
-                ));
+                say(format!("another branch of the balance: {squared} beside a true {truth}"));
             }
         }
     }
     println!("{compared} comparisons, {refused} motions in one well, {edges} least amplitudes");
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
-    assert!(
-        refused > 30 && edges > 200 && compared > 3000,
-        "{compared}, {refused}, {edges}"
-    );
+    assert!(refused > 30 && edges > 200 && compared > 3000, "{compared}, {refused}, {edges}");
 }

@@ -18,30 +18,18 @@ impl Question<'_> {
         let wave = Waves::for_degree(degree, order);
         let relation = |part: f64, omega: f64| {
             let force: Vec<f64> = (0..=degree)
-                .map(|k| {
-                    if k < 2 {
-                        0.0
-                    } else {
-                        g[k] / g[1] * part.powi(k as i32 - 1)
-                    }
-                })
+                .map(|k| if k < 2 { 0.0 } else { g[k] / g[1] * part.powi(k as i32 - 1) })
                 .collect();
             omega + homotopy_corrections(&wave, &force, omega, order) - 1.0
         };
         // At first order the relation is linear in omega^2.
-        let root = if order == 1 {
-            Some(1.0 - relation(1.0, 1.0))
-        } else {
-            follow(&relation, &g)
-        };
+        let root = if order == 1 { Some(1.0 - relation(1.0, 1.0)) } else { follow(&relation, &g) };
         // What rounding of the terms, even powers included, moves the root by.
         let rounding = |omega: f64| {
             let sizes: f64 = g[1..].iter().map(|value| (value / g[1]).abs()).sum();
             let (h, terms) = (
                 1e-6 * omega,
-                (1..=order)
-                    .map(|k| (sizes / omega.abs()).powi(k as i32))
-                    .sum::<f64>(),
+                (1..=order).map(|k| (sizes / omega.abs()).powi(k as i32)).sum::<f64>(),
             );
             let slope = (relation(1.0, omega + h) - relation(1.0, omega - h)) / (2.0 * h);
             1e2 * terms / slope.abs()
@@ -59,9 +47,7 @@ impl Question<'_> {
     pub fn defect_of_homotopy(&self, order: usize, degree: usize, squared: f64) -> Option<f64> {
         let g = self.scaled_taylor(degree)?;
         let wave = Waves::for_degree(degree, order);
-        let force: Vec<f64> = (0..=degree)
-            .map(|k| if k < 2 { 0.0 } else { g[k] })
-            .collect();
+        let force: Vec<f64> = (0..=degree).map(|k| if k < 2 { 0.0 } else { g[k] }).collect();
         let relation =
             |omega: f64| omega + homotopy_corrections(&wave, &force, omega, order) - g[1];
         let h = 1e-6 * squared;
@@ -74,10 +60,7 @@ impl Question<'_> {
         let Some(g) = self.scaled_taylor(degree) else {
             return Answer::Unknown;
         };
-        let scale = g
-            .iter()
-            .map(|value| value.abs())
-            .fold(f64::MIN_POSITIVE, f64::max);
+        let scale = g.iter().map(|value| value.abs()).fold(f64::MIN_POSITIVE, f64::max);
         let g: Vec<f64> = g.iter().map(|value| value / scale).collect();
         let wave = Waves::for_degree(degree, order);
         let mut motions: Vec<Vec<f64>> = vec![wave.cosine(1)];
@@ -88,10 +71,8 @@ impl Question<'_> {
             // R_m without the frequency that it fixes.
             let forces = powers_of_series(&motions, m, &g);
             let mut right = forces[m - 1].clone();
-            let accelerations: Vec<Vec<f64>> = motions
-                .iter()
-                .map(|motion| wave.second_derivative(motion))
-                .collect();
+            let accelerations: Vec<Vec<f64>> =
+                motions.iter().map(|motion| wave.second_derivative(motion)).collect();
             let squared = |k: usize| -> f64 {
                 (0..=k)
                     .map(|i| {
@@ -155,28 +136,17 @@ impl Question<'_> {
         let start = wave.cosine(1);
         let relation = |part: f64, omega: f64| {
             let coefficient = |k: usize| {
-                if k < 2 {
-                    g[k] / g[1]
-                } else {
-                    g[k] / g[1] * part.powi(k as i32 - 1)
-                }
+                if k < 2 { g[k] / g[1] } else { g[k] / g[1] * part.powi(k as i32 - 1) }
             };
             let force = |x: &[f64]| -> Vec<f64> {
                 x.iter()
-                    .map(|&x| {
-                        (1..=degree)
-                            .rev()
-                            .fold(0.0, |sum, k| (sum + coefficient(k)) * x)
-                    })
+                    .map(|&x| (1..=degree).rev().fold(0.0, |sum, k| (sum + coefficient(k)) * x))
                     .collect()
             };
             let first = force(&start);
             // x_1 = cos + sum_(k != 1) c_k (cos k - cos)/((k^2 - 1) omega^2)
             let mut motion = wave.inverse(&first, 1.0 / omega);
-            motion
-                .iter_mut()
-                .zip(&start)
-                .for_each(|(value, cosine)| *value = cosine - *value);
+            motion.iter_mut().zip(&start).for_each(|(value, cosine)| *value = cosine - *value);
             let second = force(&motion);
             omega * wave.coefficient(&motion, 1) - wave.coefficient(&second, 1)
         };
@@ -203,11 +173,7 @@ impl Waves {
         let highest = 1 + order * degree.saturating_sub(1).max(1);
         let points = highest + degree + 4;
         let cosine = |j: usize| (PI * j as f64 / (2 * points) as f64).cos();
-        Self {
-            points,
-            highest,
-            cosines: (0..4 * points).map(cosine).collect(),
-        }
+        Self { points, highest, cosines: (0..4 * points).map(cosine).collect() }
     }
 
     fn at(&self, k: usize, i: usize) -> f64 {
@@ -219,16 +185,8 @@ impl Waves {
     }
 
     fn coefficient(&self, values: &[f64], k: usize) -> f64 {
-        let sum: f64 = values
-            .iter()
-            .enumerate()
-            .map(|(i, value)| self.at(k, i) * value)
-            .sum();
-        if k == 0 {
-            sum / self.points as f64
-        } else {
-            2.0 * sum / self.points as f64
-        }
+        let sum: f64 = values.iter().enumerate().map(|(i, value)| self.at(k, i) * value).sum();
+        if k == 0 { sum / self.points as f64 } else { 2.0 * sum / self.points as f64 }
     }
 
     fn add(&self, values: &mut [f64], factor: f64, k: usize) {
@@ -240,11 +198,7 @@ impl Waves {
     fn second_derivative(&self, values: &[f64]) -> Vec<f64> {
         let mut result = vec![0.0; self.points];
         for k in 1..=self.highest {
-            self.add(
-                &mut result,
-                -((k * k) as f64) * self.coefficient(values, k),
-                k,
-            );
+            self.add(&mut result, -((k * k) as f64) * self.coefficient(values, k), k);
         }
         result
     }
@@ -268,9 +222,8 @@ fn powers_of_series(motions: &[Vec<f64>], count: usize, g: &[f64]) -> Vec<Vec<f6
     let points = motions[0].len();
     let mut result = vec![vec![0.0; points]; count];
     for i in 0..points {
-        let series: Vec<f64> = (0..count)
-            .map(|j| motions.get(j).map_or(0.0, |motion| motion[i]))
-            .collect();
+        let series: Vec<f64> =
+            (0..count).map(|j| motions.get(j).map_or(0.0, |motion| motion[i])).collect();
         let mut power = series.clone();
         for (k, factor) in g.iter().enumerate().skip(1) {
             if k > 1 {
@@ -332,11 +285,7 @@ fn follow(relation: &dyn Fn(f64, f64) -> f64, g: &[f64]) -> Option<f64> {
     let (mut before, mut step) = ((part, current), 0.1_f64);
     while part < 1.0 {
         let next = f64::min(part * step.exp(), 1.0);
-        let along = if before.0 < part {
-            (next / part).ln() / (part / before.0).ln()
-        } else {
-            0.0
-        };
+        let along = if before.0 < part { (next / part).ln() / (part / before.0).ln() } else { 0.0 };
         let start = current * (current / before.1).powf(along);
         match newton(next, start).filter(|found| (found / start).ln().abs() < 0.01) {
             Some(found) => {

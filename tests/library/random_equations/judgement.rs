@@ -42,35 +42,21 @@ pub fn judgement(
     let Some(true_frequency) = table.true_frequency else {
         return vec![report(
             "judge",
-            table
-                .reason
-                .map(|reason| format!("no true motion: {reason}")),
+            table.reason.map(|reason| format!("no true motion: {reason}")),
         )];
     };
     let found = (true_frequency / units.1).powi(2);
     let wrong = (found / squared - 1.0).abs() > 1e-8 + noise;
     let complaint =
         wrong.then(|| format!("true omega^2 = {found}, not {squared} (good to {noise:.0e})"));
-    let mut list = vec![
-        report("judge", complaint),
-        report("verdicts", verdicts(&table)),
-    ];
+    let mut list = vec![report("judge", complaint), report("verdicts", verdicts(&table))];
     if wrong {
         return list;
     }
     if let Some(motion) = motion(question, squared.sqrt()) {
-        list.push(report(
-            "deviation",
-            deviations(question, &table, &motion, units),
-        ));
+        list.push(report("deviation", deviations(question, &table, &motion, units)));
     }
-    list.push(report(
-        "range",
-        table
-            .rows
-            .iter()
-            .find_map(|row| range(question, row, units.0)),
-    ));
+    list.push(report("range", table.rows.iter().find_map(|row| range(question, row, units.0))));
     list
 }
 
@@ -84,14 +70,11 @@ fn verdicts(table: &Table) -> Option<String> {
         let pass = error.is_some_and(|error| error.abs() <= TOLERANCE);
         row.relative_error != error || (row.verdict == Some(Verdict::Pass)) != pass
     };
-    table.rows.iter().find(wrong).map(|row| {
-        format!(
-            "{}: {:?} {:?}",
-            row.solution.title(),
-            row.relative_error,
-            row.verdict
-        )
-    })
+    table
+        .rows
+        .iter()
+        .find(wrong)
+        .map(|row| format!("{}: {:?} {:?}", row.solution.title(), row.relative_error, row.verdict))
 }
 
 /// The true motion over a period at equal steps of time, by the classical Runge-Kutta rule; `None`
@@ -132,23 +115,16 @@ fn deviations(
                 | Method::FrequencyFormula
         )
     });
-    one_term
-        .filter_map(|row| Some((row, row.frequency? / units.1, row.max_deviation?)))
-        .find_map(|(row, frequency, found)| {
+    one_term.filter_map(|row| Some((row, row.frequency? / units.1, row.max_deviation?))).find_map(
+        |(row, frequency, found)| {
             let at = |k: usize| TAU / truth * k as f64 / (path.len() - 1) as f64;
             let formula = |k: usize| question.amplitude * (frequency * at(k)).cos();
-            let largest = (0..path.len())
-                .map(|k| (path[k] - formula(k)).abs())
-                .fold(0.0, f64::max);
+            let largest = (0..path.len()).map(|k| (path[k] - formula(k)).abs()).fold(0.0, f64::max);
             let expected = largest / question.amplitude.abs();
             let wrong = (found - expected).abs() > 1e-3 * expected + 1e-7;
-            wrong.then(|| {
-                format!(
-                    "{}: deviation {found}, not {expected}",
-                    row.solution.title()
-                )
-            })
-        })
+            wrong.then(|| format!("{}: deviation {found}, not {expected}", row.solution.title()))
+        },
+    )
 }
 
 /// A range that skips a failure, or ends before one.
@@ -167,10 +143,7 @@ fn range(question: &Question, row: &Row, unit: f64) -> Option<String> {
         _ => Answer::Unknown,
     };
     let good = |size: f64| {
-        let there = Question {
-            amplitude: size.copysign(question.amplitude),
-            ..*question
-        };
+        let there = Question { amplitude: size.copysign(question.amplitude), ..*question };
         match (there.truth(), definition(&there)) {
             (Answer::Value(truth, _), Answer::Value(found, noise)) if noise < 1e-6 => {
                 Some((found / truth).max(0.0).sqrt() - 1.0)

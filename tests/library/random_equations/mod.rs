@@ -61,10 +61,7 @@ const FOUND: [u64; 63] = [
 ];
 
 fn setting(name: &str, default: u64) -> u64 {
-    std::env::var(name)
-        .ok()
-        .and_then(|text| text.parse().ok())
-        .unwrap_or(default)
+    std::env::var(name).ok().and_then(|text| text.parse().ok()).unwrap_or(default)
 }
 
 /// What was compared, and what is wrong with it.
@@ -94,19 +91,13 @@ fn equilibrium(case: &Case) -> Option<f64> {
 
 /// The methods with their options, and their definitions at a question.
 fn variants(case: &Case, question: &Question, random: &mut Random) -> Vec<(Options, Answer, bool)> {
-    let of = |method, order| Options {
-        method: Some(method),
-        order,
-        ..Options::default()
-    };
+    let of = |method, order| Options { method: Some(method), order, ..Options::default() };
     let force = &case.force;
     let odd = question.is_odd();
     let analytic = force.taylor(question.origin, 1).is_some();
     let linear = analytic && force.slope(question.origin) > 0.0;
-    let bounded = !force
-        .terms
-        .iter()
-        .any(|term| matches!(term.shape, Shape::SignedPower(p, q) if p < q));
+    let bounded =
+        !force.terms.iter().any(|term| matches!(term.shape, Shape::SignedPower(p, q) if p < q));
     let shared = question.shared_integral();
     let mut list = vec![
         (of(Method::Hamiltonian, None), shared, true),
@@ -114,81 +105,40 @@ fn variants(case: &Case, question: &Question, random: &mut Random) -> Vec<(Optio
         (of(Method::IterationPerturbation, None), shared, true),
         (of(Method::ParameterExpansion, Some(1)), shared, true),
         (of(Method::MaxMin, None), shared, odd && bounded),
-        (
-            of(Method::EnergyBalance, None),
-            question.energy_balance(),
-            odd,
-        ),
-        (
-            of(Method::AmplitudeFrequency, None),
-            question.amplitude_frequency(),
-            odd,
-        ),
-        (
-            of(Method::FrequencyFormula, None),
-            question.frequency_formula(),
-            odd,
-        ),
+        (of(Method::EnergyBalance, None), question.energy_balance(), odd),
+        (of(Method::AmplitudeFrequency, None), question.amplitude_frequency(), odd),
+        (of(Method::FrequencyFormula, None), question.frequency_formula(), odd),
         (of(Method::Exact, None), question.truth(), true),
     ];
     // In a parameter, the power of the amplitude follows from that of the parameter.
     let in_amplitude = force.terms.iter().all(|term| term.name.is_none());
-    let rate = match force
-        .terms
-        .iter()
-        .find(|term| term.name.is_some())
-        .map(|term| term.shape)
-    {
+    let rate = match force.terms.iter().find(|term| term.name.is_some()).map(|term| term.shape) {
         None => 1,
         Some(Shape::Power(n)) => n as usize - 1,
         Some(_) => return list,
     };
     let order = random.choose(&[1, 2, 3, 4, 6]);
-    let series = if linear {
-        question.lindstedt_poincare(order * rate)
-    } else {
-        Answer::Unknown
-    };
-    list.push((
-        of(Method::LindstedtPoincare, Some(order as u32)),
-        series,
-        linear,
-    ));
+    let series = if linear { question.lindstedt_poincare(order * rate) } else { Answer::Unknown };
+    list.push((of(Method::LindstedtPoincare, Some(order as u32)), series, linear));
     let (above, below) = random.choose(&[(1, 1), (2, 1), (2, 2), (3, 2)]);
     let pade = Options {
         degrees: Some(Degrees::Quotient(above as u32, below as u32)),
         ..of(Method::Pade, None)
     };
     let step = if in_amplitude { None } else { Some(rate) };
-    let quotient = if linear {
-        question.pade(above, below, step)
-    } else {
-        Answer::Unknown
-    };
+    let quotient = if linear { question.pade(above, below, step) } else { Answer::Unknown };
     list.push((pade, quotient, false));
     let order = random.choose(&[1, 2, 3]);
     let degree = force.degree().unwrap_or(2 * order + 1);
-    let homotopy = if linear {
-        question.homotopy_perturbation(order, degree)
-    } else {
-        Answer::Unknown
-    };
-    list.push((
-        of(Method::HomotopyPerturbation, Some(order as u32)),
-        homotopy,
-        linear,
-    ));
+    let homotopy =
+        if linear { question.homotopy_perturbation(order, degree) } else { Answer::Unknown };
+    list.push((of(Method::HomotopyPerturbation, Some(order as u32)), homotopy, linear));
     let order = random.choose(&[1, 2, 3]);
     let degree = force.degree().unwrap_or(2 * order + 1);
-    let hbar = Options {
-        hbar: Some(Expr::from(-1)),
-        ..of(Method::HomotopyAnalysis, Some(order as u32))
-    };
-    let analysis = if linear {
-        question.homotopy_analysis(order, degree, -1.0)
-    } else {
-        Answer::Unknown
-    };
+    let hbar =
+        Options { hbar: Some(Expr::from(-1)), ..of(Method::HomotopyAnalysis, Some(order as u32)) };
+    let analysis =
+        if linear { question.homotopy_analysis(order, degree, -1.0) } else { Answer::Unknown };
     list.push((hbar, analysis, linear));
     if let Some(degree) = force.degree().filter(|_| linear && in_amplitude) {
         list.push((
@@ -215,14 +165,8 @@ fn run(seed: u64) -> (Case, String, Vec<Comparison>) {
     let (text, values) = case.force.equation();
     let amplitude = case.amplitude.times_ten_to(case.force.length);
     let described = {
-        let given = values
-            .iter()
-            .map(|(name, value)| format!(" --at {name}={}", value.text()));
-        format!(
-            "\"{text}\" --at A={}{}",
-            amplitude.text(),
-            given.collect::<String>()
-        )
+        let given = values.iter().map(|(name, value)| format!(" --at {name}={}", value.text()));
+        format!("\"{text}\" --at A={}{}", amplitude.text(), given.collect::<String>())
     };
     let mut comparisons = Vec::new();
     let oscillator = match Oscillator::parse(&text) {
@@ -235,16 +179,11 @@ fn run(seed: u64) -> (Case, String, Vec<Comparison>) {
             return (case, described, comparisons);
         }
     };
-    let mut numbers: BTreeMap<Symbol, f64> = values
-        .iter()
-        .map(|(name, value)| (Symbol::new(name), value.value()))
-        .collect();
+    let mut numbers: BTreeMap<Symbol, f64> =
+        values.iter().map(|(name, value)| (Symbol::new(name), value.value())).collect();
     numbers.insert(Symbol::new("A"), amplitude.value());
     let Some(origin) = equilibrium(&case) else {
-        let options = Options {
-            method: Some(Method::Hamiltonian),
-            ..Options::default()
-        };
+        let options = Options { method: Some(Method::Hamiltonian), ..Options::default() };
         let complaint = solve(&oscillator, &options).ok().map(|found| {
             format!(
                 "x = 0 is no stable equilibrium, but the answer is {} about {}",
@@ -252,35 +191,21 @@ fn run(seed: u64) -> (Case, String, Vec<Comparison>) {
                 found.equilibrium
             )
         });
-        comparisons.push(Comparison {
-            method: "equilibrium",
-            complaint,
-        });
+        comparisons.push(Comparison { method: "equilibrium", complaint });
         return (case, described, comparisons);
     };
-    let question = Question {
-        force: &case.force,
-        origin,
-        amplitude: case.amplitude.value(),
-    };
+    let question = Question { force: &case.force, origin, amplitude: case.amplitude.value() };
     let unit = 10_f64.powi(case.force.rate);
     for (options, expected, applies) in variants(&case, &question, &mut random) {
         let method = options.method.expect("a method");
         let named = |complaint: String| {
-            let order = options
-                .order
-                .map_or(String::new(), |order| format!(" --order {order}"));
-            let degrees = options.degrees.map_or(String::new(), |degrees| {
-                format!(" --order {}", degrees.separated())
-            });
-            let hbar = options
-                .hbar
-                .as_ref()
-                .map_or(String::new(), |hbar| format!(" --hbar {hbar}"));
-            format!(
-                "--method {}{order}{degrees}{hbar}: {complaint}",
-                method.name()
-            )
+            let order = options.order.map_or(String::new(), |order| format!(" --order {order}"));
+            let degrees = options
+                .degrees
+                .map_or(String::new(), |degrees| format!(" --order {}", degrees.separated()));
+            let hbar =
+                options.hbar.as_ref().map_or(String::new(), |hbar| format!(" --hbar {hbar}"));
+            format!("--method {}{order}{degrees}{hbar}: {complaint}", method.name())
         };
         let complaint = match solve(&oscillator, &options) {
             Err(Refusal::TooLong { .. }) => None,
@@ -312,9 +237,8 @@ fn run(seed: u64) -> (Case, String, Vec<Comparison>) {
                     let (motion, squared) = (motion?, squared?);
                     let order = solution.order as usize;
                     let highest = *question.balanced(order).last()?;
-                    let mut coefficients: Vec<f64> = (0..=highest)
-                        .map(|k| motion.cosine(k).mean().0 / length)
-                        .collect();
+                    let mut coefficients: Vec<f64> =
+                        (0..=highest).map(|k| motion.cosine(k).mean().0 / length).collect();
                     coefficients[0] -= question.origin;
                     let defect = question.defect_of_balance(squared, &coefficients, order)?;
                     let rounding = 1e-13 * (1.0 + question.origin.abs() / question.size());
@@ -324,10 +248,7 @@ fn run(seed: u64) -> (Case, String, Vec<Comparison>) {
                 })
             }
         };
-        comparisons.push(Comparison {
-            method: method.name(),
-            complaint: complaint.map(named),
-        });
+        comparisons.push(Comparison { method: method.name(), complaint: complaint.map(named) });
     }
     // The whole table takes longer than the rest: by hand, and now and then.
     if families::asked_for().is_some() && random.percent(15.0) {
@@ -386,10 +307,7 @@ fn every_method_gives_what_its_definition_gives() {
         }
     }
     let total: usize = counts.values().map(|(done, _)| done).sum();
-    println!(
-        "{count} equations, {total} comparisons, {} complaints",
-        complaints.len()
-    );
+    println!("{count} equations, {total} comparisons, {} complaints", complaints.len());
     for ((family, method), (done, wrong)) in &counts {
         println!("{family:>24} {method:>24} {done:>6} {wrong:>6}");
     }
@@ -407,10 +325,6 @@ fn motions_with_velocities_are_judged_rightly() {
             Some(format!("seed {seed}: {described}: {}", complaint?))
         })
         .collect();
-    println!(
-        "{} motions with velocities, {} complaints",
-        2 * count,
-        complaints.len()
-    );
+    println!("{} motions with velocities, {} complaints", 2 * count, complaints.len());
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }

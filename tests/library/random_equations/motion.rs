@@ -33,23 +33,12 @@ impl Question<'_> {
             let near = 2.0 * (0.25 * PI - 0.5 * phi).sin().powi(2);
             let far = 2.0 * (0.25 * PI + 0.5 * phi).sin().powi(2);
             // From the nearer end: beside a steep wall the distance from it counts.
-            let y = if phi >= 0.0 {
-                right - radius * near
-            } else {
-                left + radius * far
-            };
-            let rise = if phi >= 0.0 {
-                work.beyond(y)
-            } else {
-                -work.up_to(y)
-            };
+            let y = if phi >= 0.0 { right - radius * near } else { left + radius * far };
+            let rise = if phi >= 0.0 { work.beyond(y) } else { -work.up_to(y) };
             (near * far * radius * radius / (2.0 * rise)).sqrt()
         };
         let mut angles: Vec<f64> = vec![-FRAC_PI_2, -0.8, 0.0, 0.8, FRAC_PI_2];
-        let sines = self
-            .stops(left, right)
-            .into_iter()
-            .map(|place| (place - middle) / radius);
+        let sines = self.stops(left, right).into_iter().map(|place| (place - middle) / radius);
         angles.extend(sines.filter(|sine| sine.abs() < 1.0).map(f64::asin));
         angles.sort_by(f64::total_cmp);
         match integrate(&time, &angles, 1e-12) {
@@ -72,12 +61,7 @@ impl Question<'_> {
     /// The ends of an interval and the places between them where the force turns fast.
     fn stops(&self, left: f64, right: f64) -> Vec<f64> {
         let mut stops = vec![left, right];
-        let places = self
-            .force
-            .places()
-            .into_iter()
-            .map(|place| place - self.origin)
-            .chain([0.0]);
+        let places = self.force.places().into_iter().map(|place| place - self.origin).chain([0.0]);
         stops.extend(places.filter(|place| *place > left && *place < right));
         stops.sort_by(f64::total_cmp);
         stops
@@ -111,27 +95,15 @@ impl Question<'_> {
             let work = Integrals::new(&force, &self.stops(0.0, size), self.precision())
                 .ok_or(Unsettled)?;
             let mut places: Vec<f64> = (0..1000).map(|k| size * f64::from(k) / 1000.0).collect();
-            places.extend(
-                self.stops(0.0, size)
-                    .into_iter()
-                    .filter(|place| *place < size),
-            );
-            return Ok(places
-                .iter()
-                .all(|y| work.beyond(*y) > 0.0)
-                .then_some(-start));
+            places.extend(self.stops(0.0, size).into_iter().filter(|place| *place < size));
+            return Ok(places.iter().all(|y| work.beyond(*y) > 0.0).then_some(-start));
         }
         let work = |from: f64, to: f64| -> f64 {
             let stops = self.stops(from.min(to), from.max(to));
             integrate(&force, &stops, self.precision().max(1e-15))
                 .map_or(f64::NAN, |value| value * (to - from).signum())
         };
-        let places = self
-            .force
-            .places()
-            .into_iter()
-            .map(|place| place - self.origin)
-            .chain([0.0]);
+        let places = self.force.places().into_iter().map(|place| place - self.origin).chain([0.0]);
         // In steps that grow with the distance travelled, no larger than the features.
         let end = if side > 0.0 { low } else { high } - self.origin;
         let (mut y, mut left) = (start, 0.0);
@@ -141,9 +113,8 @@ impl Question<'_> {
         for _ in 0..6000 {
             let step = (0.01 * start.abs()).max(0.01 * travelled);
             let mut next = y - side * step;
-            if let Some(stop) = stops
-                .iter()
-                .find(|stop| side * **stop < side * y - 1e-12 * start.abs())
+            if let Some(stop) =
+                stops.iter().find(|stop| side * **stop < side * y - 1e-12 * start.abs())
                 && side * next < side * stop
             {
                 next = *stop;

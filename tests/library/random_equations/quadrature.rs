@@ -79,12 +79,7 @@ fn panels(f: &dyn Fn(f64) -> f64, places: &[f64], tolerance: f64) -> Option<Vec<
 /// where `f` may turn fast; `None` where it does not settle to `tolerance` of the integral of
 /// `|f|`.
 pub fn integrate(f: &dyn Fn(f64) -> f64, places: &[f64], tolerance: f64) -> Option<f64> {
-    Some(
-        panels(f, places, tolerance)?
-            .iter()
-            .map(|panel| panel.2)
-            .sum(),
-    )
+    Some(panels(f, places, tolerance)?.iter().map(|panel| panel.2).sum())
 }
 
 /// The integrals of one function from any place to either end of an interval.
@@ -111,18 +106,11 @@ impl<'a> Integrals<'a> {
         let before = sums(&mut panels.iter().map(|panel| panel.2));
         let mut after = sums(&mut panels.iter().rev().map(|panel| panel.2));
         after.reverse();
-        Some(Self {
-            f,
-            panels,
-            before,
-            after,
-        })
+        Some(Self { f, panels, before, after })
     }
 
     fn holding(&self, x: f64) -> usize {
-        self.panels
-            .partition_point(|panel| panel.1 < x)
-            .min(self.panels.len() - 1)
+        self.panels.partition_point(|panel| panel.1 < x).min(self.panels.len() - 1)
     }
 
     /// The integral from the left end to `x`.
@@ -161,9 +149,7 @@ pub fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     let count = rows.len();
     for column in 0..count {
         let size = |row: &Vec<f64>| {
-            row.iter()
-                .take(count)
-                .fold(0.0, |most: f64, value| most.max(value.abs()))
+            row.iter().take(count).fold(0.0, |most: f64, value| most.max(value.abs()))
         };
         let pivot = (column..count).max_by(|&a, &b| {
             let share = |i: usize| rows[i][column].abs() / size(&rows[i]).max(f64::MIN_POSITIVE);

@@ -22,14 +22,8 @@ fn cycle(
 ) -> Option<(f64, f64)> {
     let rule = |x: f64, v: f64, h: f64| {
         let (x1, v1) = (v, acceleration(x, v));
-        let (x2, v2) = (
-            v + 0.5 * h * v1,
-            acceleration(x + 0.5 * h * x1, v + 0.5 * h * v1),
-        );
-        let (x3, v3) = (
-            v + 0.5 * h * v2,
-            acceleration(x + 0.5 * h * x2, v + 0.5 * h * v2),
-        );
+        let (x2, v2) = (v + 0.5 * h * v1, acceleration(x + 0.5 * h * x1, v + 0.5 * h * v1));
+        let (x3, v3) = (v + 0.5 * h * v2, acceleration(x + 0.5 * h * x2, v + 0.5 * h * v2));
         let (x4, v4) = (v + h * v3, acceleration(x + h * x3, v + h * v3));
         (
             x + h / 6.0 * (x1 + 2.0 * x2 + 2.0 * x3 + x4),
@@ -65,11 +59,7 @@ pub fn limit_cycle(random: &mut Random) -> (String, Option<String>) {
     let c = number(random.between(0.1, 2.0));
     let quartic = random.percent(30.0);
     let mu = number(random.between(0.02, 1.5));
-    let fourth = if quartic {
-        format!(" - {}*x^4", c.text())
-    } else {
-        String::new()
-    };
+    let fourth = if quartic { format!(" - {}*x^4", c.text()) } else { String::new() };
     let text = format!("x'' - mu*(1 - {}*x^2{fourth})*x' + x = 0", b.text());
     let described = format!("\"{text}\" --at mu={}", mu.text());
     let oscillator = match Oscillator::parse(&text) {
@@ -84,10 +74,7 @@ pub fn limit_cycle(random: &mut Random) -> (String, Option<String>) {
         integrate(&power, &[0.0, FRAC_PI_2, PI], 1e-13).unwrap_or(f64::NAN)
     };
     let first = bisect(&mean, 1e-3, 20.0);
-    let options = Options {
-        order: Some(2),
-        ..Options::default()
-    };
+    let options = Options { order: Some(2), ..Options::default() };
     let solution = match solve(&oscillator, &options) {
         Ok(solution) => solution,
         Err(refusal) => return (described, Some(format!("refused: {refusal}"))),
@@ -102,9 +89,7 @@ pub fn limit_cycle(random: &mut Random) -> (String, Option<String>) {
         found => {
             return (
                 described,
-                Some(format!(
-                    "amplitude {found:?}, but the energy is balanced at {first}"
-                )),
+                Some(format!("amplitude {found:?}, but the energy is balanced at {first}")),
             );
         }
     }
@@ -115,9 +100,7 @@ pub fn limit_cycle(random: &mut Random) -> (String, Option<String>) {
         return (described, None);
     };
     let mut values = Values::default();
-    values
-        .insert("mu".into(), mu.text().parse().expect("a number"))
-        .expect("one value");
+    values.insert("mu".into(), mu.text().parse().expect("a number")).expect("one value");
     let complaint = match judge(&oscillator, &solution, &values, 0.01) {
         Err(error) => Some(format!("the cycle is not found: {error}")),
         Ok(judged) => {
@@ -132,24 +115,14 @@ pub fn limit_cycle(random: &mut Random) -> (String, Option<String>) {
 /// `(1 + c x^2) x'' + c x x'^2 + k x + b x^3 = 0`, whose energy is
 /// `(1 + c x^2) x'^2/2 + k x^2/2 + b x^4/4`.
 pub fn inertia(random: &mut Random) -> (String, Option<String>) {
-    let (c, k) = (
-        number(random.between(0.1, 3.0)),
-        number(random.between(0.2, 5.0)),
-    );
+    let (c, k) = (number(random.between(0.1, 3.0)), number(random.between(0.2, 5.0)));
     let b = number(random.between(0.1, 3.0));
     let cubic = random.percent(50.0);
     let b_value = if cubic { b.value() } else { 0.0 };
     let amplitude = number(random.between(0.05, 1.5));
-    let third = if cubic {
-        format!(" + {}*x^3", b.text())
-    } else {
-        String::new()
-    };
-    let text = format!(
-        "(1 + {c}*x^2)*x'' + {c}*x*x'^2 + {k}*x{third} = 0",
-        c = c.text(),
-        k = k.text()
-    );
+    let third = if cubic { format!(" + {}*x^3", b.text()) } else { String::new() };
+    let text =
+        format!("(1 + {c}*x^2)*x'' + {c}*x*x'^2 + {k}*x{third} = 0", c = c.text(), k = k.text());
     let described = format!("\"{text}\" --at A={}", amplitude.text());
     let true_frequency = |a: f64| {
         // x = a sin(phi): V(a) - V(x) = a^2 cos^2 (k + b a^2 (1 + sin^2)/2)/2
@@ -161,40 +134,27 @@ pub fn inertia(random: &mut Random) -> (String, Option<String>) {
     };
     let found = || -> Result<(f64, f64), String> {
         let oscillator = Oscillator::parse(&text).map_err(|error| error.to_string())?;
-        let options = Options {
-            order: Some(4),
-            ..Options::default()
-        };
+        let options = Options { order: Some(4), ..Options::default() };
         let solution = solve(&oscillator, &options).map_err(|error| error.to_string())?;
         let mut values = Values::default();
-        values
-            .insert("A".into(), amplitude.text().parse().expect("a number"))
-            .expect("one value");
+        values.insert("A".into(), amplitude.text().parse().expect("a number")).expect("one value");
         // A law that is negative at this amplitude has no motion to judge: the true one beside the
         // exact law is the same.
         let at_amplitude =
             |symbol: Symbol| (symbol == Symbol::new("A")).then_some(amplitude.value());
-        let squared = solution
-            .frequency_squared_at(&at_amplitude)
-            .ok_or("no law")?;
+        let squared = solution.frequency_squared_at(&at_amplitude).ok_or("no law")?;
         let judged = |solution: &Solution| {
             motions(&oscillator, solution, &values).map_err(|error| error.to_string())
         };
         let motions = match (judged(&solution)?, squared > 0.0) {
             (Some(motions), true) => motions,
             (None, false) => {
-                let options = Options {
-                    method: Some(Method::Exact),
-                    ..Options::default()
-                };
+                let options = Options { method: Some(Method::Exact), ..Options::default() };
                 let exact = solve(&oscillator, &options).map_err(|error| error.to_string())?;
                 judged(&exact)?.ok_or("the exact omega is not real")?
             }
             (motions, _) => {
-                return Err(format!(
-                    "motion: {}, omega^2 = {squared}",
-                    motions.is_some()
-                ));
+                return Err(format!("motion: {}, omega^2 = {squared}", motions.is_some()));
             }
         };
         let period = motions.truth.last().ok_or("no motion")?.0;

@@ -34,14 +34,8 @@ const EACH: u64 = 12;
 fn ends(text: &str, equilibrium: &str, amplitude: f64) -> Option<[Option<End>; 2]> {
     let [force, equilibrium]: [Expr; 2] =
         [text, equilibrium].map(|text| text.parse().expect("an expression"));
-    let force = Force::new(
-        &force,
-        "x".into(),
-        &equilibrium,
-        &BTreeMap::new(),
-        amplitude,
-    )
-    .expect("a force");
+    let force =
+        Force::new(&force, "x".into(), &equilibrium, &BTreeMap::new(), amplitude).expect("a force");
     let well = Well::new(&force, amplitude)?;
     Some([well.low, well.high])
 }
@@ -75,10 +69,7 @@ fn hold(text: &str, equilibrium: &str, expected: [f64; 2], random: &mut Random) 
 fn separatrices_are_where_the_equation_was_made_to_have_them() {
     for seed in 0..EACH {
         let random = &mut Random::new(seed);
-        let (unit, k) = (
-            10.0_f64.powi(random.whole(-12, 12) as i32),
-            random.between(1e-16, 1e16),
-        );
+        let (unit, k) = (10.0_f64.powi(random.whole(-12, 12) as i32), random.between(1e-16, 1e16));
         let [a, b] = [0, 1].map(|_| unit * random.between(0.3, 3.0));
         let c = random.choose(&[0.0, 1.0]) * random.between(0.1, 10.0) / (unit * unit);
         let text = format!("{k:e}*x*(1 + x/{a:e})*(1 - x/{b:e})*(1 + {c:e}*x^2)");
@@ -115,39 +106,28 @@ fn separatrices_are_where_the_equation_was_made_to_have_them() {
         let pole = side * unit * random.between(0.3, 3.0);
         let found =
             ends(&format!("{k:e}*x/(1 - x/({pole:e}))^2"), "0", 0.4 * pole).expect("an end");
-        let [low, high] = if side > 0.0 {
-            found
-        } else {
-            [found[1], found[0]]
-        };
+        let [low, high] = if side > 0.0 { found } else { [found[1], found[0]] };
         let end = high.expect("an end");
         assert!(low.is_none() && !end.rim.separatrix, "{pole:e}: {low:?}");
-        assert!(
-            (end.amplitude / pole - 1.0).abs() < 1e-6,
-            "{end:?}, not {pole:e}"
-        );
+        assert!((end.amplitude / pole - 1.0).abs() < 1e-6, "{end:?}, not {pole:e}");
     }
 }
 
 /// The radius and, where it is said, the angle of the nearest singularity in `A` or `A^2`.
 fn stated(equation: &str, amplitude: f64) -> Option<(f64, f64)> {
     let oscillator = Oscillator::parse(equation).expect(equation);
-    let options = Options {
-        method: Some(Method::LindstedtPoincare),
-        order: Some(2),
-        ..Options::default()
-    };
+    let options =
+        Options { method: Some(Method::LindstedtPoincare), order: Some(2), ..Options::default() };
     let solution = solve(&oscillator, &options).expect(equation);
     let mut at = Values::default();
     let value = format!("{amplitude:e}").parse().expect("a number");
     at.insert(Symbol::new("A"), value).expect("a value");
     let verification = judge(&oscillator, &solution, &at, 0.01)
         .unwrap_or_else(|error| panic!("{equation}: {error}"));
-    let text = verification.ranges.iter().find_map(|range| {
-        range
-            .text
-            .strip_prefix("the series converges for |A| < about ")
-    })?;
+    let text = verification
+        .ranges
+        .iter()
+        .find_map(|range| range.text.strip_prefix("the series converges for |A| < about "))?;
     let radius = text.split(':').next()?.parse().ok()?;
     let place = text.rsplit(" = ").next()?;
     let angle = match place.split_once(" e^(+-") {
@@ -163,10 +143,7 @@ fn radii_of_convergence_are_where_the_equation_was_made_to_have_them() {
     let mut said = [0; 5];
     for seed in 0..EACH {
         let random = &mut Random::new(1000 + seed);
-        let (unit, k) = (
-            10.0_f64.powi(random.whole(-12, 12) as i32),
-            random.between(1e-16, 1e16),
-        );
+        let (unit, k) = (10.0_f64.powi(random.whole(-12, 12) as i32), random.between(1e-16, 1e16));
         let sign = random.choose(&[-1.0, 1.0]);
         let size = random.between(0.1, 10.0);
         let (c, n) = (sign * k * size, random.whole(1, 3) as i32);
@@ -178,30 +155,14 @@ fn radii_of_convergence_are_where_the_equation_was_made_to_have_them() {
         let wave = random.between(0.1, 10.0) / unit;
         let power = |n: i32| unit.powi(-n);
         let cases = [
+            (format!("{k:e}*x + {:e}*x^3", c * power(2)), unit / size.sqrt(), Some(of_sign)),
+            (format!("{k:e}*x + {:e}*x^{}", c * power(2 * n), 2 * n + 1), zero, None),
             (
-                format!("{k:e}*x + {:e}*x^3", c * power(2)),
-                unit / size.sqrt(),
-                Some(of_sign),
-            ),
-            (
-                format!("{k:e}*x + {:e}*x^{}", c * power(2 * n), 2 * n + 1),
-                zero,
-                None,
-            ),
-            (
-                format!(
-                    "{k:e}*x + {:e}*x^3 + {:e}*x^5",
-                    k * pair * power(2),
-                    k * d * power(4)
-                ),
+                format!("{k:e}*x + {:e}*x^3 + {:e}*x^5", k * pair * power(2), k * d * power(4)),
                 unit * d.powf(-0.25),
                 Some(turn),
             ),
-            (
-                format!("{k:e}*x + {:e}*x^2", c * power(1)),
-                unit / (2.0 * size),
-                None,
-            ),
+            (format!("{k:e}*x + {:e}*x^2", c * power(1)), unit / (2.0 * size), None),
             (format!("{k:e}*sin({wave:e}*x)"), PI / wave, Some(0.0)),
         ];
         for (number, (force, radius, angle)) in cases.into_iter().enumerate() {
@@ -217,19 +178,12 @@ fn radii_of_convergence_are_where_the_equation_was_made_to_have_them() {
                 found.0
             );
             if let Some(angle) = angle {
-                assert!(
-                    (found.1 - angle).abs() < 0.05,
-                    "{equation}: {}, not {angle}",
-                    found.1
-                );
+                assert!((found.1 - angle).abs() < 0.05, "{equation}: {}, not {angle}", found.1);
             }
         }
     }
     // Where nothing can be told nothing is said, but not everywhere.
-    assert!(
-        said[0] == EACH && said[3] == EACH && said[4] == EACH,
-        "{said:?}"
-    );
+    assert!(said[0] == EACH && said[3] == EACH && said[4] == EACH, "{said:?}");
     assert!(said[1] >= EACH / 4 && said[2] >= EACH / 4, "{said:?}");
 }
 
@@ -259,9 +213,8 @@ fn known_singularities_are_read_off_their_series() {
         let far = radius.recip() / 3.0;
         let factor = |k: usize| far.powi(k as i32);
         let scaled = |k: usize| series[k] / radius.powi(k as i32);
-        let product: Vec<f64> = (0..series.len())
-            .map(|k| (0..=k).map(|j| scaled(j) * factor(k - j)).sum())
-            .collect();
+        let product: Vec<f64> =
+            (0..series.len()).map(|k| (0..=k).map(|j| scaled(j) * factor(k - j)).sum()).collect();
         let Some(found) = nearest_singularity(&product) else {
             continue;
         };

@@ -8,12 +8,7 @@ use lindstedt::impact::{
 use proptest::prelude::*;
 
 fn to_rest(duration: f64) -> Settings {
-    Settings {
-        duration,
-        stop_at_rest: true,
-        keep_path: false,
-        ..Settings::default()
-    }
+    Settings { duration, stop_at_rest: true, keep_path: false, ..Settings::default() }
 }
 
 /// The rest times by the chain and by integration.
@@ -21,10 +16,7 @@ fn rest_times(model: &Model, start: Start) -> (f64, f64) {
     let settings = to_rest(2000.0);
     let [found, truth] = [Integrator::Chain, Integrator::Taylor].map(|integrator| {
         let motion = simulate(model, start, integrator, &settings).expect("a motion");
-        motion
-            .rest()
-            .time
-            .unwrap_or_else(|none| panic!("{none}: {model:?}"))
+        motion.rest().time.unwrap_or_else(|none| panic!("{none}: {model:?}"))
     });
     (found, truth)
 }
@@ -37,13 +29,9 @@ fn rest_times_are_within_a_percent_over_the_box_of_designs() {
     for gamma in [2.2e4, 1.3e5, 8.1e5, 5.5e7, 6.3e10] {
         for zeta in [0.004, 0.0113, 0.0271, 0.05] {
             for ratio in [0.0, 0.013, 0.11, 0.3] {
-                for (place, amplitude) in [
-                    (0.323, 1.5),
-                    (0.12, 1.37),
-                    (0.0, 1.1),
-                    (0.55, 2.2),
-                    (0.027, 0.4),
-                ] {
+                for (place, amplitude) in
+                    [(0.323, 1.5), (0.12, 1.37), (0.0, 1.1), (0.55, 2.2), (0.027, 0.4)]
+                {
                     let model = Model {
                         zeta,
                         gamma,
@@ -51,51 +39,29 @@ fn rest_times_are_within_a_percent_over_the_box_of_designs() {
                         right: Some(place),
                         ..Model::default()
                     };
-                    let start = Start {
-                        x: -amplitude,
-                        velocity: 0.0,
-                    };
+                    let start = Start { x: -amplitude, velocity: 0.0 };
                     let (found, truth) = rest_times(&model, start);
                     let error = found / truth - 1.0;
-                    assert!(
-                        error.abs() < 0.01,
-                        "{error:+.4} at {model:?} from {amplitude}"
-                    );
+                    assert!(error.abs() < 0.01, "{error:+.4} at {model:?} from {amplitude}");
                     errors.push(error.abs());
                 }
             }
         }
     }
     errors.sort_by(f64::total_cmp);
-    assert!(
-        errors[errors.len() / 2] < 5e-4,
-        "median {}",
-        errors[errors.len() / 2]
-    );
+    assert!(errors[errors.len() / 2] < 5e-4, "median {}", errors[errors.len() / 2]);
 }
 
 /// A run that stops as soon as the rest time is known has the rest time of a longer one.
 #[test]
 fn stopping_at_rest_changes_no_rest_time() {
-    for (zeta, alpha, right) in [
-        (0.02, 0.0, Some(0.323)),
-        (0.01, 0.01, None),
-        (0.03, 0.0, Some(-0.05)),
-    ] {
-        let model = Model {
-            zeta,
-            alpha,
-            gamma: 1e6,
-            mu: 1e5,
-            right,
-            ..Model::default()
-        };
+    for (zeta, alpha, right) in
+        [(0.02, 0.0, Some(0.323)), (0.01, 0.01, None), (0.03, 0.0, Some(-0.05))]
+    {
+        let model = Model { zeta, alpha, gamma: 1e6, mu: 1e5, right, ..Model::default() };
         for integrator in [Integrator::Chain, Integrator::Taylor] {
             let [short, long] = [true, false].map(|stop_at_rest| {
-                let settings = Settings {
-                    stop_at_rest,
-                    ..to_rest(400.0)
-                };
+                let settings = Settings { stop_at_rest, ..to_rest(400.0) };
                 simulate(&model, Start::default(), integrator, &settings).expect("a motion")
             });
             assert_eq!(short.stop, Stop::AtRest, "{model:?}");
@@ -116,27 +82,15 @@ fn a_caged_pendulum_is_said_to_be_one() {
         right: Some(right),
         ..Model::default()
     };
-    let start = Start {
-        x: 0.0,
-        velocity: 1.0,
-    };
+    let start = Start { x: 0.0, velocity: 1.0 };
     let motion = |model: &Model, integrator| {
         simulate(model, start, integrator, &to_rest(50.0)).expect("a motion")
     };
     let [found, truth] =
         [Integrator::Chain, Integrator::Taylor].map(|route| motion(&caged(1e-4), route));
     assert!(found.is_caged() && truth.is_caged());
-    assert_eq!(
-        (found.stop, found.impacts.len()),
-        (Stop::AtRest, truth.impacts.len())
-    );
-    assert!(
-        baseline(&truth)
-            .expect("motions")
-            .expect("a baseline")
-            .geometry
-            .is_none()
-    );
+    assert_eq!((found.stop, found.impacts.len()), (Stop::AtRest, truth.impacts.len()));
+    assert!(baseline(&truth).expect("motions").expect("a baseline").geometry.is_none());
     assert!(!motion(&caged(0.2), Integrator::Chain).is_caged());
 }
 
@@ -149,29 +103,15 @@ fn the_gain_by_geometry_is_that_of_the_lossless_barrier() {
         (Some(-0.4), Some(0.3), 1.2),
         (Some(-0.7), None, 2.5),
     ] {
-        let model = Model {
-            zeta: 0.002,
-            gamma: 1e8,
-            left,
-            right,
-            ..Model::default()
-        };
-        let start = Start {
-            x: 0.0,
-            velocity: 2.0 * f64::sin(0.5 * amplitude),
-        };
+        let model = Model { zeta: 0.002, gamma: 1e8, left, right, ..Model::default() };
+        let start = Start { x: 0.0, velocity: 2.0 * f64::sin(0.5 * amplitude) };
         let settings = to_rest(4000.0);
         let motion = simulate(&model, start, Integrator::Taylor, &settings).expect("a motion");
         let found = baseline(&motion).expect("motions").expect("a baseline");
-        let (none, lossless) = (
-            found.no_barrier.expect("rest"),
-            found.lossless_barrier.expect("rest"),
-        );
+        let (none, lossless) =
+            (found.no_barrier.expect("rest"), found.lossless_barrier.expect("rest"));
         let gain = found.geometry.expect("viscous damping alone").gain;
-        assert!(
-            (gain / (none - lossless) - 1.0).abs() < 0.02,
-            "{gain} {none} {lossless}"
-        );
+        assert!((gain / (none - lossless) - 1.0).abs() < 0.02, "{gain} {none} {lossless}");
     }
 }
 
@@ -183,12 +123,8 @@ fn the_page_tells_the_numbers() {
     let of_six = |line: &&str| line.starts_with("| 0") && line.matches('|').count() == 7;
     for line in page.lines().filter(of_six) {
         let cells: Vec<&str> = line.split('|').map(str::trim).collect();
-        let number = |index: usize| {
-            cells[index]
-                .trim_end_matches(" %")
-                .parse::<f64>()
-                .expect("a number")
-        };
+        let number =
+            |index: usize| cells[index].trim_end_matches(" %").parse::<f64>().expect("a number");
         let model = Model {
             zeta: number(1),
             gamma: number(3),
@@ -198,10 +134,7 @@ fn the_page_tells_the_numbers() {
         let (found, truth) = rest_times(&model, Start::default());
         assert!((found - number(4)).abs() < 6e-4, "{line}: {found}");
         assert!((truth - number(5)).abs() < 6e-4, "{line}: {truth}");
-        assert!(
-            (100.0 * (found / truth - 1.0) - number(6)).abs() < 6e-4,
-            "{line}"
-        );
+        assert!((100.0 * (found / truth - 1.0) - number(6)).abs() < 6e-4, "{line}");
         rows += 1;
     }
     assert_eq!(rows, 27);
@@ -216,24 +149,11 @@ fn light_friction_and_two_barriers_are_as_near() {
         (0.0, Some(-0.1), Some(0.6)),
         (0.005, Some(-0.5), None),
     ] {
-        let model = Model {
-            zeta: 0.013,
-            alpha,
-            gamma: 3e6,
-            mu: 2e5,
-            left,
-            right,
-            ..Model::default()
-        };
-        let start = Start {
-            x: 0.01,
-            velocity: 1.1,
-        };
+        let model =
+            Model { zeta: 0.013, alpha, gamma: 3e6, mu: 2e5, left, right, ..Model::default() };
+        let start = Start { x: 0.01, velocity: 1.1 };
         let (found, truth) = rest_times(&model, start);
-        assert!(
-            (found / truth - 1.0).abs() < 0.01,
-            "{found} {truth} {model:?}"
-        );
+        assert!((found / truth - 1.0).abs() < 0.01, "{found} {truth} {model:?}");
     }
 }
 
@@ -241,33 +161,18 @@ fn light_friction_and_two_barriers_are_as_near() {
 #[test]
 fn the_page_tells_how_far_friction_lets_it_err() {
     let page = include_str!("../../../docs/chain.md");
-    let (_, table) = page
-        .split_once("| alpha/A |")
-        .expect("the table of friction");
+    let (_, table) = page.split_once("| alpha/A |").expect("the table of friction");
     let mut rows = 0;
-    for line in table
-        .lines()
-        .skip(2)
-        .take_while(|line| line.starts_with('|'))
-    {
+    for line in table.lines().skip(2).take_while(|line| line.starts_with('|')) {
         let cells: Vec<&str> = line.split('|').map(str::trim).collect();
-        let number = |index: usize| {
-            cells[index]
-                .trim_end_matches(" %")
-                .parse::<f64>()
-                .expect("a number")
-        };
+        let number =
+            |index: usize| cells[index].trim_end_matches(" %").parse::<f64>().expect("a number");
         for (zeta, told) in [(0.0, number(2)), (0.02, number(3))] {
             let mut largest: f64 = 0.0;
             for right in [None, Some(-0.05), Some(0.0), Some(0.05), Some(0.323)] {
-                for (amplitude, mu) in [
-                    (0.4, 0.0),
-                    (1.5, 0.0),
-                    (2.2, 0.0),
-                    (0.4, 1e5),
-                    (1.5, 1e5),
-                    (2.2, 1e5),
-                ] {
+                for (amplitude, mu) in
+                    [(0.4, 0.0), (1.5, 0.0), (2.2, 0.0), (0.4, 1e5), (1.5, 1e5), (2.2, 1e5)]
+                {
                     let model = Model {
                         zeta,
                         alpha: number(1) * amplitude,
@@ -276,10 +181,7 @@ fn the_page_tells_how_far_friction_lets_it_err() {
                         right,
                         ..Model::default()
                     };
-                    let start = Start {
-                        x: -amplitude,
-                        velocity: 0.0,
-                    };
+                    let start = Start { x: -amplitude, velocity: 0.0 };
                     let (found, truth) = rest_times(&model, start);
                     largest = largest.max(100.0 * (found / truth - 1.0).abs());
                 }
@@ -293,11 +195,7 @@ fn the_page_tells_how_far_friction_lets_it_err() {
 
 #[test]
 fn every_contact_is_near_the_integrated_one() {
-    let model = Model {
-        zeta: 0.02,
-        mu: 2e6,
-        ..Model::default()
-    };
+    let model = Model { zeta: 0.02, mu: 2e6, ..Model::default() };
     let settings = to_rest(300.0);
     let found = chain(&model, Start::default(), &settings).expect("a chain");
     let truth =
@@ -311,20 +209,14 @@ fn every_contact_is_near_the_integrated_one() {
         for part in [deviation.speed_in, deviation.penetration] {
             assert!(part.is_some_and(|part| part.abs() < 1e-3), "{deviation:?}");
         }
-        assert!(
-            deviation.duration.is_some_and(|part| part.abs() < 1e-3),
-            "{deviation:?}"
-        );
+        assert!(deviation.duration.is_some_and(|part| part.abs() < 1e-3), "{deviation:?}");
     }
 }
 
 /// The first contact by the chain, how far it is from the integrated one, and what the chain was
 /// made of.
 fn first_contact(model: &Model, start: Start) -> (Simulation, ContactDeviation) {
-    let settings = Settings {
-        duration: 20.0,
-        ..Settings::default()
-    };
+    let settings = Settings { duration: 20.0, ..Settings::default() };
     let found = chain(model, start, &settings).expect("a chain");
     let truth = simulate(model, start, Integrator::Taylor, &settings).expect("a motion");
     let deviations = found.contact_deviations(&truth);
@@ -335,13 +227,7 @@ fn first_contact(model: &Model, start: Start) -> (Simulation, ContactDeviation) 
 #[test]
 fn a_start_on_the_way_away_from_the_barrier_comes_back_in_time() {
     for (x, velocity) in [(-0.998, -0.559), (0.4, -1.2), (-0.1, -1.5), (0.2, -0.02)] {
-        let model = Model {
-            zeta: 0.01,
-            gamma: 1e7,
-            mu: 3e4,
-            right: Some(0.5),
-            ..Model::default()
-        };
+        let model = Model { zeta: 0.01, gamma: 1e7, mu: 3e4, right: Some(0.5), ..Model::default() };
         let start = Start { x, velocity };
         if model.swing_energy(x, velocity) > model.swing_energy(0.5, 0.0) {
             let (_, first) = first_contact(&model, start);
@@ -356,125 +242,65 @@ fn a_start_on_the_way_away_from_the_barrier_comes_back_in_time() {
 
 #[test]
 fn a_start_on_the_barrier_begins_with_its_contact() {
-    let start = Start {
-        x: 0.323,
-        velocity: 0.5,
-    };
-    let model = Model {
-        zeta: 0.01,
-        gamma: 1e7,
-        mu: 1e6,
-        ..Model::default()
-    };
+    let start = Start { x: 0.323, velocity: 0.5 };
+    let model = Model { zeta: 0.01, gamma: 1e7, mu: 1e6, ..Model::default() };
     let (found, first) = first_contact(&model, start);
-    assert!(
-        found
-            .path
-            .pieces()
-            .iter()
-            .all(|piece| piece.closed_form().is_some())
-    );
+    assert!(found.path.pieces().iter().all(|piece| piece.closed_form().is_some()));
     assert_eq!((first.entry_time, first.speed_in), (0.0, Some(0.0)));
-    assert!(
-        first.speed_out.is_some_and(|part| part.abs() < 1e-4),
-        "{first:?}"
-    );
+    assert!(first.speed_out.is_some_and(|part| part.abs() < 1e-4), "{first:?}");
     // No speed at all, and one that is lost in the energy of the place.
     for velocity in [0.0, 1e-12] {
         let start = Start { x: 0.323, velocity };
         let found = chain(&model, start, &Settings::default()).expect("a chain");
-        assert!(
-            found.end_x.is_finite() && found.stop == Stop::Duration,
-            "{found:?}"
-        );
+        assert!(found.end_x.is_finite() && found.stop == Stop::Duration, "{found:?}");
     }
 }
 
 #[test]
 fn a_tiny_swing_decays_as_any_other() {
-    let model = Model {
-        zeta: 0.02,
-        ..Model::default()
-    };
+    let model = Model { zeta: 0.02, ..Model::default() };
     let rest = |x: f64| rest_times(&model, Start { x, velocity: 0.0 });
     for amplitude in [1e-12, 1e-7, 1e-3] {
         let (found, truth) = rest(-amplitude);
-        assert!(
-            (found / truth - 1.0).abs() < 1e-3,
-            "{amplitude}: {found} {truth}"
-        );
+        assert!((found / truth - 1.0).abs() < 1e-3, "{amplitude}: {found} {truth}");
     }
 }
 
 #[test]
 fn a_contact_that_is_cut_off_has_no_error_of_its_depth() {
     let model = Model::default();
-    let steps = |maximum_steps: usize| Settings {
-        maximum_steps,
-        ..Settings::default()
-    };
+    let steps = |maximum_steps: usize| Settings { maximum_steps, ..Settings::default() };
     let found = chain(&model, Start::default(), &steps(4)).expect("a chain");
     let truth =
         simulate(&model, Start::default(), Integrator::Taylor, &steps(3)).expect("a motion");
-    assert_eq!(
-        truth.impacts.first().map(|impact| impact.exit_time),
-        Some(None)
-    );
+    assert_eq!(truth.impacts.first().map(|impact| impact.exit_time), Some(None));
     let first = found.contact_deviations(&truth)[0].expect("the same contact");
-    assert!(
-        first.speed_in.is_some() && first.penetration.is_none(),
-        "{first:?}"
-    );
+    assert!(first.speed_in.is_some() && first.penetration.is_none(), "{first:?}");
 }
 
 /// A pendulum that comes to lean on a barrier beyond the bottom.
 fn leaning() -> Model {
-    Model {
-        zeta: 0.02,
-        gamma: 1e4,
-        mu: 1e3,
-        right: Some(-0.1),
-        ..Model::default()
-    }
+    Model { zeta: 0.02, gamma: 1e4, mu: 1e3, right: Some(-0.1), ..Model::default() }
 }
 
 #[test]
 fn a_pendulum_that_leans_on_its_barrier_is_handed_to_the_integration() {
     let model = leaning();
-    let settings = Settings {
-        duration: 700.0,
-        ..Settings::default()
-    };
+    let settings = Settings { duration: 700.0, ..Settings::default() };
     let found = chain(&model, Start::default(), &settings).expect("a chain");
     let pieces = found.path.pieces();
-    let closed = pieces
-        .iter()
-        .take_while(|piece| piece.closed_form().is_some())
-        .count();
-    assert!(
-        closed > 10 && closed < pieces.len(),
-        "{closed} of {}",
-        pieces.len()
-    );
+    let closed = pieces.iter().take_while(|piece| piece.closed_form().is_some()).count();
+    assert!(closed > 10 && closed < pieces.len(), "{closed} of {}", pieces.len());
     assert_eq!(found.stop, Stop::Duration);
     let truth =
         simulate(&model, Start::default(), Integrator::Taylor, &settings).expect("a motion");
-    assert!(
-        (found.end_x - truth.end_x).abs() < 1e-6,
-        "{} {}",
-        found.end_x,
-        truth.end_x
-    );
+    assert!((found.end_x - truth.end_x).abs() < 1e-6, "{} {}", found.end_x, truth.end_x);
 }
 
 #[test]
 fn where_the_integration_gives_up_is_told_by_the_clock_of_the_whole() {
     let model = leaning();
-    let settings = Settings {
-        duration: 700.0,
-        maximum_steps: 300,
-        ..Settings::default()
-    };
+    let settings = Settings { duration: 700.0, maximum_steps: 300, ..Settings::default() };
     let found = chain(&model, Start::default(), &settings).expect("a chain");
     let Stop::Steps { t } = found.stop else {
         panic!("{:?}", found.stop);
@@ -487,11 +313,7 @@ fn where_the_integration_gives_up_is_told_by_the_clock_of_the_whole() {
 fn energies(model: &Model, start: Start) -> Vec<f64> {
     let motion = chain(model, start, &to_rest(400.0)).expect("a chain");
     let mut knots: Vec<(f64, f64)> = vec![(0.0, model.energy(start.x, start.velocity))];
-    for turn in motion
-        .turns
-        .iter()
-        .filter(|turn| model.depth(turn.x).is_none() && turn.t > 0.0)
-    {
+    for turn in motion.turns.iter().filter(|turn| model.depth(turn.x).is_none() && turn.t > 0.0) {
         knots.push((turn.t, model.energy(turn.x, 0.0)));
     }
     for impact in &motion.impacts {

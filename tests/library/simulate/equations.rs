@@ -34,10 +34,7 @@ fn friction(model: &Model) -> &'static str {
 /// The equations of flight, and those of contact in the mirror of a side.
 fn equations(model: &Model, side: Option<Side>) -> System {
     let (sign, barrier) = match side {
-        Some(side) => (
-            side.sign(),
-            side.sign() * model.barrier(side).expect("a barrier"),
-        ),
+        Some(side) => (side.sign(), side.sign() * model.barrier(side).expect("a barrier")),
         None => (1.0, 0.0),
     };
     let numbers = [
@@ -52,10 +49,7 @@ fn equations(model: &Model, side: Option<Side>) -> System {
     let friction = friction(model);
     let forces = |x: &str, t: &str| format!("sin({x}) + {friction} - beta*sin(eta*{t})*cos({x})");
     let equations = match side {
-        None => vec![
-            ("x", "v".to_owned()),
-            ("v", format!("-2*zeta*v - ({})", forces("x", "t"))),
-        ],
+        None => vec![("x", "v".to_owned()), ("v", format!("-2*zeta*v - ({})", forces("x", "t")))],
         Some(_) => vec![
             ("w", "v/2".to_owned()),
             (
@@ -68,10 +62,8 @@ fn equations(model: &Model, side: Option<Side>) -> System {
             ("T", "w".to_owned()),
         ],
     };
-    let equations: Vec<(&str, &str)> = equations
-        .iter()
-        .map(|(state, right)| (*state, right.as_str()))
-        .collect();
+    let equations: Vec<(&str, &str)> =
+        equations.iter().map(|(state, right)| (*state, right.as_str())).collect();
     System::parse(&equations, &numbers).expect("equations")
 }
 
@@ -89,17 +81,10 @@ fn follow(model: &Model, start: Start, duration: f64) -> (Vec<Piece>, Vec<Contac
             [Side::Right, Side::Left].map(|side| model.barrier(side).expect("a barrier"));
         let barriers = [right, left].map(|barrier| stop(format!("x - ({barrier:?})")));
         let flight = equations(model, None);
-        let path = flight
-            .solve(t, &[x, v], duration, &barriers, &options)
-            .expect("a flight");
+        let path = flight.solve(t, &[x, v], duration, &barriers, &options).expect("a flight");
         let (reason, to) = (path.reason(), path.end());
         v = path.at(to).expect("an end")[1];
-        pieces.push(Piece {
-            from: t,
-            to,
-            path,
-            contact: None,
-        });
+        pieces.push(Piece { from: t, to, path, contact: None });
         t = to;
         let side = match reason {
             End::Event(0) => Side::Right,
@@ -117,25 +102,16 @@ fn follow(model: &Model, start: Start, duration: f64) -> (Vec<Piece>, Vec<Contac
         ];
         let (speed, sign) = (v.abs(), side.sign());
         let contact = equations(model, Some(side));
-        let path = contact
-            .solve(0.0, &[0.0, speed, t], 1e9, &ends, &options)
-            .expect("a contact");
+        let path = contact.solve(0.0, &[0.0, speed, t], 1e9, &ends, &options).expect("a contact");
         let end = path.at(path.end()).expect("an end");
         let (from, to, reason) = (t, end[2], path.reason());
         let deepest = path.occurrences().iter().find(|met| met.event == 2);
         let depth = deepest.map_or(0.0, |met| path.at(met.time).expect("a state")[0].powi(2));
-        pieces.push(Piece {
-            from,
-            to,
-            path,
-            contact: Some(side),
-        });
+        pieces.push(Piece { from, to, path, contact: Some(side) });
         match reason {
-            End::Event(0) => contacts.push(Contact {
-                times: [from, to],
-                speeds: [speed, -end[1]],
-                depth,
-            }),
+            End::Event(0) => {
+                contacts.push(Contact { times: [from, to], speeds: [speed, -end[1]], depth })
+            }
             End::Sticks => return (pieces, contacts, Some(to)),
             reason => {
                 assert_eq!(reason, End::Event(1));
@@ -148,9 +124,7 @@ fn follow(model: &Model, start: Start, duration: f64) -> (Vec<Piece>, Vec<Contac
 
 /// Displacement and velocity at a time.
 fn at(pieces: &[Piece], model: &Model, time: f64) -> Option<[f64; 2]> {
-    let piece = pieces
-        .iter()
-        .find(|piece| (piece.from..=piece.to).contains(&time))?;
+    let piece = pieces.iter().find(|piece| (piece.from..=piece.to).contains(&time))?;
     let Some(side) = piece.contact else {
         let state = piece.path.at(time)?;
         return Some([state[0], state[1]]);
@@ -165,10 +139,7 @@ fn at(pieces: &[Piece], model: &Model, time: f64) -> Option<[f64; 2]> {
         }
     }
     let state = piece.path.at(high)?;
-    Some([
-        model.barrier(side)? + side.sign() * state[0].powi(2),
-        side.sign() * state[1],
-    ])
+    Some([model.barrier(side)? + side.sign() * state[0].powi(2), side.sign() * state[1]])
 }
 
 /// Numbers between 0 and 1 that differ from motion to motion: multiples of irrational numbers.
@@ -186,31 +157,18 @@ fn the_special_integrator_and_that_of_any_equations_agree() {
         let model = Model {
             zeta: 0.05 * a,
             alpha: if index % 3 == 0 { 0.0 } else { 0.1 * b },
-            friction: if index % 3 == 2 {
-                Friction::Arctangent
-            } else {
-                Friction::Exact
-            },
+            friction: if index % 3 == 2 { Friction::Arctangent } else { Friction::Exact },
             beta: if index % 2 == 0 { 0.0 } else { 0.5 * c },
             frequency_ratio: 0.3 + 2.0 * d,
             gamma: 10.0_f64.powf(1.0 + 6.0 * e),
-            mu: if index % 4 == 0 {
-                0.0
-            } else {
-                10.0_f64.powf(1.0 + 6.0 * e) * 20.0 * f
-            },
+            mu: if index % 4 == 0 { 0.0 } else { 10.0_f64.powf(1.0 + 6.0 * e) * 20.0 * f },
             left: Some(-0.3 - g),
             right: Some(0.1 + 0.6 * h),
         };
-        let start = Start {
-            x: 0.05,
-            velocity: 0.6 + g,
-        };
+        let start = Start { x: 0.05, velocity: 0.6 + g };
         let special = taylor(&model, start, 1e-13, duration);
         let apart = special.path.pieces().iter();
-        detached += apart
-            .filter(|piece| matches!(piece.regime, Regime::Detached(_)))
-            .count();
+        detached += apart.filter(|piece| matches!(piece.regime, Regime::Detached(_))).count();
         let (pieces, contacts, sticks) = follow(&model, start, duration);
         let until = sticks.unwrap_or(duration);
         if let Some(time) = sticks {
@@ -239,14 +197,9 @@ fn the_special_integrator_and_that_of_any_equations_agree() {
             let [entry, exit] = contact.times;
             let [speed_in, speed_out] = contact.speeds;
             for (found, expected) in
-                found
-                    .into_iter()
-                    .zip([entry, exit, speed_in, speed_out, contact.depth])
+                found.into_iter().zip([entry, exit, speed_in, speed_out, contact.depth])
             {
-                assert!(
-                    (found - expected).abs() < 1e-11,
-                    "{model:?}: {impact:?} {contact:?}"
-                );
+                assert!((found - expected).abs() < 1e-11, "{model:?}: {impact:?} {contact:?}");
             }
         }
         for sample in 0..=240 {
@@ -255,22 +208,13 @@ fn the_special_integrator_and_that_of_any_equations_agree() {
                 panic!("{model:?} has no state at {time}");
             };
             let (special_x, special_v) = special.path.at(time).expect("a state");
-            assert!(
-                (x - special_x).abs() < 1e-11,
-                "{model:?} at {time}: {x} {special_x}"
-            );
+            assert!((x - special_x).abs() < 1e-11, "{model:?} at {time}: {x} {special_x}");
             // In contact the velocity changes by gamma d^(3/2) in a unit of time.
             let steep =
                 1.0 + model.contact(model.depth(x).map_or(0.0, |(_, depth)| depth), v.abs());
-            assert!(
-                (v - special_v).abs() < 1e-11 * steep,
-                "{model:?} at {time}: {v} {special_v}"
-            );
+            assert!((v - special_v).abs() < 1e-11 * steep, "{model:?} at {time}: {v} {special_v}");
         }
     }
     println!("{impacts} impacts, {stuck} stuck, {detached} steps away from a barrier still behind");
-    assert!(
-        impacts > 100 && stuck > 2 && detached > 2,
-        "{impacts} {stuck} {detached}"
-    );
+    assert!(impacts > 100 && stuck > 2 && detached > 2, "{impacts} {stuck} {detached}");
 }

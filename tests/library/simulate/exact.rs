@@ -10,10 +10,7 @@ use super::{REST, taylor};
 fn pendulum(amplitude: f64, t: f64) -> (f64, f64) {
     let k = (0.5 * amplitude).sin();
     let (sn, cn, dn, _) = spec_math::cephes64::ellpj(t, k * k);
-    (
-        -2.0 * (k * cn / dn).asin(),
-        2.0 * k * (1.0 - k * k).sqrt() * sn / dn,
-    )
+    (-2.0 * (k * cn / dn).asin(), 2.0 * k * (1.0 - k * k).sqrt() * sn / dn)
 }
 
 /// Time from release to touch, time in contact, and depth, of the conservative motion: elliptic F,
@@ -32,19 +29,14 @@ fn exact_cycle(amplitude: f64, barrier: f64, gamma: f64) -> (f64, f64, f64) {
     let deepest = find_root(square, 0.0, (amplitude - barrier).sqrt()).expect("a depth");
     let slope = |q: f64| 4.0 * q * (barrier + q * q).sin() + 4.0 * gamma * q.powi(4);
     let quotient = |q: f64| {
-        integrate_smooth(|u| slope(q + u * (deepest - q)), 0.0, 1.0, 1e-14)
-            .expect("smooth")
-            .0
+        integrate_smooth(|u| slope(q + u * (deepest - q)), 0.0, 1.0, 1e-14).expect("smooth").0
     };
     let integrand = |w: f64| {
         let q = deepest * (1.0 - w * w);
         q / quotient(q).sqrt()
     };
-    let contact = 8.0
-        * deepest.sqrt()
-        * integrate_smooth(integrand, 0.0, 1.0, 1e-13)
-            .expect("smooth")
-            .0;
+    let contact =
+        8.0 * deepest.sqrt() * integrate_smooth(integrand, 0.0, 1.0, 1e-13).expect("smooth").0;
     (approach, contact, deepest * deepest)
 }
 
@@ -61,11 +53,7 @@ fn exact_state(amplitude: f64, barrier: f64, gamma: f64, t: f64) -> Option<(f64,
 #[test]
 fn the_conservative_motion_is_that_of_elliptic_functions_and_quadrature() {
     for (gamma, barrier) in [(1e6, 0.323), (3.0407e7, 0.323), (1e3, -0.2), (1e16, 0.7)] {
-        let model = Model {
-            gamma,
-            right: Some(barrier),
-            ..Model::default()
-        };
+        let model = Model { gamma, right: Some(barrier), ..Model::default() };
         let (approach, contact, depth) = exact_cycle(1.5, barrier, gamma);
         let motion = taylor(&model, REST, 1e-10, 50.0);
         assert_eq!(motion.stop, Stop::Duration);
@@ -114,11 +102,7 @@ fn grazing_contacts_are_neither_missed_nor_invented() {
     let gamma = 1e6;
     for part in [0.9, 0.99, 0.999, 0.9999, 0.99999, 0.999_999] {
         let barrier = 1.5 * part;
-        let model = Model {
-            gamma,
-            right: Some(barrier),
-            ..Model::default()
-        };
+        let model = Model { gamma, right: Some(barrier), ..Model::default() };
         let (approach, contact, depth) = exact_cycle(1.5, barrier, gamma);
         let cycle = 2.0 * approach + contact;
         let motion = taylor(&model, REST, 1e-12, 50.0);
@@ -140,17 +124,10 @@ fn grazing_contacts_are_neither_missed_nor_invented() {
         }
     }
     for beyond in [1.0, 1.0 + 1e-12, 1.000_001, 1.1] {
-        let model = Model {
-            right: Some(1.5 * beyond),
-            ..Model::default()
-        };
+        let model = Model { right: Some(1.5 * beyond), ..Model::default() };
         let motion = taylor(&model, REST, 1e-13, 200.0);
         // Exactly at A the rounding decides, and what it makes is no impact to speak of.
-        let speed = motion
-            .impacts
-            .iter()
-            .map(|impact| impact.speed_in)
-            .fold(0.0, f64::max);
+        let speed = motion.impacts.iter().map(|impact| impact.speed_in).fold(0.0, f64::max);
         if beyond == 1.0 {
             assert!(speed < 1e-6, "{speed}");
         } else {
@@ -166,14 +143,8 @@ fn a_slow_touch_bounces_as_gravity_says() {
     // Thrown against the barrier at a speed that hardly dents it: it is back after 2 v / sin x_c
     // and the depth is v^2 / (2 sin x_c), until the contact force counts.
     for speed in [1e-6, 1e-8, 1e-10] {
-        let model = Model {
-            gamma: 1.0,
-            ..Model::default()
-        };
-        let start = Start {
-            x: 0.323,
-            velocity: speed,
-        };
+        let model = Model { gamma: 1.0, ..Model::default() };
+        let start = Start { x: 0.323, velocity: speed };
         let motion = taylor(&model, start, 1e-12, 1.0);
         let impact = motion.impacts[0];
         let force = 0.323_f64.sin();

@@ -7,11 +7,7 @@ use super::{REST, run, taylor};
 #[test]
 fn coulomb_friction_takes_alpha_times_the_way_and_then_holds() {
     let alpha = 0.05;
-    let model = Model {
-        alpha,
-        right: Some(3.0),
-        ..Model::default()
-    };
+    let model = Model { alpha, right: Some(3.0), ..Model::default() };
     let motion = taylor(&model, REST, 1e-12, 100.0);
     let amplitudes: Vec<f64> = motion.turns.iter().map(|turn| turn.x.abs()).collect();
     // cos a_(n+1) - cos a_n = alpha (a_n + a_(n+1)) until it sticks, where sin a < alpha.
@@ -35,17 +31,9 @@ fn coulomb_friction_takes_alpha_times_the_way_and_then_holds() {
 #[test]
 fn a_driven_pendulum_sticks_and_slips_when_the_force_says_so() {
     // From rest at x = 0: held until beta sin(Omega t) = alpha.
-    let model = Model {
-        alpha: 0.3,
-        beta: 0.5,
-        frequency_ratio: 0.8,
-        right: Some(3.0),
-        ..Model::default()
-    };
-    let start = Start {
-        x: 0.0,
-        velocity: 0.0,
-    };
+    let model =
+        Model { alpha: 0.3, beta: 0.5, frequency_ratio: 0.8, right: Some(3.0), ..Model::default() };
+    let start = Start { x: 0.0, velocity: 0.0 };
     let release = (0.3_f64 / 0.5).asin() / 0.8;
     for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
         let motion = run(&model, start, 1e-12, 60.0, integrator);

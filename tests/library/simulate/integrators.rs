@@ -19,25 +19,12 @@ fn the_judge_agrees() {
         right: Some(0.4),
         friction: Friction::Exact,
     };
-    let start = Start {
-        x: 0.2,
-        velocity: 1.3,
-    };
+    let start = Start { x: 0.2, velocity: 1.3 };
     for model in [
         damped,
-        Model {
-            friction: Friction::Arctangent,
-            ..damped
-        },
-        Model {
-            beta: 0.0,
-            ..damped
-        },
-        Model {
-            alpha: 0.35,
-            beta: 0.6,
-            ..damped
-        },
+        Model { friction: Friction::Arctangent, ..damped },
+        Model { beta: 0.0, ..damped },
+        Model { alpha: 0.35, beta: 0.6, ..damped },
     ] {
         let fast = taylor(&model, start, 1e-13, 40.0);
         let judge = run(&model, start, 1e-13, 40.0, Integrator::RungeKutta);
@@ -46,10 +33,7 @@ fn the_judge_agrees() {
         assert_eq!(fast.impacts.len(), judge.impacts.len(), "{model:?}");
         for (one, other) in fast.impacts.iter().zip(&judge.impacts) {
             assert_eq!(one.side, other.side);
-            assert!(
-                (one.entry_time - other.entry_time).abs() < 1e-8,
-                "{one:?} {other:?}"
-            );
+            assert!((one.entry_time - other.entry_time).abs() < 1e-8, "{one:?} {other:?}");
         }
         for index in 0..=400 {
             let t = 0.1 * f64::from(index);
@@ -64,12 +48,7 @@ fn the_judge_agrees() {
         }
         assert!(fast.energy().residual < 1e-9, "{:?}", fast.energy());
         assert!(judge.energy().residual < 1e-7, "{:?}", judge.energy());
-        println!(
-            "{:?} {} turns, {} impacts",
-            fast.energy(),
-            fast.turns.len(),
-            fast.impacts.len()
-        );
+        println!("{:?} {} turns, {} impacts", fast.energy(), fast.turns.len(), fast.impacts.len());
         println!(
             "{:?} {} turns, {} steps {} {}",
             judge.energy(),
@@ -94,20 +73,9 @@ fn two_barriers_are_mirror_images() {
         right: Some(0.35),
         ..Model::default()
     };
-    let mirrored = Model {
-        beta: -model.beta,
-        left: Some(-0.35),
-        right: Some(0.6),
-        ..model
-    };
-    let start = Start {
-        x: 0.1,
-        velocity: 1.1,
-    };
-    let image = Start {
-        x: -0.1,
-        velocity: -1.1,
-    };
+    let mirrored = Model { beta: -model.beta, left: Some(-0.35), right: Some(0.6), ..model };
+    let start = Start { x: 0.1, velocity: 1.1 };
+    let image = Start { x: -0.1, velocity: -1.1 };
     for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
         let one = run(&model, start, 1e-12, 40.0, integrator);
         let other = run(&mirrored, image, 1e-12, 40.0, integrator);
@@ -123,21 +91,10 @@ fn two_barriers_are_mirror_images() {
         );
     }
     // Symmetric barriers and start: every other half swing is the mirror image of the one before.
-    let symmetric = Model {
-        left: Some(-0.4),
-        right: Some(0.4),
-        ..Model::default()
-    };
-    let start = Start {
-        x: 0.0,
-        velocity: 1.0,
-    };
+    let symmetric = Model { left: Some(-0.4), right: Some(0.4), ..Model::default() };
+    let start = Start { x: 0.0, velocity: 1.0 };
     let motion = taylor(&symmetric, start, 1e-13, 30.0);
-    let times: Vec<f64> = motion
-        .impacts
-        .iter()
-        .map(|impact| impact.entry_time)
-        .collect();
+    let times: Vec<f64> = motion.impacts.iter().map(|impact| impact.entry_time).collect();
     assert!(times.len() > 20);
     for three in times.windows(3) {
         assert!((three[2] - 2.0 * three[1] + three[0]).abs() < 1e-10);
@@ -146,40 +103,15 @@ fn two_barriers_are_mirror_images() {
 
 #[test]
 fn dissipative_and_forced_motions_agree_with_runs_a_hundred_times_tighter() {
-    let base = Model {
-        gamma: 1e6,
-        zeta: 0.015,
-        mu: 5e4,
-        ..Model::default()
-    };
+    let base = Model { gamma: 1e6, zeta: 0.015, mu: 5e4, ..Model::default() };
     for model in [
         base,
-        Model {
-            alpha: 0.02,
-            ..base
-        },
-        Model {
-            alpha: 0.02,
-            friction: Friction::Arctangent,
-            ..base
-        },
-        Model {
-            beta: 0.2,
-            frequency_ratio: 1.4,
-            ..base
-        },
-        Model {
-            alpha: 0.02,
-            beta: 0.2,
-            frequency_ratio: 1.4,
-            left: Some(-0.7),
-            ..base
-        },
+        Model { alpha: 0.02, ..base },
+        Model { alpha: 0.02, friction: Friction::Arctangent, ..base },
+        Model { beta: 0.2, frequency_ratio: 1.4, ..base },
+        Model { alpha: 0.02, beta: 0.2, frequency_ratio: 1.4, left: Some(-0.7), ..base },
     ] {
-        let start = Start {
-            x: -0.65,
-            velocity: 0.4,
-        };
+        let start = Start { x: -0.65, velocity: 0.4 };
         let usual = taylor(&model, start, 1e-10, 50.0);
         let tight = taylor(&model, start, 1e-12, 50.0);
         assert_eq!(usual.impacts.len(), tight.impacts.len());
@@ -206,21 +138,14 @@ fn dissipative_and_forced_motions_agree_with_runs_a_hundred_times_tighter() {
 /// follow it alike.
 #[test]
 fn a_touch_faster_than_the_contact_relaxes() {
-    let model = Model {
-        gamma: 1e4,
-        mu: 4e4,
-        ..Model::default()
-    };
+    let model = Model { gamma: 1e4, mu: 4e4, ..Model::default() };
     let [one, other] = [Integrator::Taylor, Integrator::RungeKutta]
         .map(|integrator| run(&model, REST, 1e-11, 12.0, integrator));
     assert_eq!(one.impacts.len(), other.impacts.len());
     let first = one.impacts[0];
     assert!(first.speed_in * model.mu > 4.0 * model.gamma, "{first:?}");
     for (one, other) in one.impacts.iter().zip(&other.impacts) {
-        assert!(
-            (one.penetration / other.penetration - 1.0).abs() < 1e-6,
-            "{one:?} {other:?}"
-        );
+        assert!((one.penetration / other.penetration - 1.0).abs() < 1e-6, "{one:?} {other:?}");
         let [out, judged] = [one, other].map(|impact| impact.speed_out.expect("an exit"));
         assert!((out / judged - 1.0).abs() < 1e-5, "{one:?} {other:?}");
     }
@@ -230,10 +155,7 @@ fn a_touch_faster_than_the_contact_relaxes() {
 /// drive, they are kept.
 #[test]
 fn a_chaotic_motion_is_known_until_the_integrators_part() {
-    let still = Start {
-        x: 0.0,
-        velocity: 0.0,
-    };
+    let still = Start { x: 0.0, velocity: 0.0 };
     let driven = |beta: f64, frequency_ratio: f64, barrier: f64| Model {
         gamma: 1e4,
         mu: 500.0,
@@ -262,24 +184,16 @@ fn a_chaotic_motion_is_known_until_the_integrators_part() {
         };
         let places = (0..400).filter_map(|t| series.path.at(f64::from(t)));
         let size = places.fold(0.0, |size: f64, (x, _)| size.max(x.abs()));
-        let (before, after) = (
-            apart(0.0, 0.8 * known) / size,
-            apart(known, (1.6 * known).min(400.0)) / size,
-        );
-        assert!(
-            (20.0..350.0).contains(&known),
-            "{beta} {frequency_ratio}: {known}"
-        );
+        let (before, after) =
+            (apart(0.0, 0.8 * known) / size, apart(known, (1.6 * known).min(400.0)) / size);
+        assert!((20.0..350.0).contains(&known), "{beta} {frequency_ratio}: {known}");
         assert!(
             before < 1e-6 && after > 1e-6,
             "{beta} {frequency_ratio}: {before:e}, {after:e} around {known}"
         );
     }
     for model in [driven(0.8, 0.6, 0.2), driven(0.0, 1.0, 0.2)] {
-        let start = Start {
-            x: -0.5,
-            velocity: 0.0,
-        };
+        let start = Start { x: -0.5, velocity: 0.0 };
         let motion = simulate(&model, start, Integrator::Taylor, &settings).expect("a motion");
         assert_eq!(known_until(&motion), None);
     }

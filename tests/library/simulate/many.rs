@@ -10,16 +10,8 @@ fn crowd(count: usize) -> Vec<(Model, Start)> {
             let part = index as f64 / count as f64;
             let model = Model {
                 zeta: 0.02 * part,
-                alpha: if index.is_multiple_of(3) {
-                    0.0
-                } else {
-                    0.1 * part
-                },
-                beta: if index.is_multiple_of(4) {
-                    0.0
-                } else {
-                    0.3 * part
-                },
+                alpha: if index.is_multiple_of(3) { 0.0 } else { 0.1 * part },
+                beta: if index.is_multiple_of(4) { 0.0 } else { 0.3 * part },
                 frequency_ratio: 0.5 + part,
                 gamma: 10.0_f64.powf(3.0 + 6.0 * part),
                 mu: if index.is_multiple_of(2) { 0.0 } else { 1e4 },
@@ -27,10 +19,7 @@ fn crowd(count: usize) -> Vec<(Model, Start)> {
                 right: Some(0.1 + 0.5 * part),
                 friction: Friction::Exact,
             };
-            let start = Start {
-                x: -0.9 + 0.3 * part,
-                velocity: 0.5 * part,
-            };
+            let start = Start { x: -0.9 + 0.3 * part, velocity: 0.5 * part };
             (model, start)
         })
         .collect()
@@ -38,24 +27,14 @@ fn crowd(count: usize) -> Vec<(Model, Start)> {
 
 #[test]
 fn several_at_a_time_are_bit_for_bit_what_each_is_alone() {
-    let options = Settings {
-        keep_path: false,
-        ..Settings::default()
-    };
+    let options = Settings { keep_path: false, ..Settings::default() };
     let motions = crowd(150);
     let together = simulate_many(&motions, &options).expect("they begin");
     for ((model, start), together) in motions.iter().zip(&together) {
         for keep_path in [false, true] {
-            let alone = simulate(
-                model,
-                *start,
-                Integrator::Taylor,
-                &Settings {
-                    keep_path,
-                    ..options
-                },
-            )
-            .expect("it begins");
+            let alone =
+                simulate(model, *start, Integrator::Taylor, &Settings { keep_path, ..options })
+                    .expect("it begins");
             assert_eq!(alone.impacts, together.impacts, "{model:?}");
             assert_eq!(alone.turns, together.turns);
             assert_eq!(alone.end_x.to_bits(), together.end_x.to_bits());
@@ -91,68 +70,37 @@ fn a_motion_that_was_never_begun_shows_nothing() {
         .values()
         .iter()
         .map(|zeta| {
-            let model = Model {
-                zeta: *zeta,
-                ..Model::default()
-            };
+            let model = Model { zeta: *zeta, ..Model::default() };
             (model, Start::default())
         })
         .collect();
-    let settings = Settings {
-        interrupt: Interrupt::by(&STOPPED),
-        ..Settings::default()
-    };
+    let settings = Settings { interrupt: Interrupt::by(&STOPPED), ..Settings::default() };
     let mut rows = sweep_on(1, &motions, Integrator::Taylor, &settings, |_| ()).expect("rows");
     assert!(rows.iter().all(|row| !row.is_begun()));
     // One of them was followed to its end.
-    rows[1] = sweep_on(
-        1,
-        &motions[1..2],
-        Integrator::Taylor,
-        &Settings::default(),
-        |_| (),
-    )
-    .expect("a row")[0];
+    rows[1] = sweep_on(1, &motions[1..2], Integrator::Taylor, &Settings::default(), |_| ())
+        .expect("a row")[0];
     assert!(rows[1].is_begun());
-    let report = SweepReport {
-        axes: &axes,
-        rows: &rows,
-    };
+    let report = SweepReport { axes: &axes, rows: &rows };
     let written = |write: fn(&SweepReport, &mut dyn std::io::Write) -> std::io::Result<()>| {
         let mut text = Vec::new();
         write(&report, &mut text).expect("a text");
         String::from_utf8(text).expect("a text")
     };
     let text = written(sweep_text);
-    let words: Vec<&str> = text
-        .lines()
-        .nth(1)
-        .expect("a line")
-        .split_whitespace()
-        .collect();
+    let words: Vec<&str> = text.lines().nth(1).expect("a line").split_whitespace().collect();
     assert_eq!(words, ["0.01", "-", "-", "-", "-", "-", "-", "incomplete"]);
     let table = written(sweep_csv);
     let cells: Vec<&str> = table.lines().nth(2).expect("a line").split(',').collect();
     assert_eq!(cells[..9], ["0.01", "", "", "", "", "", "", "", ""]);
     assert_eq!(cells[9..], ["false", "interrupted"]);
-    assert_eq!(
-        cells.len(),
-        table.lines().nth(3).expect("a line").split(',').count()
-    );
+    assert_eq!(cells.len(), table.lines().nth(3).expect("a line").split(',').count());
     let document: json::SweepDocument =
         serde_json::from_str(&written(json::sweep)).expect("a document");
     let [first, second, _] = document.rows.as_slice() else {
         panic!("{document:?}");
     };
-    let none = (
-        first.impacts,
-        first.penetration,
-        first.speed_in,
-        first.energy_lost,
-    );
-    assert_eq!(
-        (none, &first.final_state),
-        ((None, None, None, None), &None)
-    );
+    let none = (first.impacts, first.penetration, first.speed_in, first.energy_lost);
+    assert_eq!((none, &first.final_state), ((None, None, None, None), &None));
     assert!(second.impacts.is_some() && second.final_state.is_some());
 }

@@ -14,10 +14,7 @@ mod rest;
 
 use lindstedt::impact::{Integrator, Model, Settings, Simulation, Start, simulate};
 
-const REST: Start = Start {
-    x: -1.5,
-    velocity: 0.0,
-};
+const REST: Start = Start { x: -1.5, velocity: 0.0 };
 
 fn run(
     model: &Model,
@@ -38,11 +35,5 @@ fn run(
 /// As accurate as a run by the program with this `integrator_tolerance`, whose steps get a
 /// hundredth of it.
 fn taylor(model: &Model, start: Start, tolerance: f64, duration: f64) -> Simulation {
-    run(
-        model,
-        start,
-        (1e-2 * tolerance).max(1e-15),
-        duration,
-        Integrator::Taylor,
-    )
+    run(model, start, (1e-2 * tolerance).max(1e-15), duration, Integrator::Taylor)
 }

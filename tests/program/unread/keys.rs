@@ -22,44 +22,24 @@ const LINES: [(&str, &str, &str); 95] = [
     ("periods", "periods = 2", FORMULA),
     ("small", "small = \"A\"", FORMULA),
     ("amplitude", "amplitude = \"first-harmonic\"", FORMULA),
-    (
-        "about",
-        "about = \"x = 1\"",
-        "equation = \"x'' - x + x^3 = 0\"\n",
-    ),
+    ("about", "about = \"x = 1\"", "equation = \"x'' - x + x^3 = 0\"\n"),
     ("[values]", "[values]\nA = 0.25\neps = 0.5", FORMULA),
     (
         "[lagrangian] coordinates",
         "[lagrangian]\ncoordinates = [\"u\"]\nkinetic = \"u'^2/2\"\npotential = \"u^2/2 + u^4/4\"",
         "",
     ),
-    (
-        "[lagrangian] kinetic",
-        "kinetic = \"x'^2/3\"",
-        "[lagrangian]\ncoordinates = [\"x\"]\n",
-    ),
+    ("[lagrangian] kinetic", "kinetic = \"x'^2/3\"", "[lagrangian]\ncoordinates = [\"x\"]\n"),
     (
         "[lagrangian] potential",
         "potential = \"x^2/2 + x^4/4\"",
         "[lagrangian]\ncoordinates = [\"x\"]\nkinetic = \"x'^2/3\"\n",
     ),
-    (
-        "[lagrangian] dissipation",
-        "dissipation = \"x'^2/4\"",
-        MECHANISM,
-    ),
-    (
-        "[lagrangian] forces",
-        "forces = { x = \"-x^3\" }",
-        MECHANISM,
-    ),
+    ("[lagrangian] dissipation", "dissipation = \"x'^2/4\"", MECHANISM),
+    ("[lagrangian] forces", "forces = { x = \"-x^3\" }", MECHANISM),
     ("[units]", "[units]\nx = \"m\"", MECHANISM),
     ("[primary] mass", "[primary]\nmass = 1", ""),
-    (
-        "[primary] stiffness",
-        "stiffness = 50",
-        "[primary]\nmass = 1\n",
-    ),
+    ("[primary] stiffness", "stiffness = 50", "[primary]\nmass = 1\n"),
     ("[primary] damping", "damping = 0.25", MAIN_MASS),
     ("[primary] displacement", "displacement = 0.25", MAIN_MASS),
     ("[primary] speed", "speed = 0.25", MAIN_MASS),
@@ -76,98 +56,46 @@ const LINES: [(&str, &str, &str); 95] = [
     ("[contact] gamma", "[contact]\ngamma = 1e5", ""),
     ("[contact] force", "[contact]\nforce = \"1e6*d^2\"", ""),
     ("[contact] mu", "[contact]\nmu = 1e5", ""),
-    (
-        "[contact] mu_over_gamma",
-        "[contact]\nmu_over_gamma = 0.25",
-        "",
-    ),
+    ("[contact] mu_over_gamma", "[contact]\nmu_over_gamma = 0.25", ""),
     ("[contact] lambda", "[contact]\nlambda = 0.25", ""),
     ("[contact] restitution", "[contact]\nrestitution = 0.75", ""),
-    (
-        "[contact] at_speed",
-        "at_speed = 0.25",
-        "[contact]\nrestitution = 0.75\n",
-    ),
+    ("[contact] at_speed", "at_speed = 0.25", "[contact]\nrestitution = 0.75\n"),
     ("[contact] damping", "[contact]\ndamping = 25", ""),
     ("[contact] law", "[contact]\nlaw = \"homotopy\"", ""),
-    (
-        "[contact] linearisation",
-        "[contact]\nlinearisation = \"equal-energy\"",
-        "",
-    ),
+    ("[contact] linearisation", "[contact]\nlinearisation = \"equal-energy\"", ""),
     ("[damping] zeta", "[damping]\nzeta = 0.25", ""),
     ("[damping] viscous", "[damping]\nviscous = 0.01", ""),
     ("[damping] alpha", "[damping]\nalpha = 0.25", ""),
     ("[damping] torque", "[damping]\ntorque = 1e-4", ""),
-    (
-        "[damping] friction",
-        "friction = \"arctangent\"",
-        "[damping]\nalpha = 0.1\n",
-    ),
-    (
-        "[excitation] beta",
-        "beta = 0.25",
-        "[excitation]\nfrequency_ratio = 0.5\n",
-    ),
-    (
-        "[excitation] frequency_ratio",
-        "frequency_ratio = 0.75",
-        "[excitation]\nbeta = 0.1\n",
-    ),
+    ("[damping] friction", "friction = \"arctangent\"", "[damping]\nalpha = 0.1\n"),
+    ("[excitation] beta", "beta = 0.25", "[excitation]\nfrequency_ratio = 0.5\n"),
+    ("[excitation] frequency_ratio", "frequency_ratio = 0.75", "[excitation]\nbeta = 0.1\n"),
     ("[design] mass", "[design]\nmass = 0.02", ""),
     ("[design] radius", "[design]\nradius = 0.02", ""),
     ("[design] length", "[design]\nlength = 0.1", ""),
     ("[design] modulus", "[design]\nmodulus = 1e8", ""),
     ("[design] gravity", "[design]\ngravity = 1.6", ""),
     ("[sphere] radius", "[sphere]\nradius = 0.02", ""),
-    (
-        "[sphere] modulus",
-        "[sphere]\nmodulus = 2e11\npoisson = 0.3\n[barrier]\npoisson = 0.3",
-        "",
-    ),
+    ("[sphere] modulus", "[sphere]\nmodulus = 2e11\npoisson = 0.3\n[barrier]\npoisson = 0.3", ""),
     ("[sphere] poisson", "[sphere]\npoisson = 0.3", ""),
     ("[sphere] yield", "[sphere]\nyield = 1e7", ""),
     ("[barrier] modulus", "[barrier]\nmodulus = 1e8", ""),
     ("[barrier] poisson", "[barrier]\npoisson = 0.3", ""),
     ("[barrier] yield", "[barrier]\nyield = 1e7", ""),
     ("[run] duration", "[run]\nduration = 25", ""),
-    (
-        "[run] integrator_tolerance",
-        "[run]\nintegrator_tolerance = 1e-6",
-        "",
-    ),
+    ("[run] integrator_tolerance", "[run]\nintegrator_tolerance = 1e-6", ""),
     ("[run] step_limit", "[run]\nstep_limit = 3", ""),
-    (
-        "[[material]]",
-        "[[material]]\nname = \"Cork\"\nmodulus = 2e7",
-        "",
-    ),
+    ("[[material]]", "[[material]]\nname = \"Cork\"\nmodulus = 2e7", ""),
     ("[limits] mass", "[limits]\nmass = [0.02, 0.05]", ""),
     ("[limits] radius", "[limits]\nradius = [0.002, 0.01]", ""),
     ("[limits] length", "[limits]\nlength = [0.05, 0.2]", ""),
     ("[limits] modulus", "[limits]\nmodulus = [1e9, 1e10]", ""),
     ("[limits] density", "[limits]\ndensity = 7850", ""),
-    (
-        "[limits] elastic",
-        "[limits]\nelastic = true",
-        "[sphere]\nyield = 1e9\n",
-    ),
+    ("[limits] elastic", "[limits]\nelastic = true", "[sphere]\nyield = 1e9\n"),
     ("[limits] max_rest_time", "[limits]\nmax_rest_time = 9", ""),
-    (
-        "[limits] max_dimensionless_rest_time",
-        "[limits]\nmax_dimensionless_rest_time = 95",
-        "",
-    ),
-    (
-        "[limits] max_peak_force",
-        "[limits]\nmax_peak_force = 200",
-        "",
-    ),
-    (
-        "[limits] max_peak_pressure",
-        "[limits]\nmax_peak_pressure = 1e9",
-        "",
-    ),
+    ("[limits] max_dimensionless_rest_time", "[limits]\nmax_dimensionless_rest_time = 95", ""),
+    ("[limits] max_peak_force", "[limits]\nmax_peak_force = 200", ""),
+    ("[limits] max_peak_pressure", "[limits]\nmax_peak_pressure = 1e9", ""),
     ("[limits] max_impacts", "[limits]\nmax_impacts = 12", ""),
     (
         "[limits] max_primary_rest_time",
@@ -178,42 +106,14 @@ const LINES: [(&str, &str, &str); 95] = [
     ("[genetic] population", "[genetic]\npopulation = 20", ""),
     ("[genetic] generations", "[genetic]\ngenerations = 2", ""),
     ("[genetic] elite", "[genetic]\nelite = 5", ""),
-    (
-        "[genetic] crossover_fraction",
-        "[genetic]\ncrossover_fraction = 0.5",
-        "",
-    ),
-    (
-        "[genetic] crossover",
-        "[genetic]\ncrossover = \"scattered\"",
-        "",
-    ),
-    (
-        "[genetic] crossover_ratio",
-        "[genetic]\ncrossover_ratio = 1.5",
-        "",
-    ),
-    (
-        "[genetic] mutation",
-        "[genetic]\nmutation = \"bit-flip\"",
-        "",
-    ),
-    (
-        "[genetic] mutation_rate",
-        "mutation_rate = 0.1",
-        "[genetic]\ncoding = \"bits\"\n",
-    ),
+    ("[genetic] crossover_fraction", "[genetic]\ncrossover_fraction = 0.5", ""),
+    ("[genetic] crossover", "[genetic]\ncrossover = \"scattered\"", ""),
+    ("[genetic] crossover_ratio", "[genetic]\ncrossover_ratio = 1.5", ""),
+    ("[genetic] mutation", "[genetic]\nmutation = \"bit-flip\"", ""),
+    ("[genetic] mutation_rate", "mutation_rate = 0.1", "[genetic]\ncoding = \"bits\"\n"),
     ("[genetic] coding", "[genetic]\ncoding = \"bits\"", ""),
-    (
-        "[genetic] bits",
-        "bits = 8",
-        "[genetic]\ncoding = \"bits\"\n",
-    ),
-    (
-        "[genetic] penalty",
-        "[genetic]\npenalty = \"death\"",
-        "[limits]\nmax_impacts = 12\n",
-    ),
+    ("[genetic] bits", "bits = 8", "[genetic]\ncoding = \"bits\"\n"),
+    ("[genetic] penalty", "[genetic]\npenalty = \"death\"", "[limits]\nmax_impacts = 12\n"),
     (
         "[genetic] initial_penalty",
         "initial_penalty = 5",
@@ -229,26 +129,10 @@ const LINES: [(&str, &str, &str); 95] = [
         "[genetic]\nconstraint_tolerance = 0.5",
         "[limits]\ndensity = 7850\n",
     ),
-    (
-        "[genetic] stall_generations",
-        "[genetic]\nstall_generations = 1",
-        "",
-    ),
-    (
-        "[genetic] function_tolerance",
-        "[genetic]\nfunction_tolerance = 1",
-        "",
-    ),
-    (
-        "[genetic] stall_test",
-        "[genetic]\nstall_test = \"weighted\"",
-        "",
-    ),
-    (
-        "[genetic] runs",
-        "runs = 2",
-        "[genetic]\npopulation = 4\nelite = 1\ngenerations = 2\n",
-    ),
+    ("[genetic] stall_generations", "[genetic]\nstall_generations = 1", ""),
+    ("[genetic] function_tolerance", "[genetic]\nfunction_tolerance = 1", ""),
+    ("[genetic] stall_test", "[genetic]\nstall_test = \"weighted\"", ""),
+    ("[genetic] runs", "runs = 2", "[genetic]\npopulation = 4\nelite = 1\ngenerations = 2\n"),
     ("[genetic] seed", "[genetic]\nseed = 2", ""),
 ];
 
@@ -280,10 +164,9 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
                 (Reader::Impact, "[excitation] beta") => {
                     ("[excitation]\nbeta = 0.25\n".to_owned(), String::new())
                 }
-                (Reader::Materials | Reader::Optimize, "[excitation] frequency_ratio") => (
-                    "[excitation]\nfrequency_ratio = 0.75\n".to_owned(),
-                    String::new(),
-                ),
+                (Reader::Materials | Reader::Optimize, "[excitation] frequency_ratio") => {
+                    ("[excitation]\nfrequency_ratio = 0.75\n".to_owned(), String::new())
+                }
                 _ => (with, without),
             };
             let foreign = matches!(
@@ -321,10 +204,7 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
                 && beside != MECHANISM;
             let named_otherwise = foreign && beside.starts_with('[');
             let (with, without) = match foreign {
-                true => (
-                    format!("{with}{MECHANISM}"),
-                    format!("{without}{MECHANISM}"),
-                ),
+                true => (format!("{with}{MECHANISM}"), format!("{without}{MECHANISM}")),
                 false => (with, without),
             };
             // Periodic coefficients make another equation.
@@ -364,10 +244,7 @@ fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
                 continue;
             }
             let base = of_file("base", &without, &arguments);
-            assert!(
-                answer != base,
-                "`{key}` changes nothing for {command}: {answer:?}"
-            );
+            assert!(answer != base, "`{key}` changes nothing for {command}: {answer:?}");
         }
     }
 }
@@ -378,50 +255,22 @@ fn every_key_of_a_response_changes_it_or_is_refused_by_name() {
     let equation = "equation = \"x'' + x'/2 + x + eps*x^3 - F*cos(t) = 0\"\n";
     let vary = "vary = \"F=0.5:0.6\"\n";
     let values = "[values]\neps = 0.5\n";
-    let base = of_file(
-        "response-base",
-        &format!("{equation}{vary}{values}"),
-        &["response"],
-    );
+    let base = of_file("response-base", &format!("{equation}{vary}{values}"), &["response"]);
     assert_eq!(base.0, Some(0), "{base:?}");
     for (key, file) in [
-        (
-            "equation",
-            format!("{}{vary}{values}", equation.replace("x'/2", "x'/3")),
-        ),
-        (
-            "vary",
-            format!("{equation}{}{values}", vary.replace("0.6", "0.7")),
-        ),
-        (
-            "FROM:TO",
-            format!("{equation}{}{values}", vary.replace(":0.6", "")),
-        ),
-        (
-            "[values]",
-            format!("{equation}{vary}{}", values.replace("0.5", "0.6")),
-        ),
+        ("equation", format!("{}{vary}{values}", equation.replace("x'/2", "x'/3"))),
+        ("vary", format!("{equation}{}{values}", vary.replace("0.6", "0.7"))),
+        ("FROM:TO", format!("{equation}{}{values}", vary.replace(":0.6", ""))),
+        ("[values]", format!("{equation}{vary}{}", values.replace("0.5", "0.6"))),
         ("order", format!("{equation}{vary}order = 1\n{values}")),
         ("periods", format!("{equation}{vary}periods = 2\n{values}")),
-        (
-            "method",
-            format!("{equation}{vary}method = \"pade\"\n{values}"),
-        ),
-        (
-            "small",
-            format!("{equation}{vary}small = \"eps\"\n{values}"),
-        ),
-        (
-            "run",
-            format!("{equation}{vary}{values}[run]\nduration = 5\n"),
-        ),
+        ("method", format!("{equation}{vary}method = \"pade\"\n{values}")),
+        ("small", format!("{equation}{vary}small = \"eps\"\n{values}")),
+        ("run", format!("{equation}{vary}{values}[run]\nduration = 5\n")),
     ] {
         let answer = of_file("response-key", &file, &["response"]);
         assert!(answer != base, "{key}: {answer:?}");
-        assert!(
-            answer.0 == Some(0) || answer.2.contains(key),
-            "{key}: {answer:?}"
-        );
+        assert!(answer.0 == Some(0) || answer.2.contains(key), "{key}: {answer:?}");
     }
 }
 
@@ -442,17 +291,10 @@ fn every_key_of_a_motion_of_ones_own_changes_it_or_is_refused_by_name() {
                 let line = line.replace("A = 0.25", "eps = 0.25");
                 let equation = equation.replace(" + A", "");
                 let sections = if beside.starts_with('[') { beside } else { "" };
-                (
-                    format!("{equation}{sections}{line}\n"),
-                    format!("{equation}{sections}"),
-                )
+                (format!("{equation}{sections}{line}\n"), format!("{equation}{sections}"))
             }
         };
-        let coordinate = if key == "[lagrangian] coordinates" {
-            "u=0.5"
-        } else {
-            "x=0.5"
-        };
+        let coordinate = if key == "[lagrangian] coordinates" { "u=0.5" } else { "x=0.5" };
         let mut arguments = vec!["simulate", "--format", "json", "--from", coordinate];
         if !of_mechanism && key != "equation" && key != "[values]" {
             arguments.extend(["--at", "eps=1"]);
@@ -467,10 +309,9 @@ fn every_key_of_a_motion_of_ones_own_changes_it_or_is_refused_by_name() {
                     || !beside.is_empty(),
                 "`{key}`: {answer:?}"
             ),
-            true => assert!(
-                answer != of_file("own-base", &without, &arguments),
-                "`{key}`: {answer:?}"
-            ),
+            true => {
+                assert!(answer != of_file("own-base", &without, &arguments), "`{key}`: {answer:?}")
+            }
         }
     }
 }
@@ -478,97 +319,33 @@ fn every_key_of_a_motion_of_ones_own_changes_it_or_is_refused_by_name() {
 #[test]
 fn keys_that_others_leave_nothing_to_say_are_refused_with_both_names() {
     for (text, arguments, words) in [
-        (
-            "[pendulum]\namplitude = 1\nstart = 0.1",
-            vec![],
-            ["amplitude", "start"],
-        ),
-        (
-            "[excitation]\nfrequency_ratio = 0.5",
-            vec![],
-            ["frequency_ratio", "beta"],
-        ),
-        (
-            "[damping]\nfriction = \"exact\"",
-            vec![],
-            ["friction", "alpha"],
-        ),
+        ("[pendulum]\namplitude = 1\nstart = 0.1", vec![], ["amplitude", "start"]),
+        ("[excitation]\nfrequency_ratio = 0.5", vec![], ["frequency_ratio", "beta"]),
+        ("[damping]\nfriction = \"exact\"", vec![], ["friction", "alpha"]),
         ("[contact]\nmu = 1\nlambda = 1", vec![], ["mu", "lambda"]),
-        (
-            "[contact]\nrestitution = 0.8\ndamping = 1",
-            vec![],
-            ["restitution", "damping"],
-        ),
-        (
-            "[contact]\nlambda = 1\nmu_over_gamma = 1",
-            vec![],
-            ["lambda", "mu_over_gamma"],
-        ),
-        (
-            "[contact]\nat_speed = 1",
-            vec![],
-            ["at_speed", "restitution"],
-        ),
-        (
-            "[damping]\nzeta = 0.1\nviscous = 1",
-            vec![],
-            ["zeta", "viscous"],
-        ),
-        (
-            "[damping]\nalpha = 0.1",
-            vec!["--sweep", "torque=0:1e-4:3"],
-            ["alpha", "torque"],
-        ),
+        ("[contact]\nrestitution = 0.8\ndamping = 1", vec![], ["restitution", "damping"]),
+        ("[contact]\nlambda = 1\nmu_over_gamma = 1", vec![], ["lambda", "mu_over_gamma"]),
+        ("[contact]\nat_speed = 1", vec![], ["at_speed", "restitution"]),
+        ("[damping]\nzeta = 0.1\nviscous = 1", vec![], ["zeta", "viscous"]),
+        ("[damping]\nalpha = 0.1", vec!["--sweep", "torque=0:1e-4:3"], ["alpha", "torque"]),
         (
             "[contact]\ngamma = 1e5\nmu_over_gamma = 0.1",
             vec!["--sweep", "length=0.1:0.2:3"],
             ["length", "gamma"],
         ),
-        (
-            "[contact]\ngamma = 1e5",
-            vec!["--sweep", "modulus=1e8:1e9:3"],
-            ["modulus", "gamma"],
-        ),
-        (
-            "[contact]\ngamma = 1e5",
-            vec!["--sweep", "gravity=1:10:3"],
-            ["gravity", "gamma"],
-        ),
-        (
-            "",
-            vec!["--sweep", "gamma=1e5:1e6:3", "--sweep", "mass=0.1:0.2:3"],
-            ["mass", "gamma"],
-        ),
-        (
-            "[pendulum]\nstart = 0.1",
-            vec!["--sweep", "amplitude=0.5:1:3"],
-            ["amplitude", "start"],
-        ),
-        (
-            "[pendulum]\namplitude = 1",
-            vec!["--sweep", "start=0.1:0.2:3"],
-            ["amplitude", "start"],
-        ),
-        (
-            "",
-            vec!["--sweep", "frequency_ratio=0.5:1:3"],
-            ["frequency_ratio", "beta"],
-        ),
-        (
-            "[contact]\nmu = 1",
-            vec!["--sweep", "lambda=0:1:3"],
-            ["mu", "lambda"],
-        ),
+        ("[contact]\ngamma = 1e5", vec!["--sweep", "modulus=1e8:1e9:3"], ["modulus", "gamma"]),
+        ("[contact]\ngamma = 1e5", vec!["--sweep", "gravity=1:10:3"], ["gravity", "gamma"]),
+        ("", vec!["--sweep", "gamma=1e5:1e6:3", "--sweep", "mass=0.1:0.2:3"], ["mass", "gamma"]),
+        ("[pendulum]\nstart = 0.1", vec!["--sweep", "amplitude=0.5:1:3"], ["amplitude", "start"]),
+        ("[pendulum]\namplitude = 1", vec!["--sweep", "start=0.1:0.2:3"], ["amplitude", "start"]),
+        ("", vec!["--sweep", "frequency_ratio=0.5:1:3"], ["frequency_ratio", "beta"]),
+        ("[contact]\nmu = 1", vec!["--sweep", "lambda=0:1:3"], ["mu", "lambda"]),
         (
             "[excitation]\nbeta = 0",
             vec!["--sweep", "frequency_ratio=0.5:1:3"],
             ["frequency_ratio", "beta"],
         ),
-        (
-            "",
-            vec!["--sweep", "beta=0.1:1:3"],
-            ["beta", "frequency_ratio"],
-        ),
+        ("", vec!["--sweep", "beta=0.1:1:3"], ["beta", "frequency_ratio"]),
         (
             "[pendulum]\nbarrier = false",
             vec!["--sweep", "gamma=1e4:1e5:3:log"],
@@ -580,11 +357,7 @@ fn keys_that_others_leave_nothing_to_say_are_refused_with_both_names() {
             ["length", "gamma"],
         ),
     ] {
-        let answer = of_file(
-            "both",
-            text,
-            &[&["simulate"], arguments.as_slice()].concat(),
-        );
+        let answer = of_file("both", text, &[&["simulate"], arguments.as_slice()].concat());
         assert!(
             words.iter().all(|word| is_refused(&answer, word)),
             "{text}, {arguments:?}: {answer:?}"
@@ -597,63 +370,27 @@ fn keys_that_others_leave_nothing_to_say_are_refused_with_both_names() {
         &["simulate", "--format", "csv", "--sweep", "length=0.1:0.4:2"],
     );
     assert_eq!(swept.0, Some(0), "{swept:?}");
-    let rows: Vec<&str> = swept
-        .1
-        .lines()
-        .skip(2)
-        .filter_map(|row| row.split_once(','))
-        .map(|row| row.1)
-        .collect();
+    let rows: Vec<&str> =
+        swept.1.lines().skip(2).filter_map(|row| row.split_once(',')).map(|row| row.1).collect();
     assert_ne!(rows[0], rows[1]);
     // A gamma that is given wins over the design, and says so.
     for command in ["impact", "simulate"] {
-        let answer = of_file(
-            "wins",
-            "[contact]\ngamma = 1e5\n[design]\nmodulus = 1e8",
-            &[command],
-        );
-        assert!(
-            answer.1.contains("given: [design] has no say in it"),
-            "{answer:?}"
-        );
+        let answer = of_file("wins", "[contact]\ngamma = 1e5\n[design]\nmodulus = 1e8", &[command]);
+        assert!(answer.1.contains("given: [design] has no say in it"), "{answer:?}");
     }
 }
 
 #[test]
 fn a_file_for_another_command_is_sent_there() {
     for (command, file, words) in [
-        (
-            "derive",
-            "examples/impact-soft.toml",
-            "use `lindstedt impact`",
-        ),
-        (
-            "compare",
-            "examples/impact-soft.toml",
-            "use `lindstedt impact`",
-        ),
-        (
-            "derive",
-            "examples/simulate/damper.toml",
-            "`lindstedt simulate`",
-        ),
-        (
-            "impact",
-            "examples/simulate/damper.toml",
-            "`lindstedt simulate`",
-        ),
-        (
-            "impact",
-            "examples/simulate/stick-slip.toml",
-            "`lindstedt simulate`",
-        ),
+        ("derive", "examples/impact-soft.toml", "use `lindstedt impact`"),
+        ("compare", "examples/impact-soft.toml", "use `lindstedt impact`"),
+        ("derive", "examples/simulate/damper.toml", "`lindstedt simulate`"),
+        ("impact", "examples/simulate/damper.toml", "`lindstedt simulate`"),
+        ("impact", "examples/simulate/stick-slip.toml", "`lindstedt simulate`"),
         ("impact", "examples/duffing.toml", "gamma=1e6"),
         ("simulate", "examples/duffing.toml", "`lindstedt derive`"),
-        (
-            "simulate",
-            "examples/impact-soft.toml",
-            "`lindstedt impact`",
-        ),
+        ("simulate", "examples/impact-soft.toml", "`lindstedt impact`"),
     ] {
         let path = format!("{}/{file}", env!("CARGO_MANIFEST_DIR"));
         let answer = run(&[command, &path]);

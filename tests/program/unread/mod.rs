@@ -12,11 +12,7 @@ use std::process::{Command, Output};
 type Answer = (Option<i32>, String, String);
 
 fn run(arguments: &[&str]) -> Answer {
-    let Output {
-        status,
-        stdout,
-        stderr,
-    } = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+    let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_lindstedt"))
         .args(arguments)
         .output()
         .expect("the program starts");
@@ -30,10 +26,7 @@ fn is_refused(answer: &Answer, word: &str) -> bool {
 
 /// A file of its own for each test.
 fn path(name: &str) -> PathBuf {
-    std::env::temp_dir().join(format!(
-        "lindstedt-unread-{name}-{}.toml",
-        std::process::id()
-    ))
+    std::env::temp_dir().join(format!("lindstedt-unread-{name}-{}.toml", std::process::id()))
 }
 
 fn of_file(name: &str, text: &str, arguments: &[&str]) -> Answer {

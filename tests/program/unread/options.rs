@@ -7,10 +7,7 @@ fn options_of(command: &str) -> Vec<String> {
     let help = run(&[command, "--help"]).1;
     let lines = help.lines().map(str::trim);
     let names = lines.filter_map(|line| {
-        let at = line
-            .strip_prefix("-h, ")
-            .unwrap_or(line)
-            .strip_prefix("--")?;
+        let at = line.strip_prefix("-h, ").unwrap_or(line).strip_prefix("--")?;
         at.split([' ', '=']).next().map(str::to_owned)
     });
     names.filter(|name| name != "help").collect()
@@ -20,10 +17,7 @@ fn options_of(command: &str) -> Vec<String> {
 const NO_TIME: &str = "1e-10";
 
 /// A file of claims.
-const AUDIT: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/examples/audit/frequencies.toml"
-);
+const AUDIT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/audit/frequencies.toml");
 
 #[test]
 fn every_option_changes_the_answer_or_is_refused_by_name() {
@@ -33,24 +27,11 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
     let file = path("output").with_extension("txt");
     let file = file.to_str().expect("a path in text");
     let simulated = ["simulate"];
-    let swept = [
-        "simulate",
-        "--format",
-        "csv",
-        "--sweep",
-        "zeta=0.1:0.2:2",
-        "--sweep",
-        "alpha=0.1:0.2:2",
-    ];
+    let swept =
+        ["simulate", "--format", "csv", "--sweep", "zeta=0.1:0.2:2", "--sweep", "alpha=0.1:0.2:2"];
     let own = ["simulate", "x'' + k*x = 0", "--from", "x=1", "--at", "k=1"];
-    let hill = [
-        "stability",
-        "x'' + (delta + eps*cos(Omega*t))*x = 0",
-        "--at",
-        "eps=1",
-        "--at",
-        "Omega=2",
-    ];
+    let hill =
+        ["stability", "x'' + (delta + eps*cos(Omega*t))*x = 0", "--at", "eps=1", "--at", "Omega=2"];
     let driven = [
         "response",
         "x'' + x'/5 + x + x^3 - F*cos(Omega*t) = 0",
@@ -66,65 +47,29 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("derive", vec![cubic], vec!["--order", "1"]),
         ("derive", vec![cubic], vec!["--amplitude", "first-harmonic"]),
         ("derive", vec![cubic], vec!["--small", "A"]),
-        (
-            "derive",
-            vec![cubic, "--method", "energy-balance"],
-            vec!["--small", "nu"],
-        ),
+        ("derive", vec![cubic, "--method", "energy-balance"], vec!["--small", "nu"]),
         ("derive", vec![well], vec!["--about", "x=1"]),
         ("derive", vec![cubic], vec!["--taylor", "5"]),
-        (
-            "derive",
-            vec![cubic, "--method", "max-min"],
-            vec!["--taylor", "5"],
-        ),
-        (
-            "derive",
-            vec!["pendulum", "--method", "parameter-expansion"],
-            vec!["--taylor", "5"],
-        ),
+        ("derive", vec![cubic, "--method", "max-min"], vec!["--taylor", "5"]),
+        ("derive", vec!["pendulum", "--method", "parameter-expansion"], vec!["--taylor", "5"]),
         ("derive", vec![cubic], vec!["--hbar", "-1/2"]),
         ("derive", vec!["forced-duffing"], vec!["--resonance", "1:3"]),
         ("derive", vec![cubic], vec!["--resonance", "1:3"]),
-        (
-            "derive",
-            vec![cubic, "--method", "multiple-scales"],
-            vec!["--resonance", "1:3"],
-        ),
+        ("derive", vec![cubic, "--method", "multiple-scales"], vec!["--resonance", "1:3"]),
         ("derive", vec!["pendulum"], vec!["--omega-only"]),
         ("derive", vec!["pendulum", "--steps"], vec!["--omega-only"]),
-        (
-            "derive",
-            vec!["pendulum", "--method", "energy-balance"],
-            vec!["--omega-only"],
-        ),
+        ("derive", vec!["pendulum", "--method", "energy-balance"], vec!["--omega-only"]),
         ("derive", vec![cycles], vec!["--cycle", "2"]),
         ("derive", vec!["pendulum"], vec!["--cycle", "1"]),
-        (
-            "derive",
-            vec!["pendulum", "--method", "energy-balance"],
-            vec!["--cycle", "1"],
-        ),
-        (
-            "derive",
-            vec!["pendulum", "--method", "exact"],
-            vec!["--order", "3"],
-        ),
+        ("derive", vec!["pendulum", "--method", "energy-balance"], vec!["--cycle", "1"]),
+        ("derive", vec!["pendulum", "--method", "exact"], vec!["--order", "3"]),
         ("derive", vec!["pendulum"], vec!["--at", "A=1"]),
         ("derive", vec!["pendulum"], vec!["--steps"]),
         ("derive", vec!["pendulum"], vec!["--format", "csv"]),
         ("derive", vec!["pendulum"], vec!["--format", "json"]),
         ("derive", vec!["pendulum"], vec!["--output", file]),
-        (
-            "derive",
-            vec!["pendulum", "--at", "A=1"],
-            vec!["--plot", "-"],
-        ),
-        (
-            "derive",
-            vec!["pendulum", "--at", "A=1"],
-            vec!["--tolerance", "1e-9"],
-        ),
+        ("derive", vec!["pendulum", "--at", "A=1"], vec!["--plot", "-"]),
+        ("derive", vec!["pendulum", "--at", "A=1"], vec!["--tolerance", "1e-9"]),
         (
             "derive",
             vec!["van-der-pol", "--order", "150", "--omega-only"],
@@ -138,46 +83,14 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
             vec![cubic, "--at", "eps=1", "--at", "A=1", "--format", "json"],
             vec!["--small", "A"],
         ),
-        (
-            "compare",
-            vec![cubic, "--at", "eps=1", "--at", "A=1"],
-            vec!["--small", "nu"],
-        ),
-        (
-            "compare",
-            vec![well, "--at", "A=1/10"],
-            vec!["--about", "x=1"],
-        ),
-        (
-            "compare",
-            vec!["pendulum", "--at", "A=1"],
-            vec!["--format", "csv"],
-        ),
-        (
-            "compare",
-            vec!["pendulum", "--at", "A=1"],
-            vec!["--format", "latex"],
-        ),
-        (
-            "compare",
-            vec!["pendulum", "--at", "A=1"],
-            vec!["--output", file],
-        ),
-        (
-            "compare",
-            vec!["pendulum", "--at", "A=1"],
-            vec!["--plot", "-"],
-        ),
-        (
-            "compare",
-            vec!["pendulum", "--at", "A=1"],
-            vec!["--tolerance", "1e-9"],
-        ),
-        (
-            "compare",
-            vec!["pendulum", "--at", "A=1"],
-            vec!["--timeout", NO_TIME],
-        ),
+        ("compare", vec![cubic, "--at", "eps=1", "--at", "A=1"], vec!["--small", "nu"]),
+        ("compare", vec![well, "--at", "A=1/10"], vec!["--about", "x=1"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--format", "csv"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--format", "latex"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--output", file]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--plot", "-"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--tolerance", "1e-9"]),
+        ("compare", vec!["pendulum", "--at", "A=1"], vec!["--timeout", NO_TIME]),
         ("compare", vec!["pendulum", "--at", "A=1"], vec!["--quiet"]),
         ("impact", vec![], vec!["--at", "A=1"]),
         ("impact", vec![], vec!["--method", "pade"]),
@@ -186,11 +99,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("impact", vec![], vec!["--force", "gamma*d^2"]),
         ("impact", vec![], vec!["--contact", "power-law"]),
         ("impact", vec![], vec!["--contact", "all"]),
-        (
-            "impact",
-            vec!["--compare"],
-            vec!["--contact", "equal-energy"],
-        ),
+        ("impact", vec!["--compare"], vec!["--contact", "equal-energy"]),
         ("impact", vec!["--compare"], vec!["--contact", "all"]),
         ("impact", vec![], vec!["--left"]),
         ("impact", vec![], vec!["--compare"]),
@@ -203,46 +112,22 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("impact", vec![], vec!["--certify"]),
         ("impact", vec![], vec!["--quiet"]),
         ("simulate", simulated[1..].to_vec(), vec!["--sample", "1"]),
-        (
-            "simulate",
-            simulated[1..].to_vec(),
-            vec!["--integrator", "both"],
-        ),
+        ("simulate", simulated[1..].to_vec(), vec!["--integrator", "both"]),
         ("simulate", simulated[1..].to_vec(), vec!["--chain"]),
         ("simulate", swept[1..].to_vec(), vec!["--chain"]),
         ("simulate", swept[1..].to_vec(), vec!["--baseline"]),
         ("simulate", simulated[1..].to_vec(), vec!["--baseline"]),
-        (
-            "simulate",
-            simulated[1..].to_vec(),
-            vec!["--sweep", "zeta=0:1:2"],
-        ),
+        ("simulate", simulated[1..].to_vec(), vec!["--sweep", "zeta=0:1:2"]),
         ("simulate", simulated[1..].to_vec(), vec!["--jobs", "1"]),
         ("simulate", swept[1..].to_vec(), vec!["--sample", "1"]),
-        (
-            "simulate",
-            swept[1..].to_vec(),
-            vec!["--integrator", "both"],
-        ),
-        (
-            "simulate",
-            simulated[1..].to_vec(),
-            vec!["--format", "latex"],
-        ),
+        ("simulate", swept[1..].to_vec(), vec!["--integrator", "both"]),
+        ("simulate", simulated[1..].to_vec(), vec!["--format", "latex"]),
         ("simulate", simulated[1..].to_vec(), vec!["--format", "csv"]),
         ("simulate", simulated[1..].to_vec(), vec!["--output", file]),
         ("simulate", simulated[1..].to_vec(), vec!["--plot", "-"]),
-        (
-            "simulate",
-            simulated[1..].to_vec(),
-            vec!["--tolerance", "1e-15"],
-        ),
+        ("simulate", simulated[1..].to_vec(), vec!["--tolerance", "1e-15"]),
         ("simulate", long[1..].to_vec(), vec!["--timeout", NO_TIME]),
-        (
-            "simulate",
-            [&long[1..], &["--timeout", NO_TIME]].concat(),
-            vec!["--quiet"],
-        ),
+        ("simulate", [&long[1..], &["--timeout", NO_TIME]].concat(), vec!["--quiet"]),
         ("simulate", own[1..].to_vec(), vec!["--from", "x'=0.5"]),
         ("simulate", own[1..].to_vec(), vec!["--until", "3"]),
         ("simulate", own[1..4].to_vec(), vec!["--at", "k=2"]),
@@ -255,11 +140,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("simulate", own[1..].to_vec(), vec!["--every", "pi"]),
         ("simulate", own[1..].to_vec(), vec!["--section", "x'"]),
         ("simulate", own[1..].to_vec(), vec!["--after", "10"]),
-        (
-            "simulate",
-            [&own[1..], &["--every", "pi"]].concat(),
-            vec!["--after", "10"],
-        ),
+        ("simulate", [&own[1..], &["--every", "pi"]].concat(), vec!["--after", "10"]),
         ("simulate", vec![], vec!["--every", "pi"]),
         ("simulate", vec![], vec!["--section", "x'"]),
         ("simulate", vec![], vec!["--after", "1"]),
@@ -303,78 +184,30 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         ("materials", vec![], vec!["--tolerance", "0.1"]),
         ("materials", vec![], vec!["--timeout", NO_TIME]),
         ("materials", vec![], vec!["--quiet"]),
-        (
-            "optimize",
-            vec!["--runs", "1", "--budget", "300"],
-            vec!["--seed", "2"],
-        ),
+        ("optimize", vec!["--runs", "1", "--budget", "300"], vec!["--seed", "2"]),
         ("optimize", vec!["--budget", "300"], vec!["--runs", "2"]),
         // The result is the same for any number of threads.
         ("optimize", vec!["--budget", "300"], vec!["--jobs", "0"]),
         ("optimize", vec!["--runs", "1"], vec!["--budget", "300"]),
-        (
-            "optimize",
-            vec!["--runs", "1", "--budget", "300"],
-            vec!["--record", "-"],
-        ),
-        (
-            "optimize",
-            vec!["--runs", "1", "--budget", "300"],
-            vec!["--resume", "-"],
-        ),
-        (
-            "optimize",
-            vec!["--budget", "0.0000000001s"],
-            vec!["--quiet"],
-        ),
-        (
-            "optimize",
-            vec!["--runs", "1", "--budget", "300"],
-            vec!["--format", "latex"],
-        ),
-        (
-            "optimize",
-            vec!["--runs", "1", "--budget", "300"],
-            vec!["--output", file],
-        ),
-        (
-            "optimize",
-            vec!["--runs", "1", "--budget", "300"],
-            vec!["--plot", "-"],
-        ),
-        (
-            "optimize",
-            vec!["--runs", "1", "--budget", "300"],
-            vec!["--tolerance", "0.1"],
-        ),
-        (
-            "optimize",
-            vec!["--runs", "2", "--budget", "600"],
-            vec!["--timeout", NO_TIME],
-        ),
-        (
-            "response",
-            vec![driven[1], "--at", "F=0.2"],
-            vec!["--vary", "Omega=0.5:1.5"],
-        ),
+        ("optimize", vec!["--runs", "1", "--budget", "300"], vec!["--record", "-"]),
+        ("optimize", vec!["--runs", "1", "--budget", "300"], vec!["--resume", "-"]),
+        ("optimize", vec!["--budget", "0.0000000001s"], vec!["--quiet"]),
+        ("optimize", vec!["--runs", "1", "--budget", "300"], vec!["--format", "latex"]),
+        ("optimize", vec!["--runs", "1", "--budget", "300"], vec!["--output", file]),
+        ("optimize", vec!["--runs", "1", "--budget", "300"], vec!["--plot", "-"]),
+        ("optimize", vec!["--runs", "1", "--budget", "300"], vec!["--tolerance", "0.1"]),
+        ("optimize", vec!["--runs", "2", "--budget", "600"], vec!["--timeout", NO_TIME]),
+        ("response", vec![driven[1], "--at", "F=0.2"], vec!["--vary", "Omega=0.5:1.5"]),
         ("response", driven[1..4].to_vec(), vec!["--at", "F=2"]),
         ("response", driven[1..].to_vec(), vec!["--method", "pade"]),
-        (
-            "response",
-            driven[1..].to_vec(),
-            vec!["--method", "multiple-scales"],
-        ),
+        ("response", driven[1..].to_vec(), vec!["--method", "multiple-scales"]),
         ("response", driven[1..].to_vec(), vec!["--order", "2"]),
         ("response", driven[1..].to_vec(), vec!["--periods", "2"]),
         ("response", driven[1..].to_vec(), vec!["--format", "csv"]),
         ("response", driven[1..].to_vec(), vec!["--format", "latex"]),
         ("response", driven[1..].to_vec(), vec!["--output", file]),
         ("response", driven[1..].to_vec(), vec!["--plot", "-"]),
-        (
-            "response",
-            [&driven[1..], &["--order", "3"]].concat(),
-            vec!["--tolerance", "1e-7"],
-        ),
+        ("response", [&driven[1..], &["--order", "3"]].concat(), vec!["--tolerance", "1e-7"]),
         ("response", driven[1..].to_vec(), vec!["--timeout", NO_TIME]),
         ("response", driven[1..].to_vec(), vec!["--quiet"]),
         ("audit", vec![AUDIT], vec!["--strict"]),
@@ -420,9 +253,7 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         for name in options_of(command) {
             let option = format!("--{name}");
             assert!(
-                table
-                    .iter()
-                    .any(|(known, _, words)| *known == command && words[0] == option),
+                table.iter().any(|(known, _, words)| *known == command && words[0] == option),
                 "{command} {option} is not tried"
             );
         }
@@ -439,17 +270,10 @@ fn every_option_changes_the_answer_or_is_refused_by_name() {
         assert!(named, "{command} {beside:?} {option:?}: {answer:?}");
         // Most commands have nothing to say beside their result.
         if word == "quiet" && command != "schema" {
-            assert_eq!(
-                (answer.1, answer.2),
-                (base.1, String::new()),
-                "{command} {beside:?}"
-            );
+            assert_eq!((answer.1, answer.2), (base.1, String::new()), "{command} {beside:?}");
             continue;
         }
-        assert!(
-            answer != base,
-            "{command} {beside:?}: {option:?} changes nothing: {answer:?}"
-        );
+        assert!(answer != base, "{command} {beside:?}: {option:?} changes nothing: {answer:?}");
     }
     let _ = std::fs::remove_file(file);
 }
@@ -474,10 +298,7 @@ fn the_help_is_silent_on_a_tolerance_that_is_refused() {
         assert_eq!(listed, has_verdict, "{words:?}");
         if !has_verdict {
             let (status, _, error) = run(&[words, &["--tolerance", "0.1"]].concat());
-            assert!(
-                status == Some(2) && error.contains("--tolerance"),
-                "{words:?}: {error}"
-            );
+            assert!(status == Some(2) && error.contains("--tolerance"), "{words:?}: {error}");
         }
     }
 }

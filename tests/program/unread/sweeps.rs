@@ -23,14 +23,7 @@ fn grid(file: &str, swept: &[Parameter]) -> Result<Vec<(Model, Start)>, Simulate
                 };
                 // By another ratio each: gamma is that of modulus over mass.
                 let ratio = 1.2 + 0.01 * f64::from(parameter as u8);
-                case.set(
-                    parameter,
-                    if number >> bit & 1 == 0 {
-                        value
-                    } else {
-                        value * ratio
-                    },
-                );
+                case.set(parameter, if number >> bit & 1 == 0 { value } else { value * ratio });
             }
             Ok(case.motion()?)
         })
@@ -65,29 +58,20 @@ fn what_is_swept_changes_every_row_or_is_refused_with_both_names() {
     ];
     let (mut told_apart, mut refused) = (0, 0);
     for file in FILES {
-        let settings = ""
-            .parse::<Problem>()
-            .expect("a file")
-            .simulate(&[])
-            .expect("a motion")
-            .settings;
+        let settings =
+            "".parse::<Problem>().expect("a file").simulate(&[]).expect("a motion").settings;
         let singles = Parameter::ALL.into_iter().map(|parameter| vec![parameter]);
         let pairs = Parameter::ALL.into_iter().flat_map(|first| {
-            let later = Parameter::ALL
-                .into_iter()
-                .filter(move |second| (first as u8) < *second as u8);
+            let later =
+                Parameter::ALL.into_iter().filter(move |second| (first as u8) < *second as u8);
             later.map(move |second| vec![first, second])
         });
         for swept in singles.chain(pairs) {
             match grid(file, &swept) {
                 Ok(motions) => {
-                    let rows = sweep(
-                        &motions,
-                        lindstedt::impact::Integrator::Taylor,
-                        &settings,
-                        |_| (),
-                    )
-                    .expect("motions");
+                    let rows =
+                        sweep(&motions, lindstedt::impact::Integrator::Taylor, &settings, |_| ())
+                            .expect("motions");
                     for (index, row) in rows.iter().enumerate() {
                         assert!(
                             !rows[..index].contains(row),
@@ -102,21 +86,12 @@ fn what_is_swept_changes_every_row_or_is_refused_with_both_names() {
                         let mut words = text.split(|c: char| !(c.is_alphanumeric() || c == '_'));
                         words.any(|word| word == parameter.name())
                     };
-                    let named = Parameter::ALL
-                        .iter()
-                        .filter(|parameter| says(parameter))
-                        .count();
-                    assert!(
-                        swept.iter().any(says) && named >= 2,
-                        "{file:?}, {swept:?}: {text}"
-                    );
+                    let named = Parameter::ALL.iter().filter(|parameter| says(parameter)).count();
+                    assert!(swept.iter().any(says) && named >= 2, "{file:?}, {swept:?}: {text}");
                     refused += 1;
                 }
             }
         }
     }
-    assert!(
-        told_apart > 500 && refused > 300,
-        "{told_apart} told apart, {refused} refused"
-    );
+    assert!(told_apart > 500 && refused > 300, "{told_apart} told apart, {refused} refused");
 }

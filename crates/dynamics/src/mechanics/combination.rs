@@ -27,12 +27,7 @@ impl Combination {
     fn put_into(&self, expression: &Expr) -> Result<Expr, ExprError> {
         let (parameter, value) = &self.replaced;
         let put = expression.substitute(*parameter, value)?;
-        match self
-            .meaning
-            .symbols()
-            .into_iter()
-            .any(|name| put.contains(name))
-        {
+        match self.meaning.symbols().into_iter().any(|name| put.contains(name)) {
             // Products that were written out.
             true => put.expand(),
             false => Ok(put),
@@ -58,10 +53,7 @@ pub(super) fn written_out(
     combinations: &[Combination],
 ) -> Result<Expr, ExprError> {
     let write = |expression: Expr, combination: &Combination| combination.written_out(&expression);
-    combinations
-        .iter()
-        .rev()
-        .try_fold(expression.clone(), write)
+    combinations.iter().rev().try_fold(expression.clone(), write)
 }
 
 /// The combinations of a mechanism, and the mechanism in them.
@@ -84,11 +76,7 @@ fn one_more(mechanism: &Mechanism) -> Result<Option<(Mechanism, Combination)>, E
         .filter(|node| node.symbols().iter().all(|name| parameters.contains(name)))
         .cloned()
         .collect();
-    let taken: Vec<Symbol> = parameters
-        .iter()
-        .chain(&mechanism.coordinates)
-        .copied()
-        .collect();
+    let taken: Vec<Symbol> = parameters.iter().chain(&mechanism.coordinates).copied().collect();
     let name = fresh("d", &taken);
     for sum in sums {
         for term in sum.terms() {
@@ -102,11 +90,8 @@ fn one_more(mechanism: &Mechanism) -> Result<Option<(Mechanism, Combination)>, E
                 continue;
             }
             let value = Expr::divide(&(Expr::from(name) - others), &Expr::number(number))?;
-            let combination = Combination {
-                name,
-                meaning: sum.clone(),
-                replaced: (parameter, value),
-            };
+            let combination =
+                Combination { name, meaning: sum.clone(), replaced: (parameter, value) };
             let next = mechanism.mapped(|part| combination.put_into(part))?;
             let left: BTreeSet<Symbol> = next.parameters().into_iter().collect();
             // The name came for the parameter that it replaces; another one must have gone.

@@ -151,11 +151,7 @@ impl Dimension {
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {
         let mut product = self.clone();
-        product
-            .0
-            .iter_mut()
-            .zip(&other.0)
-            .for_each(|(exponent, other)| *exponent += other);
+        product.0.iter_mut().zip(&other.0).for_each(|(exponent, other)| *exponent += other);
         product
     }
 
@@ -182,11 +178,7 @@ impl fmt::Display for Dimension {
                 !exponent.is_zero() && (**exponent > Rational::zero()) == sign
             });
             let unit = |(name, exponent): (&&str, &Rational)| {
-                let exponent = if sign {
-                    exponent.clone()
-                } else {
-                    -exponent.clone()
-                };
+                let exponent = if sign { exponent.clone() } else { -exponent.clone() };
                 match (exponent.is_one(), exponent.is_integer()) {
                     (true, _) => (*name).to_owned(),
                     (false, true) => format!("{name}^{exponent}"),
@@ -196,11 +188,7 @@ impl fmt::Display for Dimension {
             units.map(unit).collect()
         };
         let (above, below) = (write(true), write(false));
-        formatter.write_str(&if above.is_empty() {
-            "1".to_owned()
-        } else {
-            above.join(" ")
-        })?;
+        formatter.write_str(&if above.is_empty() { "1".to_owned() } else { above.join(" ") })?;
         match below.as_slice() {
             [] => Ok(()),
             [only] => write!(formatter, "/{only}"),
@@ -216,30 +204,18 @@ impl FromStr for Dimension {
     fn from_str(text: &str) -> Result<Self, UnitError> {
         let name = || text.to_owned();
         let typed: Vec<&str> = text.split_whitespace().collect();
-        let with_signs = typed
-            .join("*")
-            .replace("*/*", "/")
-            .replace("*/", "/")
-            .replace("/*", "/");
-        let expression = parse_expression(&with_signs).map_err(|error| UnitError::Parse {
-            name: name(),
-            error: Box::new(error),
-        })?;
+        let with_signs = typed.join("*").replace("*/*", "/").replace("*/", "/").replace("/*", "/");
+        let expression = parse_expression(&with_signs)
+            .map_err(|error| UnitError::Parse { name: name(), error: Box::new(error) })?;
         let mut units = BTreeMap::new();
         for symbol in expression.symbols() {
             let Some((_, exponents)) = NAMED.iter().find(|(named, _)| *named == symbol.name())
             else {
-                return Err(UnitError::Unknown {
-                    name: name(),
-                    unit: symbol.name().to_owned(),
-                });
+                return Err(UnitError::Unknown { name: name(), unit: symbol.name().to_owned() });
             };
             units.insert(symbol, Self::of(*exponents));
         }
-        let no_product = UnitError::NoProduct {
-            name: name(),
-            unit: text.to_owned(),
-        };
+        let no_product = UnitError::NoProduct { name: name(), unit: text.to_owned() };
         let (number, _) = expression.factors();
         match expression.node() {
             Node::Sum(_) | Node::Function(..) => Err(no_product),
@@ -263,9 +239,9 @@ pub fn dimension(
         Node::Number(_) | Node::Pi => Ok(Dimension::none()),
         Node::Symbol(name) => units.get(name).cloned().ok_or(UnitError::Missing(*name)),
         Node::Sum(terms) => odd_one_out(terms, below, &part()),
-        Node::Product(..) => Ok(below
-            .iter()
-            .fold(Dimension::none(), |product, factor| product.times(factor))),
+        Node::Product(..) => {
+            Ok(below.iter().fold(Dimension::none(), |product, factor| product.times(factor)))
+        }
         Node::Power(_, exponent) => match (below, exponent.as_number()) {
             ([base, _], Some(number)) => Ok(base.power(number)),
             ([base, exponent], None) if base.is_none() && exponent.is_none() => {
@@ -281,13 +257,9 @@ pub fn dimension(
         Node::Function(Function::Sign | Function::Step, _) => Ok(Dimension::none()),
         // Zero is zero in any unit.
         Node::Function(Function::Maximum | Function::Minimum, arguments) => {
-            let kept = arguments
-                .iter()
-                .zip(below)
-                .filter(|(argument, _)| !argument.is_zero());
-            let (arguments, below): (Vec<Expr>, Vec<Dimension>) = kept
-                .map(|(one, other)| (one.clone(), other.clone()))
-                .unzip();
+            let kept = arguments.iter().zip(below).filter(|(argument, _)| !argument.is_zero());
+            let (arguments, below): (Vec<Expr>, Vec<Dimension>) =
+                kept.map(|(one, other)| (one.clone(), other.clone())).unzip();
             odd_one_out(&arguments, &below, &part())
         }
         Node::Function(..) => match below.iter().find(|argument| !argument.is_none()) {
@@ -304,17 +276,9 @@ pub fn dimension(
 /// What all terms are measured in; the one that most others disagree with is named.
 fn odd_one_out(terms: &[Expr], found: &[Dimension], part: &str) -> Result<Dimension, UnitError> {
     let votes = |dimension: &Dimension| found.iter().filter(|other| *other == dimension).count();
-    let expected = found
-        .iter()
-        .rev()
-        .max_by_key(|dimension| votes(dimension))
-        .cloned()
-        .unwrap_or_default();
-    match terms
-        .iter()
-        .zip(found)
-        .find(|(_, found)| **found != expected)
-    {
+    let expected =
+        found.iter().rev().max_by_key(|dimension| votes(dimension)).cloned().unwrap_or_default();
+    match terms.iter().zip(found).find(|(_, found)| **found != expected) {
         None => Ok(expected),
         Some((term, found)) => Err(UnitError::Term {
             part: part.to_owned(),
@@ -362,10 +326,7 @@ impl Mechanism {
                 continue;
             };
             let velocity = own.times(&per_second);
-            all.insert(
-                coordinate.derivative().derivative(),
-                velocity.times(&per_second),
-            );
+            all.insert(coordinate.derivative().derivative(), velocity.times(&per_second));
             all.insert(coordinate.derivative(), velocity);
         }
         all
@@ -406,12 +367,7 @@ impl Mechanism {
         let minus_one = -Rational::one();
         for (on, force) in &self.forces {
             let Some(own) = units.get(on) else { continue };
-            check(
-                force,
-                &energy.times(&own.power(&minus_one)),
-                &all,
-                &format!("force on {on}"),
-            )?;
+            check(force, &energy.times(&own.power(&minus_one)), &all, &format!("force on {on}"))?;
         }
         Ok(())
     }
@@ -454,10 +410,7 @@ mod tests {
         ] {
             let dimension: Dimension = typed.parse().unwrap();
             assert_eq!(dimension.to_string(), printed, "{typed}");
-            assert_eq!(
-                dimension.to_string().parse::<Dimension>().unwrap(),
-                dimension
-            );
+            assert_eq!(dimension.to_string().parse::<Dimension>().unwrap(), dimension);
         }
         for wrong in ["mm", "kg + m", "3*kg", "sin(kg)", "kg^m", "", "kg*"] {
             assert!(wrong.parse::<Dimension>().is_err(), "{wrong}");

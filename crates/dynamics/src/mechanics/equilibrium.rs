@@ -37,11 +37,7 @@ impl Rest {
             Place::At(place) => place.clone(),
             Place::Anywhere => Expr::zero(),
         };
-        coordinates
-            .iter()
-            .copied()
-            .zip(self.places.iter().map(place))
-            .collect()
+        coordinates.iter().copied().zip(self.places.iter().map(place)).collect()
     }
 }
 
@@ -63,11 +59,8 @@ impl Rest {
 pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
     let coordinates = &equations.coordinates;
     let forces = equations.forces_at_rest()?;
-    let angles: Vec<Symbol> = coordinates
-        .iter()
-        .copied()
-        .filter(|name| is_angle(*name, &forces))
-        .collect();
+    let angles: Vec<Symbol> =
+        coordinates.iter().copied().filter(|name| is_angle(*name, &forces)).collect();
     let mut found: Vec<Rest> = Vec::new();
     let mut add = |rest: Rest| {
         if !found.contains(&rest) {
@@ -79,38 +72,21 @@ pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
             0 => Expr::zero(),
             _ => Expr::pi(),
         };
-        let chosen: BTreeMap<Symbol, Expr> = angles
-            .iter()
-            .enumerate()
-            .map(|(index, name)| (*name, upright(index)))
-            .collect();
+        let chosen: BTreeMap<Symbol, Expr> =
+            angles.iter().enumerate().map(|(index, name)| (*name, upright(index))).collect();
         if let Some(places) = linear_places(coordinates, &forces, chosen)? {
-            add(Rest {
-                places,
-                condition: None,
-            });
+            add(Rest { places, condition: None });
         }
     }
     // What does not follow linearly may still rest at zero.
-    let zero: BTreeMap<Symbol, Expr> = coordinates
-        .iter()
-        .map(|name| (*name, Expr::zero()))
-        .collect();
-    let rests = |force: &Expr| {
-        force
-            .substitute_all(&zero)
-            .and_then(|force| simplified(&force))
-    };
+    let zero: BTreeMap<Symbol, Expr> =
+        coordinates.iter().map(|name| (*name, Expr::zero())).collect();
+    let rests = |force: &Expr| force.substitute_all(&zero).and_then(|force| simplified(&force));
     if found.is_empty()
-        && forces
-            .iter()
-            .all(|force| rests(force).is_ok_and(|force| force.is_zero()))
+        && forces.iter().all(|force| rests(force).is_ok_and(|force| force.is_zero()))
     {
         found.push(Rest {
-            places: coordinates
-                .iter()
-                .map(|_| Place::At(Expr::zero()))
-                .collect(),
+            places: coordinates.iter().map(|_| Place::At(Expr::zero())).collect(),
             condition: None,
         });
     }
@@ -124,10 +100,7 @@ pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
     {
         let place = Expr::function(Function::Acos, vec![cosine.clone()])?;
         for place in [place.clone(), -place] {
-            add(Rest {
-                places: vec![Place::At(place)],
-                condition: Some(cosine.clone()),
-            });
+            add(Rest { places: vec![Place::At(place)], condition: Some(cosine.clone()) });
         }
     }
     Ok(found)
@@ -160,23 +133,14 @@ impl Equations {
             .collect();
         there.extend(names.map(|name| (name.derivative(), Expr::zero())));
         let mut drive = Drive::Absent;
-        for rest in self
-            .rest
-            .iter()
-            .filter(|rest| rest.contains(Symbol::new("t")))
-        {
+        for rest in self.rest.iter().filter(|rest| rest.contains(Symbol::new("t"))) {
             let written_out = rest.expand()?;
             let terms = written_out.terms().iter();
-            let driving: Expr = terms
-                .filter(|term| term.contains(Symbol::new("t")))
-                .cloned()
-                .sum();
+            let driving: Expr = terms.filter(|term| term.contains(Symbol::new("t"))).cloned().sum();
             if driving.is_zero() {
                 continue;
             }
-            let acts = driving
-                .substitute_all(&there)
-                .and_then(|driving| simplified(&driving));
+            let acts = driving.substitute_all(&there).and_then(|driving| simplified(&driving));
             if !acts.is_ok_and(|driving| driving.is_zero()) {
                 return Ok(Drive::Acts);
             }
@@ -187,11 +151,8 @@ impl Equations {
 
     /// What pulls at rest, equation by equation: no velocities, no terms in the time, no contacts.
     pub(super) fn forces_at_rest(&self) -> Result<Vec<Expr>, ExprError> {
-        let still: BTreeMap<Symbol, Expr> = self
-            .coordinates
-            .iter()
-            .map(|name| (name.derivative(), Expr::zero()))
-            .collect();
+        let still: BTreeMap<Symbol, Expr> =
+            self.coordinates.iter().map(|name| (name.derivative(), Expr::zero())).collect();
         let force = |rest: &Expr| {
             let kept = undriven(rest)?;
             simplified(&kept.substitute_all(&still)?)
@@ -238,11 +199,8 @@ fn linear_places(
         }
     }
     let mut free: BTreeSet<Symbol> = BTreeSet::new();
-    for name in coordinates
-        .iter()
-        .filter(|name| !places.contains_key(name))
-        .copied()
-        .collect::<Vec<_>>()
+    for name in
+        coordinates.iter().filter(|name| !places.contains_key(name)).copied().collect::<Vec<_>>()
     {
         let Some(row) = open.iter().position(|force| force.contains(name)) else {
             free.insert(name);

@@ -98,10 +98,7 @@ impl Groups {
     ) -> Result<Self, NoGroups> {
         // In sums that enter as one, each with the unit of its terms.
         let combined = |expressions: &[Expr]| -> Result<Vec<Expr>, ExprError> {
-            expressions
-                .iter()
-                .map(|expression| equations.combined(expression))
-                .collect()
+            expressions.iter().map(|expression| equations.combined(expression)).collect()
         };
         let mut units = units.clone();
         for combination in &equations.combinations {
@@ -111,10 +108,8 @@ impl Groups {
         }
         let left = combined(&equations.left)?;
         let symbols: BTreeSet<Symbol> = left.iter().flat_map(Expr::symbols).collect();
-        let parameters: Vec<Symbol> = symbols
-            .into_iter()
-            .filter(|name| equations.is_parameter(*name))
-            .collect();
+        let parameters: Vec<Symbol> =
+            symbols.into_iter().filter(|name| equations.is_parameter(*name)).collect();
         let known = units.clone();
         let dimension_of = |name: Symbol| known.get(&name).cloned().unwrap_or_default();
         let inertia = combined(&equations.mass.concat())?;
@@ -124,11 +119,8 @@ impl Groups {
         for coordinate in &equations.coordinates {
             let unit = dimension_of(*coordinate);
             if basis.exponents(&unit).is_none() {
-                let taken: Vec<Symbol> = parameters
-                    .iter()
-                    .chain(&equations.coordinates)
-                    .copied()
-                    .collect();
+                let taken: Vec<Symbol> =
+                    parameters.iter().chain(&equations.coordinates).copied().collect();
                 let size = fresh(&format!("{coordinate}0"), &taken);
                 basis.members.push((size, unit));
                 sizes.push((*coordinate, size));
@@ -152,11 +144,8 @@ impl Groups {
                 .chain(sizes.iter().map(|(_, size)| *size))
                 .collect(),
         };
-        let ones: BTreeMap<Symbol, Expr> = basis
-            .members
-            .iter()
-            .map(|(name, _)| (*name, Expr::one()))
-            .collect();
+        let ones: BTreeMap<Symbol, Expr> =
+            basis.members.iter().map(|(name, _)| (*name, Expr::one())).collect();
         for left in &left {
             scaling.left.push(
                 positive_factors_out(&left.expand()?.substitute_all(&ones)?, equations)?
@@ -167,16 +156,10 @@ impl Groups {
         let plain = |name: &&Symbol| dimension_of(**name).is_none();
         scaling.taken.extend(parameters.iter().filter(plain));
         for name in parameters.iter().filter(plain) {
-            scaling
-                .groups
-                .push((*name, Expr::from(*name), "as given".to_owned()));
+            scaling.groups.push((*name, Expr::from(*name), "as given".to_owned()));
         }
         scaling.collect(equations)?;
-        units.extend(
-            sizes
-                .iter()
-                .map(|(coordinate, size)| (*size, dimension_of(*coordinate))),
-        );
+        units.extend(sizes.iter().map(|(coordinate, size)| (*size, dimension_of(*coordinate))));
         let mut groups = Vec::new();
         let mut earlier: BTreeMap<Symbol, Expr> = BTreeMap::new();
         for (name, scaled, meaning) in &scaling.groups {
@@ -213,12 +196,8 @@ fn names(parameters: &[Symbol]) -> String {
 /// The parameters in the order in which they are taken for units: those of inertia, of stiffness,
 /// all others.
 fn preferred(inertia: &[Expr], stiffness: &[Expr], parameters: &[Symbol]) -> Vec<Symbol> {
-    let [inertia, stiffness] = [inertia, stiffness].map(|parts| {
-        parts
-            .iter()
-            .flat_map(Expr::symbols)
-            .collect::<BTreeSet<_>>()
-    });
+    let [inertia, stiffness] = [inertia, stiffness]
+        .map(|parts| parts.iter().flat_map(Expr::symbols).collect::<BTreeSet<_>>());
     let place = |name: &Symbol| match (inertia.contains(name), stiffness.contains(name)) {
         (true, _) => 0,
         (false, true) => 1,
@@ -246,10 +225,7 @@ fn positive_factors_out(expression: &Expr, equations: &Equations) -> Result<Expr
             let (base, own) = factor.base_and_exponent();
             Expr::power(&base, &(&own * exponent))
         });
-        let outside: Expr = outside
-            .collect::<Result<Vec<_>, _>>()?
-            .into_iter()
-            .product();
+        let outside: Expr = outside.collect::<Result<Vec<_>, _>>()?.into_iter().product();
         Ok(outside * Expr::power(&left, exponent)?)
     })
 }
@@ -262,9 +238,7 @@ struct Basis {
 impl Basis {
     /// The first parameters that are independent.
     fn of(ordered: &[Symbol], dimension_of: impl Fn(Symbol) -> Dimension) -> Self {
-        let mut basis = Self {
-            members: Vec::new(),
-        };
+        let mut basis = Self { members: Vec::new() };
         for name in ordered {
             let dimension = dimension_of(*name);
             if basis.exponents(&dimension).is_none() {
@@ -281,13 +255,8 @@ impl Basis {
         // exactly.
         let mut rows: Vec<Vec<Rational>> = (0..3)
             .map(|unit| {
-                let members = self
-                    .members
-                    .iter()
-                    .map(|(_, own)| own.exponents()[unit].clone());
-                members
-                    .chain([dimension.exponents()[unit].clone()])
-                    .collect()
+                let members = self.members.iter().map(|(_, own)| own.exponents()[unit].clone());
+                members.chain([dimension.exponents()[unit].clone()]).collect()
             })
             .collect();
         let mut done = 0;
@@ -383,11 +352,9 @@ impl Scaling<'_> {
                     Rational::one(),
                     "frequency of the excitation over that of the unit of time",
                 ),
-                Role::Viscous => (
-                    "zeta",
-                    Rational::new(1.into(), 2.into()),
-                    "viscous damping ratio",
-                ),
+                Role::Viscous => {
+                    ("zeta", Rational::new(1.into(), 2.into()), "viscous damping ratio")
+                }
                 Role::Dry => ("alpha", Rational::one(), "dry friction"),
                 Role::Excitation => ("beta", Rational::one(), "excitation"),
                 Role::Contact => ("gamma", Rational::one(), "stiffness of the contact"),
@@ -404,13 +371,8 @@ impl Scaling<'_> {
             // Names of parameters that are used for units, or have been replaced, stay theirs:
             // definitions are written with them.
             let parameters = equations.parameters();
-            let taken: Vec<Symbol> = self
-                .taken
-                .iter()
-                .copied()
-                .chain(self.symbols())
-                .chain(parameters)
-                .collect();
+            let taken: Vec<Symbol> =
+                self.taken.iter().copied().chain(self.symbols()).chain(parameters).collect();
             // A parameter that is replaced by the group leaves its name to it.
             let name = match product.symbols().len() == 1 && product.as_symbol() == Some(own) {
                 true => own,
@@ -442,16 +404,10 @@ impl Scaling<'_> {
     /// stands before.
     fn next(&self, equations: &Equations) -> Option<(Expr, Role)> {
         let open = |expression: &Expr| {
-            expression
-                .symbols()
-                .into_iter()
-                .any(|name| self.is_open(name, equations))
+            expression.symbols().into_iter().any(|name| self.is_open(name, equations))
         };
         let constant = |expression: &Expr| {
-            expression
-                .symbols()
-                .into_iter()
-                .all(|name| equations.is_parameter(name))
+            expression.symbols().into_iter().all(|name| equations.is_parameter(name))
         };
         for node in self.left.iter().flat_map(Expr::unique_nodes) {
             let Node::Function(_, arguments) = node.node() else {
@@ -465,9 +421,7 @@ impl Scaling<'_> {
                     .iter()
                     .all(|factor| factor.as_symbol().is_some_and(|name| name.name() == "t"));
                 let product = Expr::product(
-                    [Expr::number(number.abs())]
-                        .into_iter()
-                        .chain(before.into_iter().cloned()),
+                    [Expr::number(number.abs())].into_iter().chain(before.into_iter().cloned()),
                 );
                 if !rest.is_empty() && is_time && open(&product) {
                     return Some((product, Role::Frequency));
@@ -479,19 +433,14 @@ impl Scaling<'_> {
             let (before, rest): (Vec<&Expr>, Vec<&Expr>) =
                 factors.iter().partition(|factor| constant(factor));
             let product = Expr::product(
-                [Expr::number(number.abs())]
-                    .into_iter()
-                    .chain(before.into_iter().cloned()),
+                [Expr::number(number.abs())].into_iter().chain(before.into_iter().cloned()),
             );
             if open(&product) {
                 return Some((product, Role::of(&Expr::product(rest.into_iter().cloned()))));
             }
         }
         // What stands inside of something else, such as the place of a barrier, one by one.
-        let name = self
-            .symbols()
-            .into_iter()
-            .find(|name| self.is_open(*name, equations))?;
+        let name = self.symbols().into_iter().find(|name| self.is_open(*name, equations))?;
         Some((Expr::from(name), Role::Other))
     }
 
@@ -513,11 +462,7 @@ impl Scaling<'_> {
             terms.filter(|term| term.contains(name)).count()
         };
         let simplest = parameters.iter().min_by_key(|(name, exponent)| {
-            (
-                occurrences(*name),
-                !exponent.abs().is_one(),
-                exponent.is_negative(),
-            )
+            (occurrences(*name), !exponent.abs().is_one(), exponent.is_negative())
         });
         let Some((replaced, exponent)) = simplest.cloned() else {
             return Ok(());
@@ -529,16 +474,10 @@ impl Scaling<'_> {
         let value = Expr::divide(&Expr::from(name), &others)?;
         let inverse = Rational::one() / exponent;
         let (number, inner) = value.factors();
-        let mut product = vec![Expr::power(
-            &Expr::number(number),
-            &Expr::number(inverse.clone()),
-        )?];
+        let mut product = vec![Expr::power(&Expr::number(number), &Expr::number(inverse.clone()))?];
         for part in inner {
             let (part, own) = part.base_and_exponent();
-            product.push(Expr::power(
-                &part,
-                &(&own * &Expr::number(inverse.clone())),
-            )?);
+            product.push(Expr::power(&part, &(&own * &Expr::number(inverse.clone())))?);
         }
         let value = Expr::product(product);
         for left in &mut self.left {

@@ -102,28 +102,17 @@ pub(super) fn jump(energy: &Expr, coordinates: &[Symbol]) -> Option<Expr> {
                     .symbols()
                     .into_iter()
                     .any(|name| coordinates.contains(&name.coordinate()));
-                if of_motion
-                    && !beside
-                        .iter()
-                        .any(|factor| vanishes_with(factor, &arguments[0]))
-                {
+                if of_motion && !beside.iter().any(|factor| vanishes_with(factor, &arguments[0])) {
                     return Some(expr);
                 }
             }
             Node::Product(_, factors) => {
-                for (index, factor) in factors
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, factor)| steps(factor))
+                for (index, factor) in
+                    factors.iter().enumerate().filter(|(_, factor)| steps(factor))
                 {
-                    let others = factors
-                        .iter()
-                        .enumerate()
-                        .filter(|(other, _)| *other != index);
-                    let beside = beside
-                        .iter()
-                        .cloned()
-                        .chain(others.map(|(_, factor)| factor.clone()));
+                    let others = factors.iter().enumerate().filter(|(other, _)| *other != index);
+                    let beside =
+                        beside.iter().cloned().chain(others.map(|(_, factor)| factor.clone()));
                     open.push((factor.clone(), beside.collect()));
                 }
             }
@@ -141,15 +130,11 @@ pub(super) fn jump(energy: &Expr, coordinates: &[Symbol]) -> Option<Expr> {
 /// them.
 fn vanishes_with(factor: &Expr, u: &Expr) -> bool {
     let (base, exponent) = factor.base_and_exponent();
-    let positive = exponent
-        .as_number()
-        .is_some_and(|exponent| *exponent > Rational::zero());
+    let positive = exponent.as_number().is_some_and(|exponent| *exponent > Rational::zero());
     let same = |expression: &Expr| {
         let multiple = |name: Symbol| {
-            let (above, below) = (
-                expression.differentiate(name).ok()?,
-                u.differentiate(name).ok()?,
-            );
+            let (above, below) =
+                (expression.differentiate(name).ok()?, u.differentiate(name).ok()?);
             let ratio = Expr::divide(&above, &below).ok()?;
             Some(
                 !ratio.is_zero()
@@ -157,10 +142,7 @@ fn vanishes_with(factor: &Expr, u: &Expr) -> bool {
                     && (expression - &(&ratio * u)).expand().ok()?.is_zero(),
             )
         };
-        expression == u
-            || u.symbols()
-                .into_iter()
-                .any(|name| multiple(name) == Some(true))
+        expression == u || u.symbols().into_iter().any(|name| multiple(name) == Some(true))
     };
     let of_wave = match base.node() {
         Node::Function(Function::Sin | Function::Absolute, arguments) => same(&arguments[0]),
@@ -174,11 +156,7 @@ impl Equations {
     /// The equations of a mechanism in these combinations, with what those are in their places.
     pub(super) fn written_out(mut self, combinations: Vec<Combination>) -> Result<Self, ExprError> {
         let entries = self.mass.iter_mut().flatten();
-        let others = self
-            .rest
-            .iter_mut()
-            .chain(&mut self.left)
-            .chain(&mut self.divisors);
+        let others = self.rest.iter_mut().chain(&mut self.left).chain(&mut self.divisors);
         for entry in entries.chain(others) {
             *entry = written_out(entry, &combinations)?;
         }
@@ -206,10 +184,7 @@ impl Equations {
     /// The names that are neither coordinates, their derivatives nor time, in alphabetical order.
     pub fn parameters(&self) -> Vec<Symbol> {
         let names: BTreeSet<Symbol> = self.left.iter().flat_map(Expr::symbols).collect();
-        names
-            .into_iter()
-            .filter(|name| self.is_parameter(*name))
-            .collect()
+        names.into_iter().filter(|name| self.is_parameter(*name)).collect()
     }
 
     /// Whether a name is neither a coordinate, a derivative of one nor time.
@@ -220,14 +195,9 @@ impl Equations {
     /// One equation as people print it, and what it was divided by.
     fn printed(&self, index: usize) -> Result<(Expr, Expr), ExprError> {
         let inertia = &self.mass[index];
-        let accelerations = self
-            .coordinates
-            .iter()
-            .map(|name| Expr::from(name.derivative().derivative()));
-        let rest = self.rest[index]
-            .terms()
-            .iter()
-            .filter(|term| !term.is_zero());
+        let accelerations =
+            self.coordinates.iter().map(|name| Expr::from(name.derivative().derivative()));
+        let rest = self.rest[index].terms().iter().filter(|term| !term.is_zero());
         let terms: Vec<&Expr> = inertia
             .iter()
             .flat_map(Expr::terms)
@@ -250,20 +220,15 @@ impl Equations {
     }
 
     fn is_constant(&self, expression: &Expr) -> bool {
-        expression
-            .symbols()
-            .into_iter()
-            .all(|name| self.is_parameter(name))
+        expression.symbols().into_iter().all(|name| self.is_parameter(name))
     }
 
     /// The product of powers of parameters that all terms have in common.
     pub(super) fn common(&self, terms: &[&Expr]) -> Result<Expr, ExprError> {
         let powers: Vec<BTreeMap<Symbol, Rational>> =
             terms.iter().map(|term| self.powers(term)).collect();
-        let names: BTreeSet<Symbol> = powers
-            .iter()
-            .flat_map(|powers| powers.keys().copied())
-            .collect();
+        let names: BTreeSet<Symbol> =
+            powers.iter().flat_map(|powers| powers.keys().copied()).collect();
         let mut factors = Vec::new();
         for name in names {
             let of = |powers: &BTreeMap<Symbol, Rational>| {

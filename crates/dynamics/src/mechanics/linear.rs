@@ -43,9 +43,7 @@ pub fn solution(
     }
     let mut found = vec![Expr::zero(); size];
     for row in (0..size).rev() {
-        let known: Expr = (row + 1..size)
-            .map(|column| &rows[row][column] * &found[column])
-            .sum();
+        let known: Expr = (row + 1..size).map(|column| &rows[row][column] * &found[column]).sum();
         found[row] = Expr::divide(&(&right[row] - &known), &rows[row][row])
             .map_err(|_: ExprError| singular())?;
     }
@@ -58,10 +56,8 @@ fn is_surely_not_zero(expression: &Expr) -> bool {
     // The same point on every run: fractional parts of multiples of the golden section, by the
     // letters of the name.
     let place = |name: Symbol| {
-        let number = name
-            .name()
-            .bytes()
-            .fold(7_u32, |sum, byte| (31 * sum + u32::from(byte)) % 10_007);
+        let number =
+            name.name().bytes().fold(7_u32, |sum, byte| (31 * sum + u32::from(byte)) % 10_007);
         Some((0.3 + (0.618_033_988_75 * f64::from(number)).fract(), 0.0))
     };
     let value = expression.evaluate_rounded(&place);

@@ -186,11 +186,7 @@ impl Mechanism {
             kinetic: change(&self.kinetic)?,
             potential: change(&self.potential)?,
             dissipation: change(&self.dissipation)?,
-            forces: self
-                .forces
-                .iter()
-                .map(force)
-                .collect::<Result<_, ExprError>>()?,
+            forces: self.forces.iter().map(force).collect::<Result<_, ExprError>>()?,
         })
     }
 
@@ -201,9 +197,7 @@ impl Mechanism {
             ("potential energy", &self.potential),
             ("dissipation", &self.dissipation),
         ];
-        let energies = energies
-            .into_iter()
-            .map(|(name, part)| (name.to_owned(), part));
+        let energies = energies.into_iter().map(|(name, part)| (name.to_owned(), part));
         let forces = self.forces.iter();
         energies.chain(forces.map(|(on, force)| (format!("force on {on}"), force)))
     }

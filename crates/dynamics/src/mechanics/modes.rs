@@ -97,11 +97,7 @@ impl Modes {
     /// The names that still need a value.
     pub fn parameters(&self) -> BTreeSet<Symbol> {
         let matrices = [&self.mass, &self.damping, &self.stiffness];
-        let names = matrices
-            .into_iter()
-            .flatten()
-            .flatten()
-            .flat_map(Expr::symbols);
+        let names = matrices.into_iter().flatten().flatten().flat_map(Expr::symbols);
         names.filter(|name| name.name() != "t").collect()
     }
 
@@ -141,11 +137,8 @@ impl Modes {
                 false => Err(NoModes::NotFinite),
             }
         };
-        let (mass, damping, stiffness) = (
-            matrix(&self.mass)?,
-            matrix(&self.damping)?,
-            matrix(&self.stiffness)?,
-        );
+        let (mass, damping, stiffness) =
+            (matrix(&self.mass)?, matrix(&self.damping)?, matrix(&self.stiffness)?);
         let factor = Cholesky::new(mass).ok_or(NoModes::Mass)?;
         let symmetric = (&stiffness - stiffness.transpose()).amax() <= 1e-12 * stiffness.amax();
         let mut modes = match damping.amax() == 0.0 && symmetric {
@@ -157,10 +150,7 @@ impl Modes {
                 .partial_cmp(&(other.frequency, other.growth))
                 .unwrap_or(std::cmp::Ordering::Equal)
         });
-        match modes
-            .iter()
-            .all(|mode| mode.frequency.is_finite() && mode.growth.is_finite())
-        {
+        match modes.iter().all(|mode| mode.frequency.is_finite() && mode.growth.is_finite()) {
             true => Ok(modes),
             false => Err(NoModes::NotFinite),
         }
@@ -195,16 +185,9 @@ impl Jacobians {
             damping.push(velocities().map(slope).collect::<Result<_, ExprError>>()?);
             let force = force.substitute_all(&still)?;
             let slope = |name: &Symbol| force.differentiate(*name);
-            stiffness.push(
-                coordinates
-                    .iter()
-                    .map(slope)
-                    .collect::<Result<_, ExprError>>()?,
-            );
+            stiffness.push(coordinates.iter().map(slope).collect::<Result<_, ExprError>>()?);
         }
-        Ok(Self {
-            matrices: [equations.mass.clone(), damping, stiffness],
-        })
+        Ok(Self { matrices: [equations.mass.clone(), damping, stiffness] })
     }
 
     /// The linear equations near a place of rest.
@@ -233,18 +216,11 @@ impl Jacobians {
         for entry in matrices.iter_mut().flatten().flatten() {
             *entry = here(entry, &place)?;
         }
-        let depends = |name: &Symbol| {
-            matrices
-                .iter()
-                .flatten()
-                .flatten()
-                .any(|entry| entry.contains(*name))
-        };
+        let depends =
+            |name: &Symbol| matrices.iter().flatten().flatten().any(|entry| entry.contains(*name));
         let taken_at_zero: Vec<Symbol> = anywhere.into_iter().filter(depends).collect();
-        let zero: BTreeMap<Symbol, Expr> = taken_at_zero
-            .iter()
-            .map(|name| (*name, Expr::zero()))
-            .collect();
+        let zero: BTreeMap<Symbol, Expr> =
+            taken_at_zero.iter().map(|name| (*name, Expr::zero())).collect();
         let changing = changing(matrices.iter().flatten().flatten())?;
         for entry in matrices.iter_mut().flatten().flatten() {
             *entry = here(entry, &zero)?;
@@ -269,27 +245,21 @@ impl Jacobians {
 fn changing<'a>(entries: impl Iterator<Item = &'a Expr>) -> Result<Option<Expr>, ExprError> {
     let time = Symbol::new("t");
     let is_wave = |part: &Expr| match part.node() {
-        Node::Function(Function::Sin | Function::Cos, argument) => argument.iter().all(|phase| {
-            phase
-                .differentiate(time)
-                .is_ok_and(|rate| !rate.contains(time))
-        }),
+        Node::Function(Function::Sin | Function::Cos, argument) => argument
+            .iter()
+            .all(|phase| phase.differentiate(time).is_ok_and(|rate| !rate.contains(time))),
         _ => false,
     };
     // Products of waves and of their powers are sums of waves; roots and quotients are not.
     let is_wavy = |factor: &Expr| {
         let (base, exponent) = factor.base_and_exponent();
-        let is_whole = exponent
-            .as_number()
-            .is_some_and(|power| power.is_integer() && !power.is_negative());
+        let is_whole =
+            exponent.as_number().is_some_and(|power| power.is_integer() && !power.is_negative());
         !factor.contains(time) || is_whole && is_wave(&base)
     };
     for entry in entries {
         let written_out = entry.expand()?;
-        let term = written_out
-            .terms()
-            .iter()
-            .find(|term| !term.factors().1.iter().all(is_wavy));
+        let term = written_out.terms().iter().find(|term| !term.factors().1.iter().all(is_wavy));
         if let Some(term) = term {
             return Ok(Some(term.clone()));
         }
@@ -306,21 +276,14 @@ const SPLIT: f64 = 1e-6;
 /// K u = omega^2 M u by M = L L^T: symmetric in w = L^T u.
 fn undamped(mass: &Cholesky<f64, nalgebra::Dyn>, stiffness: &DMatrix<f64>) -> Vec<Mode> {
     let lower = mass.l();
-    let half = lower
-        .solve_lower_triangular(stiffness)
-        .unwrap_or_else(|| stiffness.clone());
-    let reduced = lower
-        .solve_lower_triangular(&half.transpose())
-        .unwrap_or_else(|| stiffness.clone());
+    let half = lower.solve_lower_triangular(stiffness).unwrap_or_else(|| stiffness.clone());
+    let reduced =
+        lower.solve_lower_triangular(&half.transpose()).unwrap_or_else(|| stiffness.clone());
     let found = SymmetricEigen::new((&reduced + reduced.transpose()) * 0.5);
     let largest = found.eigenvalues.amax();
     let mode = |index: usize| {
         let square = found.eigenvalues[index];
-        let square = if square.abs() <= ROUNDING * largest {
-            0.0
-        } else {
-            square
-        };
+        let square = if square.abs() <= ROUNDING * largest { 0.0 } else { square };
         let shape = lower
             .transpose()
             .solve_upper_triangular(&found.eigenvectors.column(index).into_owned());
@@ -336,11 +299,7 @@ fn undamped(mass: &Cholesky<f64, nalgebra::Dyn>, stiffness: &DMatrix<f64>) -> Ve
 
 /// A proportion without the noise of rounding.
 fn tidy(proportion: f64) -> f64 {
-    if proportion.abs() < ROUNDING {
-        0.0
-    } else {
-        proportion
-    }
+    if proportion.abs() < ROUNDING { 0.0 } else { proportion }
 }
 
 /// lambda of the equations of first order, a pair of conjugates once.
@@ -351,24 +310,15 @@ fn damped(
 ) -> Vec<Mode> {
     let size = stiffness.nrows();
     let mut first_order = DMatrix::zeros(2 * size, 2 * size);
-    first_order
-        .view_mut((0, size), (size, size))
-        .fill_with_identity();
-    first_order
-        .view_mut((size, 0), (size, size))
-        .copy_from(&-mass.solve(stiffness));
-    first_order
-        .view_mut((size, size), (size, size))
-        .copy_from(&-mass.solve(damping));
+    first_order.view_mut((0, size), (size, size)).fill_with_identity();
+    first_order.view_mut((size, 0), (size, size)).copy_from(&-mass.solve(stiffness));
+    first_order.view_mut((size, size), (size, size)).copy_from(&-mass.solve(damping));
     let found = first_order.complex_eigenvalues();
     let largest = found.iter().map(|value| value.norm()).fold(0.0, f64::max);
     // A rigid motion is a double zero of the equations, which rounding splits into two of its root:
     // as many of the smallest as the stiffness has such motions are zero.
     let stiff = stiffness.clone().singular_values();
-    let rigid = stiff
-        .iter()
-        .filter(|value| **value <= ROUNDING * stiff.max())
-        .count();
+    let rigid = stiff.iter().filter(|value| **value <= ROUNDING * stiff.max()).count();
     let mut sizes: Vec<f64> = found.iter().map(|value| value.norm()).collect();
     sizes.sort_by(f64::total_cmp);
     let split = sizes
@@ -377,15 +327,9 @@ fn damped(
         .copied()
         .filter(|size| *size <= SPLIT * largest)
         .fold(ROUNDING * largest, f64::max);
-    let kept = found
-        .iter()
-        .filter(|value| value.im >= 0.0 || value.norm() <= split);
+    let kept = found.iter().filter(|value| value.im >= 0.0 || value.norm() <= split);
     let clean = |part: f64, norm: f64| {
-        if norm <= split || part.abs() <= ROUNDING * largest {
-            0.0
-        } else {
-            part
-        }
+        if norm <= split || part.abs() <= ROUNDING * largest { 0.0 } else { part }
     };
     let mode = |value: &nalgebra::Complex<f64>| Mode {
         frequency: clean(value.im, value.norm()),

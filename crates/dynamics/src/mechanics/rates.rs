@@ -33,20 +33,12 @@ impl Equations {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn rates(&self) -> Result<Rates, MechanicsError> {
-        let velocities: Vec<Symbol> = self
-            .coordinates
-            .iter()
-            .map(|name| name.derivative())
-            .collect();
+        let velocities: Vec<Symbol> =
+            self.coordinates.iter().map(|name| name.derivative()).collect();
         let right = velocities.iter().copied().map(Expr::from);
         Ok(Rates {
             right: right.chain(self.accelerations()?).collect(),
-            states: self
-                .coordinates
-                .iter()
-                .chain(&velocities)
-                .copied()
-                .collect(),
+            states: self.coordinates.iter().chain(&velocities).copied().collect(),
         })
     }
 }

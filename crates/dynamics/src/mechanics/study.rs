@@ -102,11 +102,7 @@ pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, StudyError> 
     let mechanism = &question.mechanism;
     let equations = mechanism.equations()?;
     let parameters = mechanism.parameters();
-    if let Some(unknown) = question
-        .values
-        .keys()
-        .find(|name| !parameters.contains(name))
-    {
+    if let Some(unknown) = question.values.keys().find(|name| !parameters.contains(name)) {
         return Err(StudyError::UnknownValue(*unknown));
     }
     if let Some(units) = &question.units {
@@ -127,21 +123,8 @@ pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, StudyError> 
             && needed.iter().all(|name| question.values.contains_key(name));
         let numbers = (known && exists).then(|| modes.numbers(&question.values));
         let drive = equations.drive_at(&rest).map_err(MechanicsError::from)?;
-        rests.push(RestStudy {
-            rest,
-            drive,
-            modes,
-            numbers,
-        });
+        rests.push(RestStudy { rest, drive, modes, numbers });
     }
-    let groups = question
-        .units
-        .as_ref()
-        .map(|units| Groups::of(mechanism, &equations, units));
-    Ok(MechanismStudy {
-        equations,
-        rests,
-        groups,
-        question,
-    })
+    let groups = question.units.as_ref().map(|units| Groups::of(mechanism, &equations, units));
+    Ok(MechanismStudy { equations, rests, groups, question })
 }

@@ -52,11 +52,8 @@ fn without_inverses(expression: &Expr) -> Result<Expr, ExprError> {
 fn joined(sum: &Expr) -> Result<Option<Expr>, ExprError> {
     let terms = sum.terms();
     let bare: Vec<(Rational, Expr)> = terms.iter().map(without_number).collect();
-    let places: HashMap<&Expr, usize> = bare
-        .iter()
-        .enumerate()
-        .map(|(index, (_, term))| (term, index))
-        .collect();
+    let places: HashMap<&Expr, usize> =
+        bare.iter().enumerate().map(|(index, (_, term))| (term, index)).collect();
     for (index, (number, term)) in bare.iter().enumerate() {
         for [first, second] in pairs(term) {
             let rest = Expr::divide(term, &(&first.expression() * &second.expression()))?;
@@ -84,11 +81,7 @@ fn joined(sum: &Expr) -> Result<Option<Expr>, ExprError> {
                     Expr::product([Expr::number(number - &share), bare[index].1.clone()])
                 }
                 _ if at == place => {
-                    let share = if opposite {
-                        -share.clone()
-                    } else {
-                        share.clone()
-                    };
+                    let share = if opposite { -share.clone() } else { share.clone() };
                     Expr::product([Expr::number(other - share), bare[place].1.clone()])
                 }
                 _ => term.clone(),
@@ -158,15 +151,8 @@ fn pairs(term: &Expr) -> Vec<[Wave; 2]> {
         let (Some(exponent), Some(angle)) = (whole, arguments.first()) else {
             continue;
         };
-        let times = if *exponent >= Rational::from_integer(2.into()) {
-            2
-        } else {
-            1
-        };
-        let wave = Wave {
-            function: *function,
-            angle: angle.clone(),
-        };
+        let times = if *exponent >= Rational::from_integer(2.into()) { 2 } else { 1 };
+        let wave = Wave { function: *function, angle: angle.clone() };
         waves.extend(std::iter::repeat_n(wave, times));
     }
     let mut pairs = Vec::new();
@@ -193,17 +179,11 @@ mod tests {
             ("p*sin(a)*cos(b) - p*cos(a)*sin(b)", "p*sin(a - b)"),
             ("sin(a)*cos(b) + cos(a)*sin(b)", "sin(a + b)"),
             ("2*sin(x)^2 + 3*cos(x)^2", "2 + cos(x)^2"),
-            (
-                "2*cos(a)*cos(b) + sin(a)*sin(b)",
-                "2*cos(a)*cos(b) + sin(a)*sin(b)",
-            ),
+            ("2*cos(a)*cos(b) + sin(a)*sin(b)", "2*cos(a)*cos(b) + sin(a)*sin(b)"),
             ("cos(x)^2 - sin(x)^2", "cos(x)^2 - sin(x)^2"),
             ("x*(sin(x)^2 + cos(x)^2)^2", "x"),
             ("sin(a)*cos(a)", "sin(a)*cos(a)"),
-            (
-                "cos(acos(u)) + sin(acos(u))^2 + sin(-acos(u))^2",
-                "2 + u - 2*u^2",
-            ),
+            ("cos(acos(u)) + sin(acos(u))^2 + sin(-acos(u))^2", "2 + u - 2*u^2"),
         ] {
             let typed: Expr = typed.parse().unwrap();
             let short: Expr = short.parse().unwrap();

@@ -67,9 +67,7 @@ pub(super) fn arguments(
         let Some(argument) = argument(node) else {
             continue;
         };
-        let moves = states
-            .iter()
-            .any(|state| argument.expression.contains(*state));
+        let moves = states.iter().any(|state| argument.expression.contains(*state));
         let begins_at_guard = || {
             let root = matches!(argument.kind, Kind::Power(_))
                 .then(|| root_of_square(&argument.expression, values));
@@ -85,12 +83,7 @@ pub(super) fn arguments(
 
 /// `u` of numbers times `u^2`.
 fn root_of_square<'a>(expression: &'a Expr, values: &BTreeMap<Symbol, f64>) -> Option<&'a Expr> {
-    let is_number = |factor: &Expr| {
-        factor
-            .symbols()
-            .iter()
-            .all(|name| values.contains_key(name))
-    };
+    let is_number = |factor: &Expr| factor.symbols().iter().all(|name| values.contains_key(name));
     let (_, factors) = expression.factors();
     let mut others = factors.iter().filter(|factor| !is_number(factor));
     let (only, None) = (others.next()?, others.next()) else {
@@ -117,10 +110,7 @@ pub(super) fn guards_in(expressions: &[Expr], values: &BTreeMap<Symbol, f64>) ->
         }
         _ => None,
     };
-    nodes
-        .filter_map(argument)
-        .map(|argument| Guard::new(&argument, values))
-        .collect()
+    nodes.filter_map(argument).map(|argument| Guard::new(&argument, values)).collect()
 }
 
 fn argument(node: &Expr) -> Option<Argument> {
@@ -200,17 +190,13 @@ pub(super) fn end_of_step(kind: Kind, series: &[f64], length: f64) -> Option<f64
     if kind.turns_at_zero() {
         places.extend(roots(series));
     }
-    let largest = series
-        .iter()
-        .rev()
-        .fold(0.0, |sum, coefficient| sum * length + coefficient.abs());
+    let largest =
+        series.iter().rev().fold(0.0, |sum, coefficient| sum * length + coefficient.abs());
     let ends = places.into_iter().filter_map(|place| {
         let at = [series, &slope, &curvature].map(|series| value(series, place));
         end_before(place, width(kind, at, ROUNDING * largest)?, length)
     });
-    ends.fold(None, |first: Option<f64>, end| {
-        Some(first.map_or(end, |first| first.min(end)))
-    })
+    ends.fold(None, |first: Option<f64>, end| Some(first.map_or(end, |first| first.min(end))))
 }
 
 /// The fractions of a step at which an argument is looked at first.
@@ -228,17 +214,12 @@ pub(super) fn end_by_values(
     const CLOSELY: f64 = 1e-9;
     /// Turns of an argument beyond which so many cells do not show them.
     const MOST_TURNS: usize = 8;
-    let most = coarse
-        .iter()
-        .fold(f64::NEG_INFINITY, |most, value| most.max(*value));
-    let least = coarse
-        .iter()
-        .fold(f64::INFINITY, |least, value| least.min(*value));
+    let most = coarse.iter().fold(f64::NEG_INFINITY, |most, value| most.max(*value));
+    let least = coarse.iter().fold(f64::INFINITY, |least, value| least.min(*value));
     let wide = match kind {
         Kind::Power(exponent) => {
-            let bent = coarse
-                .windows(3)
-                .map(|around| (around[0] - 2.0 * around[1] + around[2]).abs());
+            let bent =
+                coarse.windows(3).map(|around| (around[0] - 2.0 * around[1] + around[2]).abs());
             // Four times as wide as need be: sqrt(2 |u|/(e |u''|)), in quarters of the step.
             least * most > 0.0
                 && 2.0 * least.abs().min(most.abs()) > exponent * bent.fold(0.0, f64::max)
@@ -248,16 +229,12 @@ pub(super) fn end_by_values(
     let cell = 1.0 / CELLS as f64;
     let values: Vec<f64> = match wide {
         true => return None,
-        false => (0..=CELLS)
-            .map(|index| value(cell * index as f64))
-            .collect(),
+        false => (0..=CELLS).map(|index| value(cell * index as f64)).collect(),
     };
     if !values.iter().all(|value| value.is_finite()) {
         return None;
     }
-    let largest = values
-        .iter()
-        .fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let mut first: Option<f64> = None;
     let mut turns = 0;
     for index in 1..CELLS {
@@ -268,9 +245,8 @@ pub(super) fn end_by_values(
         let to = if index + 1 == CELLS { 1.0 } else { 0.5 };
         let turn = Some(-slope / curvature).filter(|part| (from..to).contains(part));
         turns += usize::from(turn.is_some());
-        let zeros = [(before, here, -1.0), (here, after, 0.0)]
-            .into_iter()
-            .skip(usize::from(index > 1));
+        let zeros =
+            [(before, here, -1.0), (here, after, 0.0)].into_iter().skip(usize::from(index > 1));
         let zeros = zeros
             .filter(|(one, other, _)| kind.turns_at_zero() && one * other <= 0.0 && one != other);
         let zeros = zeros.map(|(one, other, cell)| cell + one / (one - other));
@@ -280,11 +256,7 @@ pub(super) fn end_by_values(
                 true => turned(cell * (index as f64 + part), cell, &value),
                 false => (cell * (index as f64 + part), 0.0),
             };
-            let width = width(
-                kind,
-                [at, rate, curvature / (cell * cell)],
-                CLOSELY * largest,
-            );
+            let width = width(kind, [at, rate, curvature / (cell * cell)], CLOSELY * largest);
             let end = width.and_then(|width| end_before(place, width, 1.0));
             first = end.map_or(first, |end| Some(first.map_or(end, |first| first.min(end))));
         }
@@ -317,10 +289,7 @@ fn turned(place: f64, cell: f64, value: &impl Fn(f64) -> f64) -> (f64, f64) {
 /// that; nothing where the function is as good as constant.
 fn width(kind: Kind, [argument, slope, curvature]: [f64; 3], error: f64) -> Option<f64> {
     let change = kind.change(argument, error)?;
-    let width = f64::min(
-        change / slope.abs(),
-        (2.0 * change / curvature.abs()).sqrt(),
-    );
+    let width = f64::min(change / slope.abs(), (2.0 * change / curvature.abs()).sqrt());
     (width > 0.0).then_some(width)
 }
 
@@ -334,11 +303,7 @@ fn end_before(distance: f64, width: f64, length: f64) -> Option<f64> {
     }
     let mut rung = near;
     loop {
-        let next = if rung < FAR * width {
-            2.0 * rung
-        } else {
-            4.0 * rung
-        };
+        let next = if rung < FAR * width { 2.0 * rung } else { 4.0 * rung };
         if 1.01 * next >= distance {
             return Some(distance - rung);
         }
@@ -368,9 +333,7 @@ fn is_wide(kind: Kind, series: &[f64], length: f64) -> bool {
 
 fn derivative(series: &[f64]) -> Vec<f64> {
     let terms = series.iter().enumerate().skip(1);
-    terms
-        .map(|(order, coefficient)| order as f64 * coefficient)
-        .collect()
+    terms.map(|(order, coefficient)| order as f64 * coefficient).collect()
 }
 
 #[cfg(test)]
@@ -383,10 +346,7 @@ mod tests {
         let expressions = [expression];
         let guards = guards_in(&expressions, &values);
         let found = arguments(&expressions, &["x".into(), "v".into()], &guards, &values);
-        found
-            .iter()
-            .map(|argument| argument.expression.to_string())
-            .collect()
+        found.iter().map(|argument| argument.expression.to_string()).collect()
     }
 
     #[test]
@@ -400,10 +360,8 @@ mod tests {
             ("((x - 2)^2)^(3/4)*H(x - 1)", vec!["(x - 2)^2"]),
         ] {
             let mut found = found(text);
-            let mut expected: Vec<String> = expected
-                .iter()
-                .map(|text| text.parse::<Expr>().expect(text).to_string())
-                .collect();
+            let mut expected: Vec<String> =
+                expected.iter().map(|text| text.parse::<Expr>().expect(text).to_string()).collect();
             found.sort();
             expected.sort();
             assert_eq!(found, expected, "{text}");

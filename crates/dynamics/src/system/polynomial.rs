@@ -4,10 +4,7 @@ use crate::numeric::ode::root::{Until, bisect};
 
 /// The value at `s`.
 pub(super) fn value(series: &[f64], s: f64) -> f64 {
-    series
-        .iter()
-        .rev()
-        .fold(0.0, |sum, coefficient| sum * s + coefficient)
+    series.iter().rev().fold(0.0, |sum, coefficient| sum * s + coefficient)
 }
 
 /// The values at several places, each as [`value`] has it: several sums at a time wait less on each
@@ -177,10 +174,7 @@ mod tests {
         for ((place, rising), expected) in
             found.iter().zip([(0.1, true), (0.2, false), (0.9, true)])
         {
-            assert!(
-                (place - expected.0).abs() < 1e-14 && *rising == expected.1,
-                "{found:?}"
-            );
+            assert!((place - expected.0).abs() < 1e-14 && *rising == expected.1, "{found:?}");
         }
         assert_eq!(found.len(), 3);
         assert_eq!(first_root(&[0.25, -1.0, 1.0], 0.0, 1.0), None);

@@ -58,11 +58,7 @@ impl Motion {
     /// The states of a point of the run.
     fn states<'a>(&'a self, point: &'a Point<Vec<f64>>) -> impl Iterator<Item = f64> + 'a {
         // Sides and what goes with them stand behind the states.
-        point
-            .y
-            .iter()
-            .zip(&self.units.sizes)
-            .map(|(value, size)| value * size)
+        point.y.iter().zip(&self.units.sizes).map(|(value, size)| value * size)
     }
 
     /// The last step.
@@ -84,10 +80,7 @@ impl Motion {
                 };
                 return Some(match is_vanishing([before, knot.t]) {
                     true => (before, End::Singular),
-                    false => (
-                        before + end_of_range(knot.t - before, is_within)?,
-                        End::Overflow,
-                    ),
+                    false => (before + end_of_range(knot.t - before, is_within)?, End::Overflow),
                 });
             }
             before = knot.t;
@@ -109,37 +102,23 @@ struct Units {
 impl Units {
     fn new(system: &System, [start, end]: [f64; 2], values: &[f64], events: &[Event]) -> Self {
         // Without a series there, the values themselves must do.
-        let alone = || {
-            (
-                f64::INFINITY,
-                values.iter().map(|value| value.abs()).collect(),
-            )
-        };
+        let alone = || (f64::INFINITY, values.iter().map(|value| value.abs()).collect());
         let (reach, mut sizes): (f64, Vec<f64>) =
             taylor::first_step(system, [start, end], values, events).unwrap_or_else(alone);
         // What moves a state by next to nothing in all the time, as the rounding of a touch does,
         // is no size to measure by.
         for (right, moved) in system.right.iter().zip(sizes.clone()) {
-            let rate = system
-                .state
-                .iter()
-                .position(|state| right.as_symbol() == Some(*state));
+            let rate = system.state.iter().position(|state| right.as_symbol() == Some(*state));
             if let Some(size) = rate.map(|rate| &mut sizes[rate])
                 && *size * (end - start) < SMALLEST_MOVE * moved
             {
                 *size = 0.0;
             }
         }
-        let smallest = sizes
-            .iter()
-            .copied()
-            .filter(|size| *size > 0.0)
-            .fold(f64::INFINITY, f64::min);
+        let smallest =
+            sizes.iter().copied().filter(|size| *size > 0.0).fold(f64::INFINITY, f64::min);
         let other = if smallest.is_finite() { smallest } else { 1.0 };
-        sizes
-            .iter_mut()
-            .filter(|size| **size == 0.0)
-            .for_each(|size| *size = other);
+        sizes.iter_mut().filter(|size| **size == 0.0).for_each(|size| *size = other);
         sizes.iter_mut().for_each(|size| *size = size.min(LARGEST));
         let time = reach.min(end - start);
         let time = if time > 0.0 { time } else { 1.0 };
@@ -175,29 +154,18 @@ pub(super) fn follow(
         smooth: &smooth,
         units: &units,
     };
-    let begin = Point {
-        t: 0.0,
-        y: scaled.start(system, values)?,
-    };
+    let begin = Point { t: 0.0, y: scaled.start(system, values)? };
     let watched = scaled.watched(events);
     let settings = ode::Options {
         maximum_steps: options.step_limit,
         // What is looked for may vary faster than the motion: no more than a series of it could
         // tell.
-        maximum_step: if watched.is_empty() {
-            f64::INFINITY
-        } else {
-            1.0
-        },
+        maximum_step: if watched.is_empty() { f64::INFINITY } else { 1.0 },
         interrupt: options.interrupt,
         ..ode::Options::with_tolerance(options.tolerance.max(SMALLEST_TOLERANCE))
     };
     let rates = |t: f64, y: &Vec<f64>, rates: &mut Vec<f64>| scaled.rates(t, y, rates);
-    let critical: Vec<f64> = system
-        .critical
-        .iter()
-        .map(|time| units.count(*time))
-        .collect();
+    let critical: Vec<f64> = system.critical.iter().map(|time| units.count(*time)).collect();
     let kept = |state: &dyn Fn(f64) -> Point<Vec<f64>>| scaled.short_of_narrow(state);
     let looks = Looks {
         critical: &critical,
@@ -214,28 +182,19 @@ pub(super) fn follow(
     let mut occurrences = occurrences(trajectory.occurrences(), &units, events.len());
     let motion = Motion { trajectory, units };
     let last = motion.trajectory.end();
-    let (end, reason) = match (
-        motion.end_of_range(),
-        reason(motion.trajectory.stop_reason()),
-    ) {
+    let (end, reason) = match (motion.end_of_range(), reason(motion.trajectory.stop_reason())) {
         (Some((time, reason)), _) => {
             let time = motion.units.time(time);
             occurrences.retain(|occurrence| occurrence.time <= time);
             (time, reason)
         }
         (None, End::Reached) => (end, End::Reached),
-        (None, End::Singular) => (
-            motion.units.time(last.t),
-            without_value(motion.states(&last), motion.last_step()),
-        ),
+        (None, End::Singular) => {
+            (motion.units.time(last.t), without_value(motion.states(&last), motion.last_step()))
+        }
         (None, reason) => (motion.units.time(last.t), reason),
     };
-    Ok(Path {
-        end,
-        reason,
-        occurrences,
-        motion: super::Motion::RungeKutta(motion),
-    })
+    Ok(Path { end, reason, occurrences, motion: super::Motion::RungeKutta(motion) })
 }
 
 /// Where the events of the user happened, each place once.
@@ -252,11 +211,7 @@ fn occurrences(
         let same = |met: &&Occurrence| met.event == event && met.rising == rising;
         let again = occurrences.iter().rev().find(same);
         if again.is_none_or(|met| time - met.time > SAME_PLACE * units.time) {
-            occurrences.push(Occurrence {
-                event,
-                time,
-                rising,
-            });
+            occurrences.push(Occurrence { event, time, rising });
         }
     }
     occurrences
@@ -297,9 +252,7 @@ impl Scaled<'_> {
 
     fn value_of(&self, t: f64, y: &[f64], function: &CompiledFunction) -> f64 {
         let mut value = f64::NAN;
-        self.with(t, y, std::slice::from_ref(function), |_, found| {
-            value = found
-        });
+        self.with(t, y, std::slice::from_ref(function), |_, found| value = found);
         value
     }
 
@@ -316,13 +269,9 @@ impl Scaled<'_> {
         let coarse = COARSE.map(state);
         let ends = self.smooth.narrow.iter().filter_map(|(kind, function)| {
             let value = |point: &Point<Vec<f64>>| self.value_of(point.t, &point.y, function);
-            end_by_values(*kind, coarse.each_ref().map(value), |fraction| {
-                value(&state(fraction))
-            })
+            end_by_values(*kind, coarse.each_ref().map(value), |fraction| value(&state(fraction)))
         });
-        ends.fold(None, |first: Option<f64>, end| {
-            Some(first.map_or(end, |first| first.min(end)))
-        })
+        ends.fold(None, |first: Option<f64>, end| Some(first.map_or(end, |first| first.min(end))))
     }
 
     /// Where the run begins.
@@ -331,11 +280,8 @@ impl Scaled<'_> {
     /// A right side or an event without a value there.
     fn start(&self, system: &System, values: &[f64]) -> Result<Vec<f64>, SystemError> {
         let (states, corners) = (self.states, self.corners());
-        let mut first: Vec<f64> = values
-            .iter()
-            .zip(&self.units.sizes)
-            .map(|(value, size)| value / size)
-            .collect();
+        let mut first: Vec<f64> =
+            values.iter().zip(&self.units.sizes).map(|(value, size)| value / size).collect();
         first.resize(states + corners, 1.0);
         first.resize(states + 2 * corners, 0.0);
         // The argument of a corner contains the sides of earlier ones alone. One that begins at
@@ -432,28 +378,16 @@ struct Smooth {
 
 impl Smooth {
     fn new(system: &System, events: &[Event]) -> Result<Self, SystemError> {
-        let events: Vec<Expr> = events
-            .iter()
-            .map(|event| event.expression.clone())
-            .collect();
-        let known = || {
-            system
-                .state
-                .iter()
-                .chain([&system.time])
-                .chain(system.numbers.keys())
-                .copied()
-        };
+        let events: Vec<Expr> = events.iter().map(|event| event.expression.clone()).collect();
+        let known =
+            || system.state.iter().chain([&system.time]).chain(system.numbers.keys()).copied();
         let mut corners = Corners {
             stem: fresh_stem("side", &known().collect::<Vec<_>>()),
             arguments: Vec::new(),
             guards: Guards::new(&system.numbers),
         };
-        let rates: Vec<Expr> = system
-            .right
-            .iter()
-            .map(|right| corners.smooth(right))
-            .collect::<Result<_, _>>()?;
+        let rates: Vec<Expr> =
+            system.right.iter().map(|right| corners.smooth(right)).collect::<Result<_, _>>()?;
         let states = system.state.iter().copied();
         let sides = (0..corners.arguments.len()).map(|index| corners.side(index));
         let names: Vec<Symbol> = states
@@ -462,9 +396,8 @@ impl Smooth {
             .chain(system.numbers.keys().copied())
             .collect();
         let compiled = |expressions: &[Expr]| {
-            let compiled = expressions
-                .iter()
-                .map(|expression| CompiledFunction::new(expression, &names));
+            let compiled =
+                expressions.iter().map(|expression| CompiledFunction::new(expression, &names));
             compiled.collect::<Result<Vec<_>, EvaluationError>>()
         };
         let guards: Vec<Guard> = corners
@@ -472,11 +405,11 @@ impl Smooth {
             .iter()
             .map(|argument| Guard::new(argument, &system.numbers))
             .collect();
-        let narrow = arguments(&rates, &system.state, &guards, &system.numbers)
-            .into_iter()
-            .map(|Argument { kind, expression }| {
+        let narrow = arguments(&rates, &system.state, &guards, &system.numbers).into_iter().map(
+            |Argument { kind, expression }| {
                 Ok::<_, EvaluationError>((kind, CompiledFunction::new(&expression, &names)?))
-            });
+            },
+        );
         Ok(Self {
             narrow: narrow.collect::<Result<_, _>>()?,
             typed: compiled(&system.right)?,

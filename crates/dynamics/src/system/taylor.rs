@@ -40,11 +40,7 @@ pub(super) fn at(steps: &[Step], time: f64) -> Option<Vec<f64>> {
     let after = steps.partition_point(|step| step.start <= time);
     let step = steps.get(after.checked_sub(1)?)?;
     let polynomials = step.coefficients.chunks(step.order + 1);
-    Some(
-        polynomials
-            .map(|series| value(series, time - step.start))
-            .collect(),
-    )
+    Some(polynomials.map(|series| value(series, time - step.start)).collect())
 }
 
 /// One state at such a time.
@@ -67,9 +63,7 @@ pub(super) fn sample(steps: &[Step], mut times: &[f64], columns: &mut [Vec<f64>]
             step = next;
         }
         let until = following.peek().map(|next| next.start);
-        let count = until.map_or(times.len(), |until| {
-            times.partition_point(|time| *time < until)
-        });
+        let count = until.map_or(times.len(), |until| times.partition_point(|time| *time < until));
         let (own, others) = times.split_at(count);
         places.clear();
         places.extend(own.iter().map(|time| time - step.start));
@@ -103,14 +97,9 @@ pub(super) fn expansion(
     let variables: Vec<(Symbol, Option<usize>)> = states.chain([(system.time, Some(1))]).collect();
     let mut recurrences = Recurrences::new(&variables, &system.numbers, order);
     let narrow = system.narrow.iter().map(|argument| &argument.expression);
-    let outputs = system
-        .right
-        .iter()
-        .chain(events.iter().map(|event| &event.expression));
-    let outputs = outputs
-        .chain(narrow)
-        .map(|output| recurrences.add(output))
-        .collect::<Result<_, _>>()?;
+    let outputs = system.right.iter().chain(events.iter().map(|event| &event.expression));
+    let outputs =
+        outputs.chain(narrow).map(|output| recurrences.add(output)).collect::<Result<_, _>>()?;
     Ok(Expansion {
         tape: recurrences.into_tape(),
         states: system.state.len(),
@@ -144,9 +133,7 @@ pub(super) fn first_step(
     let reach = expansion.step();
     // The series of a free flight has no end, the flight itself has one at the next corner.
     let longest = reach.min(end - start);
-    let corner = expansion
-        .first_corner(longest)
-        .filter(|(_, place)| *place > 0.0);
+    let corner = expansion.first_corner(longest).filter(|(_, place)| *place > 0.0);
     let looked_at = corner.map_or(longest, |(_, place)| place);
     let size = |state: usize| {
         let place = |sample: u32| looked_at * f64::from(sample) / f64::from(SAMPLES);
@@ -190,22 +177,11 @@ pub(super) fn follow(
     };
     if run.steps.is_empty() {
         // Nowhere to go: where it starts it is all the same.
-        run.steps.push(Step {
-            start: 0.0,
-            order: 0,
-            coefficients: run.values,
-        });
+        run.steps.push(Step { start: 0.0, order: 0, coefficients: run.values });
     }
     Ok(Path {
-        end: if reason == End::Reached {
-            end
-        } else {
-            start + run.time
-        },
-        motion: Motion::Taylor {
-            steps: run.steps,
-            start,
-        },
+        end: if reason == End::Reached { end } else { start + run.time },
+        motion: Motion::Taylor { steps: run.steps, start },
         reason,
         occurrences: run.occurrences,
     })
@@ -261,13 +237,8 @@ impl Run<'_> {
             return Ok(Some(End::Interrupted));
         }
         let now = self.start + self.time;
-        let defined = defined(
-            &mut self.expansion,
-            self.system,
-            now,
-            &self.values,
-            self.events.len(),
-        );
+        let defined =
+            defined(&mut self.expansion, self.system, now, &self.values, self.events.len());
         let last = self.last.take();
         if let Some(last) = last {
             if self.halvings < MOST_HALVINGS
@@ -342,12 +313,11 @@ impl Run<'_> {
             met[index].0
         });
         let (start, time) = (self.start, self.time);
-        self.occurrences
-            .extend(met.into_iter().map(|(event, place, rising)| Occurrence {
-                event,
-                time: start + (time + place),
-                rising,
-            }));
+        self.occurrences.extend(met.into_iter().map(|(event, place, rising)| Occurrence {
+            event,
+            time: start + (time + place),
+            rising,
+        }));
         let order = self.expansion.order;
         let mut coefficients = Vec::with_capacity(self.values.len() * (order + 1));
         for state in 0..self.values.len() {
@@ -356,11 +326,7 @@ impl Run<'_> {
         for (state, series) in self.values.iter_mut().zip(coefficients.chunks(order + 1)) {
             *state = value(series, length);
         }
-        self.steps.push(Step {
-            start: time,
-            order,
-            coefficients,
-        });
+        self.steps.push(Step { start: time, order, coefficients });
         let whole = corner.is_none() && stop.is_none() && range.is_none();
         self.last = whole.then_some(last);
         let at_end = time + length >= self.duration && whole;
@@ -376,10 +342,7 @@ impl Run<'_> {
         }
         let (corner, _) = corner?;
         self.halvings = 0;
-        self.met = self
-            .expansion
-            .speed_at(corner, length)
-            .map(|speed| (corner, speed));
+        self.met = self.expansion.speed_at(corner, length).map(|speed| (corner, speed));
         self.expansion.cross(corner);
         // Leaving a corner and being back at once, over and over, is to stay on it.
         const OFTEN: usize = 20;
@@ -421,10 +384,7 @@ impl Run<'_> {
     fn is_rounding(&mut self, missed: &[(usize, f64)], now: f64) -> bool {
         /// Last digits that the sums in a rate lose.
         const DIGITS: f64 = 4.0;
-        let here: Vec<f64> = missed
-            .iter()
-            .map(|(state, _)| self.expansion.rate(*state))
-            .collect();
+        let here: Vec<f64> = missed.iter().map(|(state, _)| self.expansion.rate(*state)).collect();
         let mut by_rounding = vec![0.0; missed.len()];
         let mut values = self.values.clone();
         for state in 0..values.len() {
@@ -440,22 +400,14 @@ impl Run<'_> {
         }
         // It was expanded here before, and is again.
         let again = self.expansion.expand_once(now, &self.values).is_ok();
-        again
-            && missed
-                .iter()
-                .zip(by_rounding)
-                .all(|((_, apart), sum)| *apart <= sum)
+        again && missed.iter().zip(by_rounding).all(|((_, apart), sum)| *apart <= sum)
     }
 
     /// Back to where the last step began, from where half of it is to be gone.
     fn take_back(&mut self, last: Last) {
         let Some(step) = self.steps.pop() else { return };
         self.time = step.start;
-        self.values = step
-            .coefficients
-            .chunks(step.order + 1)
-            .map(|series| series[0])
-            .collect();
+        self.values = step.coefficients.chunks(step.order + 1).map(|series| series[0]).collect();
         self.signs = last.signs;
         self.expansion.take(&last.sides);
         self.occurrences.truncate(last.occurrences);
@@ -466,9 +418,7 @@ impl Run<'_> {
 /// The next of these times, farther away than rounding.
 fn next_critical(critical: &[f64], now: f64) -> Option<f64> {
     let beyond = now + 4.0 * f64::EPSILON * now.abs();
-    critical
-        .get(critical.partition_point(|time| *time <= beyond))
-        .copied()
+    critical.get(critical.partition_point(|time| *time <= beyond)).copied()
 }
 
 /// Expands everything about a point.
@@ -484,12 +434,7 @@ fn defined(
 ) -> Result<(), SystemError> {
     let expanded = expansion.expand(time, values);
     expanded.map_err(|state| SystemError::Start(system.state[state]))?;
-    let undefined = |event: &usize| {
-        !expansion
-            .event(*event)
-            .iter()
-            .all(|value| value.is_finite())
-    };
+    let undefined = |event: &usize| !expansion.event(*event).iter().all(|value| value.is_finite());
     match (0..events).find(undefined) {
         Some(event) => Err(SystemError::Event(event)),
         None => Ok(()),
@@ -608,12 +553,9 @@ impl Expansion {
         let finite = |series: &&[f64]| series.iter().all(|value| value.is_finite());
         let corners = self.tape.corners().map(|(series, _)| series).filter(finite);
         let mut powers = Powers::new(self.order);
-        followed
-            .chain(events)
-            .chain(corners)
-            .fold(f64::INFINITY, |longest, series| {
-                self.of_steps.reach(series, longest, &mut powers)
-            })
+        followed.chain(events).chain(corners).fold(f64::INFINITY, |longest, series| {
+            self.of_steps.reach(series, longest, &mut powers)
+        })
     }
 
     /// The step, no longer than this, that ends beside the first place that is narrow for it, where
@@ -674,10 +616,7 @@ impl Expansion {
     /// corner that it stands on, or leaves it on the other side.
     pub(super) fn first_corner(&self, length: f64) -> Option<(usize, f64)> {
         let met = |(index, (series, side)): (usize, (&[f64], f64))| {
-            let (here, slope) = (
-                side * series[0],
-                side * series.get(1).copied().unwrap_or(0.0),
-            );
+            let (here, slope) = (side * series[0], side * series.get(1).copied().unwrap_or(0.0));
             let rounding = 1e-14 * length * slope.abs();
             let leading = series.iter().find(|value| **value != 0.0);
             let leaves = here == 0.0 && leading.is_some_and(|leading| side * leading < 0.0);
@@ -696,9 +635,7 @@ impl Expansion {
         };
         // What a side has no value for is not looked at.
         let corners = self.tape.corners().enumerate();
-        let found = corners
-            .filter(|(_, (series, _))| series[0].is_finite())
-            .filter_map(met);
+        let found = corners.filter(|(_, (series, _))| series[0].is_finite()).filter_map(met);
         found.min_by(|one, other| one.1.total_cmp(&other.1))
     }
 
@@ -706,9 +643,8 @@ impl Expansion {
     fn speed_at(&self, corner: usize, time: f64) -> Option<f64> {
         let (series, _) = self.tape.corners().nth(corner)?;
         let terms = series.iter().enumerate().skip(1).rev();
-        let slope = terms.fold(0.0, |sum, (order, coefficient)| {
-            sum * time + order as f64 * coefficient
-        });
+        let slope =
+            terms.fold(0.0, |sum, (order, coefficient)| sum * time + order as f64 * coefficient);
         Some(slope.abs())
     }
 
@@ -721,10 +657,7 @@ impl Expansion {
         let Some((series, _)) = self.tape.corners().nth(corner) else {
             return false;
         };
-        let reached = series
-            .iter()
-            .rev()
-            .fold(0.0, |sum, value| sum * length + value.abs());
+        let reached = series.iter().rev().fold(0.0, |sum, value| sum * length + value.abs());
         reached > 0.0 && reached <= ROUNDING * change
     }
 
@@ -736,12 +669,7 @@ impl Expansion {
     /// Goes to these sides.
     fn take(&mut self, sides: &[f64]) {
         for (corner, side) in sides.iter().enumerate() {
-            if self
-                .tape
-                .corners()
-                .nth(corner)
-                .is_some_and(|(_, now)| now != *side)
-            {
+            if self.tape.corners().nth(corner).is_some_and(|(_, now)| now != *side) {
                 self.cross(corner);
             }
         }
@@ -839,10 +767,7 @@ struct Powers {
 impl Powers {
     /// Room for this order and those below it.
     fn new(order: usize) -> Self {
-        Self {
-            of: f64::NAN,
-            table: vec![0.0; order + 1],
-        }
+        Self { of: f64::NAN, table: vec![0.0; order + 1] }
     }
 
     /// `h^0, h^1, ...`

@@ -29,10 +29,7 @@ pub struct Ball {
 impl Ball {
     /// Zero and nothing else.
     pub fn zero() -> Self {
-        Self {
-            middle: Integer::zero(),
-            radius: Bound::ZERO,
-        }
+        Self { middle: Integer::zero(), radius: Bound::ZERO }
     }
 
     /// Whether it is zero and nothing else.
@@ -80,19 +77,13 @@ impl Balls {
 
     /// An integer.
     pub fn integer(self, value: i64) -> Ball {
-        Ball {
-            middle: Integer::from(value) << self.bits,
-            radius: Bound::ZERO,
-        }
+        Ball { middle: Integer::from(value) << self.bits, radius: Bound::ZERO }
     }
 
     /// `integer * 2^-bits` with other bits.
     pub fn dyadic(self, integer: &Integer, bits: usize) -> Ball {
         match self.bits.checked_sub(bits) {
-            Some(more) => Ball {
-                middle: integer << more,
-                radius: Bound::ZERO,
-            },
+            Some(more) => Ball { middle: integer << more, radius: Bound::ZERO },
             None => self.shifted(integer, bits - self.bits, Bound::ZERO),
         }
     }
@@ -100,14 +91,7 @@ impl Balls {
     /// A fraction.
     pub fn fraction(self, value: &Rational) -> Ball {
         let (middle, rest) = (value.numer() << self.bits).div_mod_floor(value.denom());
-        Ball {
-            middle,
-            radius: if rest.is_zero() {
-                Bound::ZERO
-            } else {
-                self.unit()
-            },
-        }
+        Ball { middle, radius: if rest.is_zero() { Bound::ZERO } else { self.unit() } }
     }
 
     /// A ball of other balls in these.
@@ -144,18 +128,12 @@ impl Balls {
 
     /// `left + right`.
     pub fn sum(self, left: &Ball, right: &Ball) -> Ball {
-        Ball {
-            middle: &left.middle + &right.middle,
-            radius: left.radius + right.radius,
-        }
+        Ball { middle: &left.middle + &right.middle, radius: left.radius + right.radius }
     }
 
     /// `left - right`.
     pub fn difference(self, left: &Ball, right: &Ball) -> Ball {
-        Ball {
-            middle: &left.middle - &right.middle,
-            radius: left.radius + right.radius,
-        }
+        Ball { middle: &left.middle - &right.middle, radius: left.radius + right.radius }
     }
 
     /// The radius of a product, rounding left out.
@@ -171,10 +149,9 @@ impl Balls {
     pub fn product(self, left: &Ball, right: &Ball) -> Ball {
         match left.is_zero() || right.is_zero() {
             true => Ball::zero(),
-            false => self.rounded(
-                &(&left.middle * &right.middle),
-                self.radius_of_product(left, right),
-            ),
+            false => {
+                self.rounded(&(&left.middle * &right.middle), self.radius_of_product(left, right))
+            }
         }
     }
 
@@ -190,14 +167,7 @@ impl Balls {
     pub fn divided(self, ball: &Ball, divisor: u32) -> Ball {
         let (middle, rest) = ball.middle.div_mod_floor(&divisor.into());
         let radius = ball.radius / divisor;
-        Ball {
-            middle,
-            radius: if rest.is_zero() {
-                radius
-            } else {
-                radius + self.unit()
-            },
-        }
+        Ball { middle, radius: if rest.is_zero() { radius } else { radius + self.unit() } }
     }
 
     /// `left / right`; `None` where zero may be among the divisors.
@@ -227,10 +197,7 @@ impl Balls {
         let highest =
             (self.size(&middle) + self.unit()) * (Bound::exactly(1.0) + ball.radius.over(distance));
         let slope = highest.over(distance) / degree;
-        Some(Ball {
-            middle,
-            radius: self.unit() + slope * ball.radius,
-        })
+        Some(Ball { middle, radius: self.unit() + slope * ball.radius })
     }
 
     /// pi, by Machin's formula `16 atan(1/5) - 4 atan(1/239)`.
@@ -253,10 +220,7 @@ impl Balls {
             sum.radius += self.magnitude(&power);
             sum
         };
-        self.difference(
-            &self.scaled(&arctangent(5), 16),
-            &self.scaled(&arctangent(239), 4),
-        )
+        self.difference(&self.scaled(&arctangent(5), 16), &self.scaled(&arctangent(239), 4))
     }
 }
 
@@ -280,25 +244,12 @@ mod tests {
 
     /// A ball and a number in it, at its ends and in its middle too.
     fn ball_with_number() -> impl Strategy<Value = (Ball, Rational)> {
-        let middle = prop_oneof![
-            Just(0_i64),
-            Just(1 << 40),
-            Just(-(1 << 40)),
-            -50_i64..50,
-            any::<i64>()
-        ];
-        let radius = prop_oneof![
-            Just(0.0),
-            Just(2.0_f64.powi(-40)),
-            0.0..1e-6_f64,
-            0.0..3.0_f64
-        ];
+        let middle =
+            prop_oneof![Just(0_i64), Just(1 << 40), Just(-(1 << 40)), -50_i64..50, any::<i64>()];
+        let radius = prop_oneof![Just(0.0), Just(2.0_f64.powi(-40)), 0.0..1e-6_f64, 0.0..3.0_f64];
         let place = prop_oneof![Just(-1_i64), Just(0), Just(1), -1..=1_i64];
         (middle, radius, place, 1_i64..9).prop_map(|(middle, radius, place, part)| {
-            let ball = Ball {
-                middle: Integer::from(middle),
-                radius: Bound::exactly(radius),
-            };
+            let ball = Ball { middle: Integer::from(middle), radius: Bound::exactly(radius) };
             let radius = from_f64(radius).unwrap_or_else(Rational::zero);
             let number = BALLS.middle(&ball)
                 + radius * Rational::new(Integer::from(place), Integer::from(part));
@@ -353,9 +304,6 @@ mod tests {
             &Rational::new(Integer::from(1), Integer::from(3)),
         );
         let root = BALLS.root(&BALLS.integer(8), 3);
-        assert!(
-            root.zip(two)
-                .is_some_and(|(root, two)| contains(&root, &two))
-        );
+        assert!(root.zip(two).is_some_and(|(root, two)| contains(&root, &two)));
     }
 }

@@ -24,11 +24,7 @@ impl BigFloat {
 
     /// The nearest number to a whole one.
     pub fn of_integer(value: &Integer, bits: usize) -> Self {
-        Self(
-            FBig::from_parts(value.as_inner().clone(), 0)
-                .with_precision(bits)
-                .value(),
-        )
+        Self(FBig::from_parts(value.as_inner().clone(), 0).with_precision(bits).value())
     }
 
     /// A double as it is; zero for what is not finite.

@@ -112,10 +112,7 @@ impl Mul for Bound {
 
     fn mul(self, other: Self) -> Self {
         // What a product with an unknown size is, is not known, whatever the other.
-        match (
-            self == Self::ZERO || other == Self::ZERO,
-            self.0 + other.0 < f64::INFINITY,
-        ) {
+        match (self == Self::ZERO || other == Self::ZERO, self.0 + other.0 < f64::INFINITY) {
             (_, false) => Self::UNKNOWN,
             (true, true) => Self::ZERO,
             (false, true) => Self::of_nearest(self.0 * other.0),

@@ -53,12 +53,8 @@ impl Integer {
     pub(crate) fn to_words(&self) -> Vec<u64> {
         let (_, magnitude) = self.0.clone().into_parts();
         let bytes = magnitude.to_le_bytes();
-        let word = |bytes: &[u8]| {
-            bytes
-                .iter()
-                .rev()
-                .fold(0, |word, byte| word << 8 | u64::from(*byte))
-        };
+        let word =
+            |bytes: &[u8]| bytes.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));
         bytes.chunks(8).map(word).collect()
     }
 
@@ -254,9 +250,7 @@ impl Num for Integer {
         if digits.is_empty() || !only_digits {
             return Err(ParseIntegerError);
         }
-        IBig::from_str_radix(text, radix)
-            .map(Self)
-            .map_err(|_| ParseIntegerError)
+        IBig::from_str_radix(text, radix).map(Self).map_err(|_| ParseIntegerError)
     }
 }
 
@@ -266,11 +260,7 @@ impl Signed for Integer {
     }
 
     fn abs_sub(&self, other: &Self) -> Self {
-        if self > other {
-            self - other
-        } else {
-            Self::zero()
-        }
+        if self > other { self - other } else { Self::zero() }
     }
 
     fn signum(&self) -> Self {

@@ -30,11 +30,7 @@ impl Monomial {
 
     /// `symbol^exponent`.
     pub fn power_of(symbol: Symbol, exponent: i32) -> Self {
-        Self(if exponent == 0 {
-            vec![]
-        } else {
-            vec![(symbol, exponent)]
-        })
+        Self(if exponent == 0 { vec![] } else { vec![(symbol, exponent)] })
     }
 
     /// The symbols and their exponents, in the order of the symbols.
@@ -44,9 +40,7 @@ impl Monomial {
 
     /// The exponent of `symbol`, zero when it does not occur.
     pub fn exponent(&self, symbol: Symbol) -> i32 {
-        self.0
-            .binary_search_by_key(&symbol, |factor| factor.0)
-            .map_or(0, |place| self.0[place].1)
+        self.0.binary_search_by_key(&symbol, |factor| factor.0).map_or(0, |place| self.0[place].1)
     }
 
     /// The sum of all exponents.
@@ -89,23 +83,12 @@ impl Monomial {
         if exponent == 0 {
             return Self::one();
         }
-        Self(
-            self.0
-                .iter()
-                .map(|&(symbol, power)| (symbol, power * exponent))
-                .collect(),
-        )
+        Self(self.0.iter().map(|&(symbol, power)| (symbol, power * exponent)).collect())
     }
 
     /// This monomial with `symbol` taken out.
     pub fn without(&self, symbol: Symbol) -> Self {
-        Self(
-            self.0
-                .iter()
-                .copied()
-                .filter(|factor| factor.0 != symbol)
-                .collect(),
-        )
+        Self(self.0.iter().copied().filter(|factor| factor.0 != symbol).collect())
     }
 }
 
@@ -179,10 +162,7 @@ impl<K> Polynomial<K> {
 
     /// Every symbol that occurs.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
-        self.terms
-            .keys()
-            .flat_map(|monomial| monomial.0.iter().map(|factor| factor.0))
-            .collect()
+        self.terms.keys().flat_map(|monomial| monomial.0.iter().map(|factor| factor.0)).collect()
     }
 
     /// The smallest and largest exponent of `symbol` over all terms; `None` for the zero
@@ -281,10 +261,7 @@ impl<K: Number> Polynomial<K> {
             if exponent != 0 {
                 let mut coefficient = coefficient.clone();
                 ring.scale(&mut coefficient, exponent.into());
-                result.add_term(
-                    monomial.product(&Monomial::power_of(symbol, -1)),
-                    coefficient,
-                );
+                result.add_term(monomial.product(&Monomial::power_of(symbol, -1)), coefficient);
             }
         }
         result
@@ -467,9 +444,7 @@ impl<K: Number> Add for Polynomial<K> {
 /// Zero is the polynomial without terms.
 impl<K: Number> Zero for Polynomial<K> {
     fn zero() -> Self {
-        Self {
-            terms: BTreeMap::new(),
-        }
+        Self { terms: BTreeMap::new() }
     }
 
     fn is_zero(&self) -> bool {
@@ -483,9 +458,7 @@ impl<R: Ring> Ring for Polynomials<R> {
     const FIELD: bool = R::FIELD;
 
     fn zero(&self) -> Self::Element {
-        Polynomial {
-            terms: BTreeMap::new(),
-        }
+        Polynomial { terms: BTreeMap::new() }
     }
     fn integer(&self, value: i64) -> Self::Element {
         self.term(Monomial::one(), self.0.integer(value))
@@ -494,10 +467,7 @@ impl<R: Ring> Ring for Polynomials<R> {
         element.terms.is_empty()
     }
     fn may_be_zero(&self, element: &Self::Element) -> bool {
-        element
-            .terms
-            .values()
-            .all(|coefficient| self.0.may_be_zero(coefficient))
+        element.terms.values().all(|coefficient| self.0.may_be_zero(coefficient))
     }
     fn accumulate(&self, sum: &mut Self::Element, term: &Self::Element) {
         if sum.terms.is_empty() {
@@ -525,10 +495,7 @@ impl<R: Ring> Ring for Polynomials<R> {
         }
     }
     fn negate(&self, element: &mut Self::Element) {
-        element
-            .terms
-            .values_mut()
-            .for_each(|coefficient| self.0.negate(coefficient));
+        element.terms.values_mut().for_each(|coefficient| self.0.negate(coefficient));
     }
     fn product(&self, left: &Self::Element, right: &Self::Element) -> Self::Element {
         let mut result = self.zero();
@@ -556,9 +523,7 @@ impl<R: Ring> Ring for Polynomials<R> {
         elements: impl IntoIterator<Item = &'a mut Self::Element>,
         divisor: &Integer,
     ) -> Result<(), Indivisible> {
-        let coefficients = elements
-            .into_iter()
-            .flat_map(|element| element.terms.values_mut());
+        let coefficients = elements.into_iter().flat_map(|element| element.terms.values_mut());
         self.0.divide(coefficients, divisor)
     }
     fn reduce<'a>(
@@ -566,9 +531,7 @@ impl<R: Ring> Ring for Polynomials<R> {
         elements: impl IntoIterator<Item = &'a mut Self::Element>,
         denominator: &mut Integer,
     ) {
-        let coefficients = elements
-            .into_iter()
-            .flat_map(|element| element.terms.values_mut());
+        let coefficients = elements.into_iter().flat_map(|element| element.terms.values_mut());
         self.0.reduce(coefficients, denominator);
     }
     fn inverse(&self, element: &Self::Element) -> Option<(Self::Element, Integer)> {
@@ -581,9 +544,7 @@ impl<R: Ring> Ring for Polynomials<R> {
 impl<R: Ring> Polynomials<R> {
     /// What a factor made zero is left out: zero itself, or a multiple of a prime.
     fn prune(&self, element: &mut Polynomial<R::Element>) {
-        element
-            .terms
-            .retain(|_, coefficient| !self.0.is_certainly_zero(coefficient));
+        element.terms.retain(|_, coefficient| !self.0.is_certainly_zero(coefficient));
     }
 }
 
@@ -595,11 +556,7 @@ mod tests {
     fn law() -> Polynomial {
         let mut law = Polynomial::symbol(Symbol::new("omega0"));
         law.add_term(
-            Monomial(vec![
-                ("A".into(), 2),
-                ("eps".into(), 1),
-                ("omega0".into(), -1),
-            ]),
+            Monomial(vec![("A".into(), 2), ("eps".into(), 1), ("omega0".into(), -1)]),
             ratio(3, 8),
         );
         law
@@ -608,17 +565,10 @@ mod tests {
     #[test]
     fn squares_a_frequency_law() {
         let squared = law().product(&law());
-        let terms: Vec<String> = squared
-            .terms()
-            .map(|(m, k)| format!("{k} {:?}", m.0))
-            .collect();
+        let terms: Vec<String> = squared.terms().map(|(m, k)| format!("{k} {:?}", m.0)).collect();
         assert_eq!(
             terms,
-            [
-                "1 [(omega0, 2)]",
-                "3/4 [(A, 2), (eps, 1)]",
-                "9/64 [(A, 4), (eps, 2), (omega0, -2)]"
-            ]
+            ["1 [(omega0, 2)]", "3/4 [(A, 2), (eps, 1)]", "9/64 [(A, 4), (eps, 2), (omega0, -2)]"]
         );
     }
 
@@ -639,11 +589,7 @@ mod tests {
         }
         for (left, m) in &all {
             for (right, n) in &all {
-                let first = m
-                    .iter()
-                    .zip(n)
-                    .map(|(m, n)| n.cmp(m))
-                    .find(|order| order.is_ne());
+                let first = m.iter().zip(n).map(|(m, n)| n.cmp(m)).find(|order| order.is_ne());
                 let degree = m.iter().sum::<i32>().cmp(&n.iter().sum::<i32>());
                 assert_eq!(
                     left.cmp(right),
@@ -658,9 +604,7 @@ mod tests {
     fn substitution_inverts_single_terms_only() {
         let omega0 = Symbol::new("omega0");
         let two_k = Polynomial::symbol("k".into()).product(&Polynomial::constant(ratio(2, 1)));
-        let value = law()
-            .substitute(omega0, &two_k)
-            .expect("2 k has an inverse");
+        let value = law().substitute(omega0, &two_k).expect("2 k has an inverse");
         assert_eq!(
             value.evaluate(|s| Some(if s.name() == "k" { 3.0 } else { 2.0 })),
             Ok(6.0 + 0.375 * 8.0 / 6.0)

@@ -22,10 +22,8 @@ pub fn ratio(numerator: i64, denominator: i64) -> Rational {
 /// Reference: D. E. Knuth, *The Art of Computer Programming*, volume 2, 3rd ed. 1998,
 /// section 4.5.1, for this and the sum.
 pub(crate) fn product(left: &Rational, right: &Rational) -> Rational {
-    let (left_common, right_common) = (
-        left.numer().gcd(right.denom()),
-        right.numer().gcd(left.denom()),
-    );
+    let (left_common, right_common) =
+        (left.numer().gcd(right.denom()), right.numer().gcd(left.denom()));
     let times = |left: &Integer, left_common: &Integer, right: &Integer, right_common: &Integer| {
         quotient(left, left_common) * quotient(right, right_common)
     };
@@ -39,17 +37,10 @@ pub(crate) fn product(left: &Rational, right: &Rational) -> Rational {
 /// denominators have in common.
 pub(crate) fn sum(left: &Rational, right: &Rational) -> Rational {
     if left.is_zero() || right.is_zero() {
-        return if left.is_zero() {
-            right.clone()
-        } else {
-            left.clone()
-        };
+        return if left.is_zero() { right.clone() } else { left.clone() };
     }
     let common = left.denom().gcd(right.denom());
-    let (own, other) = (
-        quotient(left.denom(), &common),
-        quotient(right.denom(), &common),
-    );
+    let (own, other) = (quotient(left.denom(), &common), quotient(right.denom(), &common));
     let numerator = left.numer() * &other + right.numer() * &own;
     let shared = numerator.gcd(&common);
     let denominator = own * quotient(right.denom(), &shared);
@@ -58,11 +49,7 @@ pub(crate) fn sum(left: &Rational, right: &Rational) -> Rational {
 
 /// An exact quotient.
 fn quotient(number: &Integer, divisor: &Integer) -> Integer {
-    if divisor.is_one() {
-        number.clone()
-    } else {
-        number / divisor
-    }
+    if divisor.is_one() { number.clone() } else { number / divisor }
 }
 
 /// The nearest `f64`; infinite when it is out of range.
@@ -70,9 +57,7 @@ pub fn to_f64(value: &Rational) -> f64 {
     /// Integers up to this size are doubles, and the quotient of two of them is rounded once.
     const LARGEST_EXACT: u64 = 1 << f64::MANTISSA_DIGITS;
     let exact = |integer: &Integer| {
-        let small = integer
-            .to_i64()
-            .filter(|small| small.unsigned_abs() <= LARGEST_EXACT);
+        let small = integer.to_i64().filter(|small| small.unsigned_abs() <= LARGEST_EXACT);
         small.map(|small| small as f64)
     };
     match (exact(value.numer()), exact(value.denom())) {
@@ -99,10 +84,7 @@ fn nearest(value: &Rational) -> f64 {
     let last = (size - i64::from(f64::MANTISSA_DIGITS) - 2).max(LOWEST - 2);
     let (numerator, denominator) = match usize::try_from(last) {
         Ok(up) => (value.numer().abs(), value.denom() << up),
-        Err(_) => (
-            value.numer().abs() << last.unsigned_abs() as usize,
-            value.denom().clone(),
-        ),
+        Err(_) => (value.numer().abs() << last.unsigned_abs() as usize, value.denom().clone()),
     };
     let (quotient, remainder) = numerator.div_rem(&denominator);
     // At most 56 digits, and whether anything is below them.
@@ -128,11 +110,7 @@ pub fn from_f64(value: f64) -> Option<Rational> {
     let bits = value.to_bits();
     let (biased, fraction) = ((bits >> 52) & 0x7ff, bits & ((1 << 52) - 1));
     // Subnormal numbers have no leading one, and the exponent of the smallest normal ones.
-    let mantissa = if biased == 0 {
-        fraction
-    } else {
-        fraction | 1 << 52
-    };
+    let mantissa = if biased == 0 { fraction } else { fraction | 1 << 52 };
     let exponent = biased.max(1) as i32 - 1075;
     let mantissa = Integer::from(mantissa);
     let size = match usize::try_from(exponent) {
@@ -152,10 +130,8 @@ pub fn from_f64(value: f64) -> Option<Rational> {
 /// assert_eq!(convergent(&ratio(314_159_265, 100_000_000), &ratio(1, 100)), ratio(22, 7));
 /// ```
 pub fn convergent(value: &Rational, tolerance: &Rational) -> Rational {
-    let (mut before, mut last) = (
-        (Integer::zero(), Integer::one()),
-        (Integer::one(), Integer::zero()),
-    );
+    let (mut before, mut last) =
+        ((Integer::zero(), Integer::one()), (Integer::one(), Integer::zero()));
     let mut rest = value.clone();
     loop {
         let whole = rest.floor().to_integer();
@@ -184,11 +160,7 @@ pub fn power(base: &Rational, exponent: &Rational) -> Option<Rational> {
     }
     let degree = exponent.denom().to_u32()?;
     let times = exponent.numer().to_i32()?;
-    let root = if degree == 1 {
-        base.clone()
-    } else {
-        exact_root(base, degree)?
-    };
+    let root = if degree == 1 { base.clone() } else { exact_root(base, degree)? };
     let bits = root.numer().bits().max(root.denom().bits());
     // A base of +-1 never grows, however often it is multiplied.
     if bits > 1 && bits.saturating_mul(u64::from(times.unsigned_abs())) > LONGEST {
@@ -208,10 +180,7 @@ fn exact_root(value: &Rational, degree: u32) -> Option<Rational> {
         let candidate = integer.nth_root(degree);
         (candidate.pow(degree) == *integer).then_some(candidate)
     };
-    Some(Rational::new_raw(
-        root(value.numer())?,
-        root(value.denom())?,
-    ))
+    Some(Rational::new_raw(root(value.numer())?, root(value.denom())?))
 }
 
 /// Whether a number leaves the remainder of a power when divided by a prime `p = k degree + 1`: one
@@ -223,11 +192,8 @@ fn may_be_power(value: &Integer, degree: u32) -> bool {
         return true;
     }
     let degree = u64::from(degree);
-    let is_prime = |number: &u64| {
-        (2..)
-            .take_while(|d| d * d <= *number)
-            .all(|d| !number.is_multiple_of(&d))
-    };
+    let is_prime =
+        |number: &u64| (2..).take_while(|d| d * d <= *number).all(|d| !number.is_multiple_of(&d));
     let Some(prime) = (1..).map(|k| k * degree + 1).find(is_prime) else {
         return true;
     };
@@ -252,19 +218,11 @@ mod tests {
         for number in numbers.filter(|number| !number.is_zero()) {
             for degree in (2..=70).filter(|degree| !number.is_negative() || degree % 2 == 1) {
                 let raised = Rational::from_integer(number.pow(degree));
-                assert_eq!(
-                    exact_root(&raised, degree),
-                    Some(number.clone().into()),
-                    "{degree}"
-                );
+                assert_eq!(exact_root(&raised, degree), Some(number.clone().into()), "{degree}");
                 let beside = &raised + Rational::one();
                 let expected = (number.pow(degree) == Integer::from(-1)).then(Rational::zero);
                 let expected = expected.or((beside.is_one()).then(Rational::one));
-                assert_eq!(
-                    exact_root(&beside, degree),
-                    expected,
-                    "{number}^{degree} + 1"
-                );
+                assert_eq!(exact_root(&beside, degree), expected, "{number}^{degree} + 1");
             }
         }
     }
@@ -288,10 +246,9 @@ mod tests {
         all.extend([long.recip(), -&long, long]);
         for left in &all {
             for right in &all {
-                for (found, expected) in [
-                    (sum(left, right), left + right),
-                    (product(left, right), left * right),
-                ] {
+                for (found, expected) in
+                    [(sum(left, right), left + right), (product(left, right), left * right)]
+                {
                     assert_eq!(
                         (found.numer(), found.denom()),
                         (expected.numer(), expected.denom()),

@@ -42,12 +42,7 @@ pub fn positive_roots(polynomial: &[Rational]) -> Vec<RealRoot> {
         for exact in fractions(&rest) {
             let factor = vec![-exact.clone(), One::one()];
             rest = quotient(&rest, &factor);
-            roots.push(RealRoot {
-                value: to_f64(&exact),
-                exact: Some(exact),
-                factor,
-                simple,
-            });
+            roots.push(RealRoot { value: to_f64(&exact), exact: Some(exact), factor, simple });
         }
         roots.extend(irrational(&rest).into_iter().map(|value| RealRoot {
             value,
@@ -77,10 +72,8 @@ pub fn sign_changing_part(polynomial: &[Rational]) -> Vec<Rational> {
         let more = gcd(&distinct, &shared);
         if is_odd {
             let factor = quotient(&distinct, &more);
-            let monic: Vec<Rational> = factor
-                .iter()
-                .map(|c| c / &factor[factor.len() - 1])
-                .collect();
+            let monic: Vec<Rational> =
+                factor.iter().map(|c| c / &factor[factor.len() - 1]).collect();
             part = product(&part, &monic);
         }
         shared = quotient(&shared, &more);
@@ -92,9 +85,7 @@ pub fn sign_changing_part(polynomial: &[Rational]) -> Vec<Rational> {
 /// The derivative of a polynomial.
 pub fn derivative(polynomial: &[Rational]) -> Vec<Rational> {
     let powers = polynomial.iter().enumerate().skip(1);
-    powers
-        .map(|(k, c)| c * Rational::from_integer(k.into()))
-        .collect()
+    powers.map(|(k, c)| c * Rational::from_integer(k.into())).collect()
 }
 
 /// The polynomial `u` of lowest degree with `a u = 1` modulo `modulus`; `None` where they have a
@@ -110,10 +101,7 @@ pub fn inverse_modulo(a: &[Rational], modulus: &[Rational]) -> Option<Vec<Ration
         (u, next_u) = (next_u, new_u);
     }
     match r.as_slice() {
-        [unit] => Some(remainder(
-            &u.iter().map(|c| c / unit).collect::<Vec<_>>(),
-            modulus,
-        )),
+        [unit] => Some(remainder(&u.iter().map(|c| c / unit).collect::<Vec<_>>(), modulus)),
         _ => None,
     }
 }
@@ -171,11 +159,7 @@ fn product(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
 
 fn difference(a: &[Rational], b: &[Rational]) -> Vec<Rational> {
     let at = |list: &[Rational], k: usize| list.get(k).cloned().unwrap_or_else(Rational::zero);
-    trimmed(
-        (0..a.len().max(b.len()))
-            .map(|k| at(a, k) - at(b, k))
-            .collect(),
-    )
+    trimmed((0..a.len().max(b.len())).map(|k| at(a, k) - at(b, k)).collect())
 }
 
 fn trimmed(mut polynomial: Vec<Rational>) -> Vec<Rational> {
@@ -187,15 +171,8 @@ fn trimmed(mut polynomial: Vec<Rational>) -> Vec<Rational> {
 
 /// Whole numbers without common divisor in the ratio of the coefficients, with their signs.
 fn primitive(polynomial: &[Rational]) -> Vec<Integer> {
-    let common = polynomial
-        .iter()
-        .fold(Integer::one(), |lcm, c| lcm.lcm(c.denom()));
-    without_content(
-        polynomial
-            .iter()
-            .map(|c| (c * &common).to_integer())
-            .collect(),
-    )
+    let common = polynomial.iter().fold(Integer::one(), |lcm, c| lcm.lcm(c.denom()));
+    without_content(polynomial.iter().map(|c| (c * &common).to_integer()).collect())
 }
 
 fn without_content(mut whole: Vec<Integer>) -> Vec<Integer> {
@@ -233,10 +210,8 @@ fn fractions(polynomial: &[Rational]) -> Vec<Rational> {
         for &p in numerators.iter().filter(|p| p.gcd(&q).is_one()) {
             // What is zero is zero modulo a prime as well, and that is soon seen.
             let x = times_modulo_prime(p, inverse);
-            let vanishes = residues
-                .iter()
-                .rev()
-                .fold(0, |sum, &c| (times_modulo_prime(sum, x) + c) % PRIME);
+            let vanishes =
+                residues.iter().rev().fold(0, |sum, &c| (times_modulo_prime(sum, x) + c) % PRIME);
             let candidate = Rational::new(p.into(), q.into());
             if vanishes == 0 && sign_at(&whole, &candidate).is_eq() {
                 roots.push(candidate);
@@ -250,10 +225,7 @@ fn fractions(polynomial: &[Rational]) -> Vec<Rational> {
 const PRIME: u64 = (1 << 61) - 1;
 
 fn modulo_prime(number: &Integer) -> u64 {
-    number
-        .mod_floor(&Integer::from(PRIME))
-        .to_u64()
-        .unwrap_or(0)
+    number.mod_floor(&Integer::from(PRIME)).to_u64().unwrap_or(0)
 }
 
 fn times_modulo_prime(a: u64, b: u64) -> u64 {
@@ -278,9 +250,7 @@ fn divisors(number: &Integer) -> Vec<u64> {
     let Some(number) = number.abs().to_u64().filter(|number| *number < 1 << 40) else {
         return vec![1];
     };
-    let small = (1..)
-        .take_while(|d| d * d <= number)
-        .filter(|d| number % d == 0);
+    let small = (1..).take_while(|d| d * d <= number).filter(|d| number % d == 0);
     let mut all: Vec<u64> = small.flat_map(|d| [d, number / d]).collect();
     all.dedup();
     all
@@ -324,19 +294,12 @@ fn irrational(polynomial: &[Rational]) -> Vec<f64> {
         chain.push(next);
     }
     let changes = |x: &Rational| {
-        let signs: Vec<Ordering> = chain
-            .iter()
-            .map(|entry| sign_at(entry, x))
-            .filter(|sign| sign.is_ne())
-            .collect();
+        let signs: Vec<Ordering> =
+            chain.iter().map(|entry| sign_at(entry, x)).filter(|sign| sign.is_ne()).collect();
         signs.windows(2).filter(|pair| pair[0] != pair[1]).count()
     };
     // All roots are below 1 + max |c_k / c_n|.
-    let bound = rest
-        .iter()
-        .map(|c| (c / leading).abs())
-        .max()
-        .unwrap_or_else(Rational::zero)
+    let bound = rest.iter().map(|c| (c / leading).abs()).max().unwrap_or_else(Rational::zero)
         + Rational::one();
     let ends = [Rational::zero(), bound].map(|end| (changes(&end), end));
     let mut intervals = vec![ends];
@@ -389,17 +352,13 @@ mod tests {
     #[test]
     fn roots_of_every_kind() {
         let factors: [&[i64]; 6] = [&[-2, 1], &[-1, 3], &[4, -6, 1], &[1, 1], &[-5, 1], &[-5, 1]];
-        let all = factors.iter().fold(polynomial(&[1]), |all, factor| {
-            product(&all, &polynomial(factor))
-        });
+        let all =
+            factors.iter().fold(polynomial(&[1]), |all, factor| product(&all, &polynomial(factor)));
         let roots = positive_roots(&all);
         let expected = [1.0 / 3.0, 3.0 - 5f64.sqrt(), 2.0, 5.0, 3.0 + 5f64.sqrt()];
         assert_eq!(roots.len(), 5);
         for (root, expected) in roots.iter().zip(expected) {
-            assert!(
-                (root.value - expected).abs() < 1e-15 * 8.0,
-                "{root:?} {expected}"
-            );
+            assert!((root.value - expected).abs() < 1e-15 * 8.0, "{root:?} {expected}");
             assert_eq!(root.simple, expected != 5.0);
         }
         assert_eq!(roots[0].exact, Some(ratio(1, 3)));
@@ -409,19 +368,11 @@ mod tests {
     /// -3 (z - 2)(z - 5)^2 (3 z - 1)^3 (z^2 + 1)^2: what is left is -3 (z - 2)(z - 1/3).
     #[test]
     fn what_changes_its_sign_has_the_factors_of_odd_multiplicity() {
-        let factors: [&[i64]; 8] = [
-            &[-2, 1],
-            &[-5, 1],
-            &[-5, 1],
-            &[-1, 3],
-            &[-1, 3],
-            &[-1, 3],
-            &[1, 0, 1],
-            &[1, 0, 1],
-        ];
-        let all = factors.iter().fold(polynomial(&[-3]), |all, factor| {
-            product(&all, &polynomial(factor))
-        });
+        let factors: [&[i64]; 8] =
+            [&[-2, 1], &[-5, 1], &[-5, 1], &[-1, 3], &[-1, 3], &[-1, 3], &[1, 0, 1], &[1, 0, 1]];
+        let all = factors
+            .iter()
+            .fold(polynomial(&[-3]), |all, factor| product(&all, &polynomial(factor)));
         let part = sign_changing_part(&all);
         let roots = positive_roots(&part);
         let values: Vec<f64> = roots.iter().map(|root| root.value).collect();
@@ -437,16 +388,9 @@ mod tests {
     #[test]
     fn close_and_distant_roots_are_told_apart() {
         // (z^2 - 2)(z^2 - 2 - 1e-9)(z^2 - 2e20) and one without positive roots.
-        let near: Vec<Rational> = vec![
-            -(ratio(2, 1) + ratio(1, 1_000_000_000)),
-            Zero::zero(),
-            One::one(),
-        ];
-        let far = vec![
-            -ratio(2, 1) * num_traits::pow(ratio(10, 1), 20),
-            Zero::zero(),
-            One::one(),
-        ];
+        let near: Vec<Rational> =
+            vec![-(ratio(2, 1) + ratio(1, 1_000_000_000)), Zero::zero(), One::one()];
+        let far = vec![-ratio(2, 1) * num_traits::pow(ratio(10, 1), 20), Zero::zero(), One::one()];
         let all = product(&product(&polynomial(&[-2, 0, 1]), &near), &far);
         let roots: Vec<f64> = positive_roots(&all).iter().map(|root| root.value).collect();
         assert_eq!(roots.len(), 3);
@@ -472,10 +416,7 @@ mod tests {
         let roots = positive_roots(&all);
         assert_eq!(roots.len(), 30);
         for (k, root) in (1..).zip(&roots) {
-            assert!(
-                (root.value - f64::from(k) / 7.0).abs() < 1e-14 && root.simple,
-                "{root:?}"
-            );
+            assert!((root.value - f64::from(k) / 7.0).abs() < 1e-14 && root.simple, "{root:?}");
         }
     }
 
@@ -484,10 +425,7 @@ mod tests {
         let modulus = polynomial(&[1, -3, 0, 2, 1]);
         let a = polynomial(&[2, 5, -1]);
         let inverse = inverse_modulo(&a, &modulus).unwrap();
-        assert_eq!(
-            remainder(&product(&a, &inverse), &modulus),
-            polynomial(&[1])
-        );
+        assert_eq!(remainder(&product(&a, &inverse), &modulus), polynomial(&[1]));
         assert_eq!(inverse_modulo(&product(&a, &modulus), &modulus), None);
     }
 }

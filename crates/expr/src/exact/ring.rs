@@ -171,10 +171,7 @@ impl Ring for Integers {
     ) -> Result<(), Indivisible> {
         // One and minus one are their own inverses.
         if !divisor.abs().is_one() {
-            return Err(Indivisible {
-                divisor: divisor.clone(),
-                ring: "the integers".to_owned(),
-            });
+            return Err(Indivisible { divisor: divisor.clone(), ring: "the integers".to_owned() });
         }
         elements.into_iter().for_each(|element| *element *= divisor);
         Ok(())

@@ -24,16 +24,10 @@ impl Scaled {
             (value, 0)
         };
         if value == 0.0 || !value.is_finite() {
-            return Self {
-                mantissa: value,
-                exponent: 0,
-            };
+            return Self { mantissa: value, exponent: 0 };
         }
         let exponent = ((value.to_bits() >> 52) & 0x7ff) as i64 - 1023;
-        Self {
-            mantissa: value / 2.0_f64.powi(exponent as i32),
-            exponent: exponent - shift,
-        }
+        Self { mantissa: value / 2.0_f64.powi(exponent as i32), exponent: exponent - shift }
     }
 
     /// The nearest number to a fraction, however large or small.
@@ -48,11 +42,7 @@ impl Scaled {
         };
         let rounded = Self::new(shifted.to_f64().unwrap_or(f64::NAN));
         Self {
-            exponent: if rounded.mantissa == 0.0 {
-                0
-            } else {
-                rounded.exponent - shift
-            },
+            exponent: if rounded.mantissa == 0.0 { 0 } else { rounded.exponent - shift },
             ..rounded
         }
     }
@@ -62,20 +52,13 @@ impl Scaled {
         let used = terms.iter().filter(|term| term.mantissa != 0.0);
         let unit = used.map(|term| term.exponent).max().unwrap_or(0);
         let mantissa = terms.iter().map(|term| term.in_units(unit)).sum();
-        Self {
-            mantissa,
-            exponent: unit,
-        }
-        .in_units(0)
+        Self { mantissa, exponent: unit }.in_units(0)
     }
 
     /// The product, rounded.
     pub fn product(self, other: Self) -> Self {
         let product = Self::new(self.mantissa * other.mantissa);
-        Self {
-            exponent: product.exponent + self.exponent + other.exponent,
-            ..product
-        }
+        Self { exponent: product.exponent + self.exponent + other.exponent, ..product }
     }
 
     /// A whole power, of either sign.
@@ -95,10 +78,7 @@ impl Scaled {
     /// One over the number.
     pub fn inverse(self) -> Self {
         let inverse = Self::new(1.0 / self.mantissa);
-        Self {
-            exponent: inverse.exponent - self.exponent,
-            ..inverse
-        }
+        Self { exponent: inverse.exponent - self.exponent, ..inverse }
     }
 
     /// The number in units of `2^unit`.
@@ -124,9 +104,7 @@ mod tests {
 
     #[test]
     fn numbers_beyond_the_range_of_doubles_keep_their_digits() {
-        let huge = Scaled::new(1.7e300)
-            .power(40)
-            .product(Scaled::new(3.1e-310));
+        let huge = Scaled::new(1.7e300).power(40).product(Scaled::new(3.1e-310));
         let expected = 40.0 * 1.7e300_f64.ln() + (3.1_f64.ln() - 310.0 * 10.0_f64.ln());
         assert!((huge.logarithm() / expected - 1.0).abs() < 1e-14);
         assert_eq!(Scaled::new(-0.75).power(3).in_units(0), -0.421875);
@@ -136,32 +114,16 @@ mod tests {
 
     #[test]
     fn fractions_of_any_size_are_rounded_once() {
-        for (p, q) in [
-            (1, 3),
-            (-22, 7),
-            (1, 1),
-            (i64::MAX, 3),
-            (-1, i64::MAX),
-            (0, 1),
-        ] {
-            assert_eq!(
-                Scaled::of_fraction(&ratio(p, q)).in_units(0),
-                to_f64(&ratio(p, q))
-            );
+        for (p, q) in [(1, 3), (-22, 7), (1, 1), (i64::MAX, 3), (-1, i64::MAX), (0, 1)] {
+            assert_eq!(Scaled::of_fraction(&ratio(p, q)).in_units(0), to_f64(&ratio(p, q)));
         }
         let huge = Rational::from_integer(Integer::from(10).pow(900)) / ratio(7, 1);
         let expected = 900.0 * 10.0_f64.ln() - 7.0_f64.ln();
         assert!((Scaled::of_fraction(&huge).logarithm() / expected - 1.0).abs() < 1e-15);
         assert!((Scaled::of_fraction(&huge.recip()).logarithm() / -expected - 1.0).abs() < 1e-15);
-        let difference = [
-            Scaled::of_fraction(&huge),
-            Scaled::of_fraction(&-huge),
-            Scaled::new(0.0),
-        ];
+        let difference =
+            [Scaled::of_fraction(&huge), Scaled::of_fraction(&-huge), Scaled::new(0.0)];
         assert_eq!(Scaled::sum(&difference), 0.0);
-        assert_eq!(
-            Scaled::sum(&[Scaled::new(1e300).power(2), Scaled::new(1.0)]),
-            f64::INFINITY
-        );
+        assert_eq!(Scaled::sum(&[Scaled::new(1e300).power(2), Scaled::new(1.0)]), f64::INFINITY);
     }
 }

@@ -109,12 +109,7 @@ impl<'a> Walk<'a> {
 
     /// Whether all zeros are nearer to the origin than this place.
     fn is_last(&self, at: &BigFloat) -> bool {
-        dominates(
-            &self.sizes,
-            self.sizes.len() - 1,
-            logarithm(at),
-            f64::NEG_INFINITY,
-        )
+        dominates(&self.sizes, self.sizes.len() - 1, logarithm(at), f64::NEG_INFINITY)
     }
 
     /// Taylor's coefficients.
@@ -162,14 +157,7 @@ impl<'a> Walk<'a> {
                 }
             };
             let distance = ratio.abs().sqrt().copysign(ratio);
-            Some((
-                Cluster {
-                    place,
-                    count,
-                    distance,
-                },
-                radius,
-            ))
+            Some((Cluster { place, count, distance }, radius))
         })
     }
 
@@ -181,10 +169,7 @@ impl<'a> Walk<'a> {
         /// The farthest that is ahead, likewise.
         const FAR: f64 = -2.0;
         let step = |about: &About| {
-            let slope = about
-                .coefficients
-                .get(count)
-                .filter(|slope| !slope.is_zero())?;
+            let slope = about.coefficients.get(count).filter(|slope| !slope.is_zero())?;
             let times = BigFloat::of_f64(count as f64, self.bits);
             Some(-&(&(about.coefficients.get(count - 1)? / slope) / &times))
         };
@@ -212,9 +197,8 @@ impl About {
         let first = self.sizes[0];
         let terms = self.sizes.iter().zip(0..).skip(1);
         // Each term by itself reaches the first there; at half of that all together do not.
-        let bound = terms
-            .map(|(size, k)| (first - size) / f64::from(k))
-            .fold(f64::INFINITY, f64::min);
+        let bound =
+            terms.map(|(size, k)| (first - size) / f64::from(k)).fold(f64::INFINITY, f64::min);
         let (mut inside, mut outside) = (bound.min(self.largest) - 1.0, bound.min(self.largest));
         if !(inside.is_finite() && dominates(&self.sizes, 0, inside, self.noise)) {
             return None;
@@ -259,9 +243,7 @@ fn dominates(sizes: &[f64], term: usize, radius: f64, noise: f64) -> bool {
         _ => sizes[k] + k as f64 * radius,
     };
     let own = at(term);
-    let others = (0..sizes.len())
-        .filter(|k| *k != term)
-        .map(|k| (at(k) - own).exp2());
+    let others = (0..sizes.len()).filter(|k| *k != term).map(|k| (at(k) - own).exp2());
     own.is_finite() && others.sum::<f64>() + (noise - own).exp2() < SURELY
 }
 
@@ -288,17 +270,12 @@ mod tests {
     /// The product of factors `c_0 + c_1 s + c_2 s^2`.
     fn product(factors: &[[f64; 3]]) -> Vec<BigFloat> {
         let one = vec![number(1.0)];
-        factors
-            .iter()
-            .fold(one, |all, factor| times(&all, &factor.map(number)))
+        factors.iter().fold(one, |all, factor| times(&all, &factor.map(number)))
     }
 
     fn found(polynomial: &[BigFloat]) -> Vec<(f64, usize, f64)> {
         let clusters = clusters(polynomial).expect("zeros that are told apart");
-        clusters
-            .iter()
-            .map(|own| (own.place.to_f64(), own.count, own.distance))
-            .collect()
+        clusters.iter().map(|own| (own.place.to_f64(), own.count, own.distance)).collect()
     }
 
     fn same(found: &[(f64, usize, f64)], expected: &[(f64, usize, f64)]) {
@@ -307,10 +284,7 @@ mod tests {
             assert_eq!(found.1, expected.1, "{found:?} {expected:?}");
             // The middle is where the slope vanishes.
             let allowed = 1e-9 + 10.0 * expected.2.powi(2);
-            assert!(
-                (found.0 / expected.0 - 1.0).abs() < allowed,
-                "{found:?} {expected:?}"
-            );
+            assert!((found.0 / expected.0 - 1.0).abs() < allowed, "{found:?} {expected:?}");
             assert!(
                 (found.2 - expected.2).abs() <= 1e-3 * expected.2.abs(),
                 "{found:?} {expected:?}"
@@ -321,17 +295,9 @@ mod tests {
     #[test]
     fn single_zeros_are_found_at_every_scale() {
         let linear = |zero: f64| [-zero, 1.0, 0.0];
-        let polynomial = product(&[
-            linear(1e-9),
-            linear(0.3),
-            linear(0.4),
-            linear(-2.0),
-            linear(1e12),
-        ]);
-        same(
-            &found(&polynomial),
-            &[(1e-9, 1, 0.0), (0.3, 1, 0.0), (0.4, 1, 0.0), (1e12, 1, 0.0)],
-        );
+        let polynomial =
+            product(&[linear(1e-9), linear(0.3), linear(0.4), linear(-2.0), linear(1e12)]);
+        same(&found(&polynomial), &[(1e-9, 1, 0.0), (0.3, 1, 0.0), (0.4, 1, 0.0), (1e12, 1, 0.0)]);
         assert!(found(&product(&[linear(-1.0), [1.0, 1.0, 1.0]])).is_empty());
     }
 
@@ -341,11 +307,7 @@ mod tests {
         for (exponent, sign) in [(-30, 1.0), (-30, -1.0), (-90, 1.0), (-90, -1.0), (-12, 1.0)] {
             let middle = 3.0;
             let small = number(sign).shifted(2 * exponent);
-            let pair = [
-                &number(middle * middle) + &small,
-                number(-2.0 * middle),
-                number(1.0),
-            ];
+            let pair = [&number(middle * middle) + &small, number(-2.0 * middle), number(1.0)];
             let others = product(&[[-0.5, 1.0, 0.0], [50.0, 3.0, 1.0], [-700.0, 1.0, 0.0]]);
             let distance = sign * 2_f64.powi(exponent as i32) / middle;
             let expected = [(0.5, 1, 0.0), (middle, 2, distance), (700.0, 1, 0.0)];
@@ -353,10 +315,7 @@ mod tests {
         }
         // An exact double zero.
         let double = found(&product(&[[9.0, -6.0, 1.0], [-1.0, 2.0, 0.0]]));
-        assert!(
-            double.len() == 2 && double[1].1 == 2 && double[1].2.abs() < 1e-40,
-            "{double:?}"
-        );
+        assert!(double.len() == 2 && double[1].1 == 2 && double[1].2.abs() < 1e-40, "{double:?}");
     }
 
     /// Chebyshev's polynomial of degree 40, moved to `0 < s < 2`: zeros `1 + cos((2k + 1) pi/80)`,
@@ -369,9 +328,7 @@ mod tests {
             let twice = times(&[number(-2.0), number(2.0)], &next);
             let new = twice.iter().enumerate();
             let zero = number(0.0);
-            let new = new
-                .map(|(k, value)| value - last.get(k).unwrap_or(&zero))
-                .collect();
+            let new = new.map(|(k, value)| value - last.get(k).unwrap_or(&zero)).collect();
             (last, next) = (next, new);
         }
         let zeros = found(&next);
@@ -383,14 +340,8 @@ mod tests {
             for sign in [-1.0, 1.0].into_iter().take(count) {
                 let expected = rest.next().expect("no more than there are");
                 let zero = place * (1.0 + sign * distance.abs());
-                assert!(
-                    (zero - expected).abs() < 1e-3,
-                    "{place} {count} {distance} {expected}"
-                );
-                assert!(
-                    count == 2 || (zero - expected).abs() < 1e-12,
-                    "{place} {expected}"
-                );
+                assert!((zero - expected).abs() < 1e-3, "{place} {count} {distance} {expected}");
+                assert!(count == 2 || (zero - expected).abs() < 1e-12, "{place} {expected}");
             }
         }
         assert!(rest.next().is_none());

@@ -54,10 +54,8 @@ impl Expr {
             }
             Node::Product(coefficient, factors) => {
                 let mut terms = Vec::new();
-                for (index, slope) in slopes
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, slope)| !slope.is_zero())
+                for (index, slope) in
+                    slopes.iter().enumerate().filter(|(_, slope)| !slope.is_zero())
                 {
                     count(factors.len() + slope.factors().1.len())?;
                     let mut product = factors.clone();
@@ -75,10 +73,8 @@ impl Expr {
             },
             Node::Function(function, arguments) => {
                 let mut terms = Vec::new();
-                for (index, slope) in slopes
-                    .iter()
-                    .enumerate()
-                    .filter(|(_, slope)| !slope.is_zero())
+                for (index, slope) in
+                    slopes.iter().enumerate().filter(|(_, slope)| !slope.is_zero())
                 {
                     count(1 + slope.factors().1.len())?;
                     terms.push(function.derivative(arguments, index)? * slope);
@@ -104,11 +100,7 @@ impl Expr {
             if let Some(value) = expr.as_symbol().and_then(|symbol| values.get(&symbol)) {
                 return Ok(value.clone());
             }
-            match expr
-                .children()
-                .zip(children)
-                .all(|(old, new)| old.address() == new.address())
-            {
+            match expr.children().zip(children).all(|(old, new)| old.address() == new.address()) {
                 true => Ok(expr.clone()),
                 false => expr.with_children(children),
             }
@@ -153,11 +145,7 @@ fn power_slope(
     if exponent_slope.is_zero() {
         return match base_slope.is_zero() {
             true => Ok(Expr::zero()),
-            false => Ok(Expr::product([
-                exponent.clone(),
-                lowered()?,
-                base_slope.clone(),
-            ])),
+            false => Ok(Expr::product([exponent.clone(), lowered()?, base_slope.clone()])),
         };
     }
     let logarithm = Expr::function(Function::Log, vec![base.clone()])?;
@@ -175,10 +163,7 @@ struct Budget {
 
 impl Budget {
     fn spend(&mut self, amount: usize) -> Result<(), ExprError> {
-        self.left = self
-            .left
-            .checked_sub(amount)
-            .ok_or(ExprError::TooManyTerms(self.limit))?;
+        self.left = self.left.checked_sub(amount).ok_or(ExprError::TooManyTerms(self.limit))?;
         Ok(())
     }
 
@@ -226,11 +211,11 @@ fn products_of_power(terms: &[Expr], times: u32, enough: usize) -> usize {
 
 fn expand_node(expr: &Expr, children: &[Expr], budget: &mut Budget) -> Result<Expr, ExprError> {
     match (expr.node(), children) {
-        (Node::Product(coefficient, _), factors) => factors
-            .iter()
-            .try_fold(Expr::number(coefficient.clone()), |product, factor| {
+        (Node::Product(coefficient, _), factors) => {
+            factors.iter().try_fold(Expr::number(coefficient.clone()), |product, factor| {
                 multiply(&product, factor, budget)
-            }),
+            })
+        }
         (Node::Power(..), [base, exponent]) => {
             let times = exponent
                 .as_number()
@@ -249,16 +234,9 @@ fn expand_node(expr: &Expr, children: &[Expr], budget: &mut Budget) -> Result<Ex
 }
 
 fn multiply(a: &Expr, b: &Expr, budget: &mut Budget) -> Result<Expr, ExprError> {
-    budget.spend(
-        a.terms()
-            .len()
-            .saturating_mul(b.terms().len())
-            .saturating_sub(1),
-    )?;
-    let pairs = a
-        .terms()
-        .iter()
-        .flat_map(|first| b.terms().iter().map(move |second| first * second));
+    budget.spend(a.terms().len().saturating_mul(b.terms().len()).saturating_sub(1))?;
+    let pairs =
+        a.terms().iter().flat_map(|first| b.terms().iter().map(move |second| first * second));
     Ok(Expr::sum(pairs))
 }
 
@@ -279,10 +257,7 @@ mod tests {
             ("x + y + x*y", 6, false),
         ] {
             let sum = parsed(text);
-            let mut budget = Budget {
-                left: 10_000,
-                limit: 10_000,
-            };
+            let mut budget = Budget { left: 10_000, limit: 10_000 };
             expand_node(
                 &sum.integer_power(times).unwrap(),
                 &[sum.clone(), Expr::from(times)],
@@ -297,10 +272,7 @@ mod tests {
             }
         }
         for long in ["(x + y + z + 1)^60", "(1 + x)^10000"] {
-            assert_eq!(
-                parsed(long).expand(),
-                Err(ExprError::TooManyTerms(EXPANSION_LIMIT))
-            );
+            assert_eq!(parsed(long).expand(), Err(ExprError::TooManyTerms(EXPANSION_LIMIT)));
         }
     }
 
@@ -353,10 +325,7 @@ mod tests {
         );
         let wide =
             Expr::product((1..2_000).map(|k| (Expr::from(k) * Expr::from(x)).sin().unwrap()));
-        assert_eq!(
-            wide.differentiate(x).unwrap_err(),
-            ExprError::TooManyTerms(DERIVATIVE_LIMIT)
-        );
+        assert_eq!(wide.differentiate(x).unwrap_err(), ExprError::TooManyTerms(DERIVATIVE_LIMIT));
     }
 
     #[test]
@@ -380,14 +349,8 @@ mod tests {
         for text in ["1/x", "log(x)", "x^x", "y/sin(x)", "tan(pi/2 + x)"] {
             assert!(parsed(text).substitute(x, &Expr::zero()).is_err(), "{text}");
         }
-        let swap = BTreeMap::from([
-            (x, Expr::symbol("y")),
-            (Symbol::new("y"), Expr::symbol("x")),
-        ]);
-        assert_eq!(
-            parsed("x - 2*y").substitute_all(&swap).unwrap(),
-            parsed("y - 2*x")
-        );
+        let swap = BTreeMap::from([(x, Expr::symbol("y")), (Symbol::new("y"), Expr::symbol("x"))]);
+        assert_eq!(parsed("x - 2*y").substitute_all(&swap).unwrap(), parsed("y - 2*x"));
     }
 
     #[test]
@@ -412,9 +375,6 @@ mod tests {
             large.expand().unwrap_err().to_string(),
             "stopped at 100000 terms: the expression is too large to be written out"
         );
-        assert_eq!(
-            parsed("(x + 1)^3").expand_within(4).unwrap_err(),
-            ExprError::TooManyTerms(4)
-        );
+        assert_eq!(parsed("(x + 1)^3").expand_within(4).unwrap_err(), ExprError::TooManyTerms(4));
     }
 }

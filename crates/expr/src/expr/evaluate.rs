@@ -45,10 +45,7 @@ impl Expr {
         let arguments = symbols
             .iter()
             .map(|symbol| {
-                values
-                    .get(symbol)
-                    .copied()
-                    .ok_or(EvaluationError::MissingSymbol(*symbol))
+                values.get(symbol).copied().ok_or(EvaluationError::MissingSymbol(*symbol))
             })
             .collect::<Result<Vec<f64>, _>>()?;
         let value = CompiledFunction::new(self, &symbols)?.call(&arguments);
@@ -62,11 +59,7 @@ impl Expr {
             .collect();
         Err(EvaluationError::Undefined {
             expression: super::print::in_message(self),
-            point: if point.is_empty() {
-                "any point".into()
-            } else {
-                point.join(", ")
-            },
+            point: if point.is_empty() { "any point".into() } else { point.join(", ") },
         })
     }
 }
@@ -224,10 +217,7 @@ impl Compiler<'_> {
             (Node::Number(value), _) => self.constant(to_f64(value)),
             (Node::Pi, _) => self.constant(std::f64::consts::PI),
             (Node::Symbol(symbol), _) => {
-                let place = self
-                    .arguments
-                    .iter()
-                    .position(|argument| argument == symbol);
+                let place = self.arguments.iter().position(|argument| argument == symbol);
                 Slot::Argument(place.ok_or(EvaluationError::MissingSymbol(*symbol))?)
             }
             (Node::Sum(terms), _) => self.sum(terms, children),
@@ -248,11 +238,9 @@ impl Compiler<'_> {
                 Some(number) => self.power(*base, number),
                 None => self.emit(Operation::Pair(Instruction::Power, *base, *exponent_slot)),
             },
-            (Node::Function(function, _), [first, ..]) => self.function(
-                *function,
-                *first,
-                children.get(1).copied().unwrap_or(*first),
-            ),
+            (Node::Function(function, _), [first, ..]) => {
+                self.function(*function, *first, children.get(1).copied().unwrap_or(*first))
+            }
             (Node::Power(..) | Node::Function(..), _) => self.constant(f64::NAN),
         };
         self.known.insert(expr.clone(), slot);
@@ -324,10 +312,8 @@ impl Compiler<'_> {
     }
 
     fn positive_product(&mut self, factors: &[Expr]) -> Slot {
-        let slots: Vec<Slot> = factors
-            .iter()
-            .filter_map(|factor| self.known.get(factor).copied())
-            .collect();
+        let slots: Vec<Slot> =
+            factors.iter().filter_map(|factor| self.known.get(factor).copied()).collect();
         self.product(&Rational::one(), factors, &slots)
     }
 
@@ -394,10 +380,8 @@ impl Compiler<'_> {
         let mut total: Option<Slot> = None;
         for term in sum.terms() {
             let (coefficient, factors) = term.factors();
-            let slots: Vec<Slot> = factors
-                .iter()
-                .filter_map(|factor| self.known.get(factor).copied())
-                .collect();
+            let slots: Vec<Slot> =
+                factors.iter().filter_map(|factor| self.known.get(factor).copied()).collect();
             let slot = self.product(&(coefficient * &unit), factors, &slots);
             total = Some(match total {
                 None => slot,
@@ -418,10 +402,7 @@ impl Compiler<'_> {
     fn power(&mut self, base: Slot, exponent: &Rational) -> Slot {
         // Beyond this a chain of multiplications is no better than the library's power.
         const LARGEST_CHAIN: u32 = 64;
-        let numerator = exponent
-            .numer()
-            .to_u32()
-            .filter(|numerator| *numerator <= LARGEST_CHAIN);
+        let numerator = exponent.numer().to_u32().filter(|numerator| *numerator <= LARGEST_CHAIN);
         match (numerator, exponent.denom().to_u32()) {
             (Some(1), Some(1)) => base,
             (Some(numerator), Some(1)) => self.emit(Operation::IntegerPower(base, numerator)),
@@ -454,10 +435,7 @@ impl Compiler<'_> {
     }
 
     fn constant(&mut self, value: f64) -> Slot {
-        let place = self
-            .constants
-            .iter()
-            .position(|known| known.to_bits() == value.to_bits());
+        let place = self.constants.iter().position(|known| known.to_bits() == value.to_bits());
         Slot::Constant(place.unwrap_or_else(|| {
             self.constants.push(value);
             self.constants.len() - 1
@@ -540,11 +518,7 @@ fn number(used: &[bool], start: usize) -> (Vec<usize>, usize) {
 }
 
 fn kept<T>(items: Vec<T>, used: &[bool]) -> impl Iterator<Item = T> {
-    items
-        .into_iter()
-        .zip(used)
-        .filter(|(_, used)| **used)
-        .map(|(item, _)| item)
+    items.into_iter().zip(used).filter(|(_, used)| **used).map(|(item, _)| item)
 }
 
 impl Operation {
@@ -575,10 +549,9 @@ mod tests {
     use crate::expr::parse_expression;
 
     fn at(text: &str, x: f64) -> Result<f64, EvaluationError> {
-        parse_expression(text).unwrap().evaluate(&BTreeMap::from([
-            (Symbol::new("x"), x),
-            (Symbol::new("k"), 4.0),
-        ]))
+        parse_expression(text)
+            .unwrap()
+            .evaluate(&BTreeMap::from([(Symbol::new("x"), x), (Symbol::new("k"), 4.0)]))
     }
 
     #[test]
@@ -606,11 +579,7 @@ mod tests {
             ("sgn(x) + H(x) + abs(x)", -2.0, 1.0),
             ("sgn(x) + H(x)", 0.0, 0.0),
             ("max(x, 1) + min(x, 1)", 3.0, 4.0),
-            (
-                "atan(x) - asin(x) + acos(x)",
-                0.0,
-                std::f64::consts::FRAC_PI_2,
-            ),
+            ("atan(x) - asin(x) + acos(x)", 0.0, std::f64::consts::FRAC_PI_2),
         ] {
             let value = at(text, x).unwrap();
             assert!(
@@ -641,34 +610,19 @@ mod tests {
 
     #[test]
     fn what_has_no_value_is_refused() {
-        for (text, x) in [
-            ("sqrt(x)", -1.0),
-            ("1/x", 0.0),
-            ("log(x)", 0.0),
-            ("x^x", -0.5),
-            ("exp(x)", 1000.0),
-        ] {
-            assert!(
-                matches!(at(text, x), Err(EvaluationError::Undefined { .. })),
-                "{text}"
-            );
+        for (text, x) in
+            [("sqrt(x)", -1.0), ("1/x", 0.0), ("log(x)", 0.0), ("x^x", -0.5), ("exp(x)", 1000.0)]
+        {
+            assert!(matches!(at(text, x), Err(EvaluationError::Undefined { .. })), "{text}");
         }
-        assert_eq!(
-            at("x + y", 1.0),
-            Err(EvaluationError::MissingSymbol(Symbol::new("y")))
-        );
+        assert_eq!(at("x + y", 1.0), Err(EvaluationError::MissingSymbol(Symbol::new("y"))));
         assert_eq!(
             at("sqrt(x)", -1.0).unwrap_err().to_string(),
             "`sqrt(x)` has no finite value at x = -1"
         );
         let x = parse_expression("x").unwrap();
         assert!(CompiledFunction::new(&x, &[]).is_err());
-        assert!(
-            CompiledFunction::new(&x, &["x".into()])
-                .unwrap()
-                .call(&[])
-                .is_nan()
-        );
+        assert!(CompiledFunction::new(&x, &["x".into()]).unwrap().call(&[]).is_nan());
     }
 
     #[test]
@@ -687,10 +641,7 @@ mod tests {
 
     #[test]
     fn powers_of_sums_with_numbers_beyond_doubles() {
-        let (large, root) = (
-            format!("1{}", "0".repeat(402)),
-            format!("1{}", "0".repeat(201)),
-        );
+        let (large, root) = (format!("1{}", "0".repeat(402)), format!("1{}", "0".repeat(201)));
         let sum = format!("({large} + {large}*x + x^2)");
         for (text, value) in [
             (format!("sqrt{sum}/{root}"), 2.0),
@@ -701,9 +652,7 @@ mod tests {
             (format!("{root}*{root}*x/{sum}"), 0.75),
         ] {
             let found = at(&text, 3.0);
-            let close = found
-                .as_ref()
-                .is_ok_and(|found| (found / value - 1.0).abs() < 1e-14);
+            let close = found.as_ref().is_ok_and(|found| (found / value - 1.0).abs() < 1e-14);
             assert!(close, "{found:?} for {value}");
         }
     }

@@ -22,9 +22,7 @@ impl Expr {
     /// ```
     pub fn factored(&self) -> Self {
         let shorter = |written: &Self| written.to_string().len() <= self.to_string().len();
-        common_factor(self)
-            .filter(shorter)
-            .unwrap_or_else(|| self.clone())
+        common_factor(self).filter(shorter).unwrap_or_else(|| self.clone())
     }
 }
 
@@ -38,9 +36,7 @@ fn common_factor(sum: &Expr) -> Option<Expr> {
     let powers = |term: &Expr| -> Vec<(Expr, Rational)> {
         let (_, factors) = term.factors();
         let powers = factors.iter().map(Expr::base_and_exponent);
-        powers
-            .filter_map(|(base, exponent)| Some((base, exponent.as_number()?.clone())))
-            .collect()
+        powers.filter_map(|(base, exponent)| Some((base, exponent.as_number()?.clone()))).collect()
     };
     let others: Vec<_> = others.iter().map(powers).collect();
     let common = powers(first).into_iter().filter_map(|(base, exponent)| {
@@ -79,19 +75,10 @@ mod tests {
     #[test]
     fn what_is_common_stands_in_front() {
         for (text, factored) in [
-            (
-                "-4*cos(A)/A^2 + 4*cos(A/2)/A^2",
-                "4*(cos(A/2) - cos(A))/A^2",
-            ),
-            (
-                "2/A^2 - 2/(A^2*sqrt(1 + A^2))",
-                "2*(1 - 1/sqrt(1 + A^2))/A^2",
-            ),
+            ("-4*cos(A)/A^2 + 4*cos(A/2)/A^2", "4*(cos(A/2) - cos(A))/A^2"),
+            ("2/A^2 - 2/(A^2*sqrt(1 + A^2))", "2*(1 - 1/sqrt(1 + A^2))/A^2"),
             ("4/(4 + A^2) - 8*A^2/(4 + A^2)^2", "4*(4 - A^2)/(4 + A^2)^2"),
-            (
-                "2/sqrt(4 + A^2) - 2*A^2/(4 + A^2)^(3/2)",
-                "8/(4 + A^2)^(3/2)",
-            ),
+            ("2/sqrt(4 + A^2) - 2*A^2/(4 + A^2)^(3/2)", "8/(4 + A^2)^(3/2)"),
             ("k*A^2*sin(A) - k*A*cos(A)", "k*A*(A*sin(A) - cos(A))"),
             // Nothing to take out, or longer with it.
             ("1 + sqrt(A) - A^2/8", "1 + sqrt(A) - A^2/8"),

@@ -79,10 +79,7 @@ pub enum Function {
 impl Function {
     /// The functions that an equation may use, in the order of the table.
     pub fn all() -> impl Iterator<Item = Self> {
-        TABLE
-            .iter()
-            .map(|entry| entry.function)
-            .filter(|function| !function.is_special())
+        TABLE.iter().map(|entry| entry.function).filter(|function| !function.is_special())
     }
 
     /// The function of this name that an equation may use.
@@ -92,10 +89,7 @@ impl Function {
 
     /// The function of this name, special ones included.
     pub fn from_name_in_answers(name: &str) -> Option<Self> {
-        TABLE
-            .iter()
-            .find(|entry| entry.name == name)
-            .map(|entry| entry.function)
+        TABLE.iter().find(|entry| entry.name == name).map(|entry| entry.function)
     }
 
     /// Whether it occurs in answers alone.
@@ -157,11 +151,7 @@ impl Function {
             if matches!(entry.parity, Parity::Even | Parity::Odd) && first.has_leading_minus() {
                 let turned = std::iter::once(-first).chain(arguments.iter().skip(1).cloned());
                 let positive = self.apply(turned.collect())?;
-                return Ok(if entry.parity == Parity::Odd {
-                    -positive
-                } else {
-                    positive
-                });
+                return Ok(if entry.parity == Parity::Odd { -positive } else { positive });
             }
         }
         if entry.parity == Parity::Symmetric {
@@ -176,11 +166,7 @@ impl Function {
     }
 
     fn wrong_arguments(self, given: usize) -> ExprError {
-        ExprError::WrongArguments {
-            function: self.name(),
-            expected: self.argument_count(),
-            given,
-        }
+        ExprError::WrongArguments { function: self.name(), expected: self.argument_count(), given }
     }
 
     fn entry(self) -> &'static Entry {
@@ -309,10 +295,7 @@ static TABLE: [Entry; 26] = [
                 .or_else(|| at(u, -1, Expr::pi))),
         },
         derivative: |u, _, _| {
-            Expr::divide(
-                &Expr::from(-1),
-                &(Expr::one() - u.integer_power(2)?).sqrt()?,
-            )
+            Expr::divide(&Expr::from(-1), &(Expr::one() - u.integer_power(2)?).sqrt()?)
         },
     },
     Entry {
@@ -372,13 +355,7 @@ static TABLE: [Entry; 26] = [
         function: Maximum,
         name: "max",
         parity: Parity::Symmetric,
-        value: Binary(|u, v| {
-            if u.is_nan() || v.is_nan() {
-                f64::NAN
-            } else {
-                u.max(v)
-            }
-        }),
+        value: Binary(|u, v| if u.is_nan() || v.is_nan() { f64::NAN } else { u.max(v) }),
         exact: |u, v| Ok(extreme(u, v, std::cmp::Ordering::Greater)),
         derivative: |u, v, index| match index {
             0 => call(Step, &(u - v)),
@@ -389,13 +366,7 @@ static TABLE: [Entry; 26] = [
         function: Minimum,
         name: "min",
         parity: Parity::Symmetric,
-        value: Binary(|u, v| {
-            if u.is_nan() || v.is_nan() {
-                f64::NAN
-            } else {
-                u.min(v)
-            }
-        }),
+        value: Binary(|u, v| if u.is_nan() || v.is_nan() { f64::NAN } else { u.min(v) }),
         exact: |u, v| Ok(extreme(u, v, std::cmp::Ordering::Less)),
         derivative: |u, v, index| match index {
             0 => Ok(Expr::one() - call(Step, &(u - v))?),
@@ -407,10 +378,7 @@ static TABLE: [Entry; 26] = [
         name: "H",
         parity: Parity::None,
         value: Unary(step),
-        exact: |u, _| {
-            Ok(u.as_number()
-                .map(|number| Expr::from(i64::from(number.is_positive()))))
-        },
+        exact: |u, _| Ok(u.as_number().map(|number| Expr::from(i64::from(number.is_positive())))),
         derivative: |_, _, _| Ok(Expr::zero()),
     },
     // NIST Digital Library of Mathematical Functions 10.6 and 10.29: J0' = -J1, J1' = J0 - J1/u,
@@ -458,10 +426,7 @@ static TABLE: [Entry; 26] = [
             None => Ok(None),
         },
         derivative: |u, _, _| {
-            Err(ExprError::Undefined(print::call_in_message(
-                Gamma,
-                std::slice::from_ref(u),
-            )))
+            Err(ExprError::Undefined(print::call_in_message(Gamma, std::slice::from_ref(u))))
         },
     },
     Entry {
@@ -474,10 +439,7 @@ static TABLE: [Entry; 26] = [
             _ => Ok(at(u, 0, || turn(1, 2))),
         },
         derivative: |u, _, _| {
-            Err(ExprError::Undefined(print::call_in_message(
-                EllipticK,
-                std::slice::from_ref(u),
-            )))
+            Err(ExprError::Undefined(print::call_in_message(EllipticK, std::slice::from_ref(u))))
         },
     },
     // NIST Digital Library of Mathematical Functions 22.13: sn' = cn dn, cn' = -sn dn, dn' = -m sn
@@ -545,11 +507,7 @@ fn limit_of_jacobi(
 
 /// Gamma, NaN at its poles.
 fn gamma(u: f64) -> f64 {
-    if u <= 0.0 && u == u.floor() {
-        f64::NAN
-    } else {
-        cephes64::gamma(u)
-    }
+    if u <= 0.0 && u == u.floor() { f64::NAN } else { cephes64::gamma(u) }
 }
 
 /// Gamma(n) = (n-1)! and Gamma(n + 1/2) = (n-1/2)(n-3/2)...(1/2) sqrt(pi), for n below 30.
@@ -564,11 +522,7 @@ fn gamma_of_halves(u: &Rational) -> Option<Expr> {
         left -= Rational::one();
         factor *= &left;
     }
-    let start = if left == half {
-        Expr::pi().sqrt().ok()?
-    } else {
-        Expr::one()
-    };
+    let start = if left == half { Expr::pi().sqrt().ok()? } else { Expr::one() };
     Some(&Expr::number(factor) * &start)
 }
 
@@ -607,9 +561,7 @@ fn quarter_turns(argument: &Expr) -> Option<usize> {
         _ => return None,
     };
     let turns = multiple * ratio(2, 1);
-    turns
-        .is_integer()
-        .then(|| turns.to_integer().mod_floor(&4.into()).to_usize())?
+    turns.is_integer().then(|| turns.to_integer().mod_floor(&4.into()).to_usize())?
 }
 
 fn beyond_one(number: &Rational) -> bool {
@@ -621,11 +573,7 @@ fn extreme(u: &Expr, v: &Expr, wanted: std::cmp::Ordering) -> Option<Expr> {
         return Some(u.clone());
     }
     let order = number::compare(u.as_number()?, v.as_number()?);
-    Some(if order == wanted {
-        u.clone()
-    } else {
-        v.clone()
-    })
+    Some(if order == wanted { u.clone() } else { v.clone() })
 }
 
 fn sign(u: f64) -> f64 {
@@ -652,14 +600,8 @@ mod tests {
     fn the_table_stands_in_the_order_of_the_variants() {
         for (place, entry) in TABLE.iter().enumerate() {
             assert_eq!(entry.function as usize, place);
-            assert_eq!(
-                Function::from_name_in_answers(entry.name),
-                Some(entry.function)
-            );
-            assert_eq!(
-                Function::from_name(entry.name).is_none(),
-                entry.function.is_special()
-            );
+            assert_eq!(Function::from_name_in_answers(entry.name), Some(entry.function));
+            assert_eq!(Function::from_name(entry.name).is_none(), entry.function.is_special());
         }
     }
 
@@ -676,17 +618,11 @@ mod tests {
                 (BesselJ0, integral(&|t| (u * t.sin()).cos(), PI) / PI),
                 (BesselJ1, integral(&|t| (t - u * t.sin()).cos(), PI) / PI),
                 (BesselI0, integral(&|t| (u * t.cos()).exp(), PI) / PI),
-                (
-                    BesselI1,
-                    integral(&|t| (u * t.cos()).exp() * t.cos(), PI) / PI,
-                ),
+                (BesselI1, integral(&|t| (u * t.cos()).exp() * t.cos(), PI) / PI),
                 // t = s^8 leaves a smooth integrand for every u > 1/8.
                 (
                     Gamma,
-                    integral(
-                        &|s| 8.0 * s.powf(8.0 * (u + 0.2) - 1.0) * (-s.powi(8)).exp(),
-                        1.8,
-                    ),
+                    integral(&|s| 8.0 * s.powf(8.0 * (u + 0.2) - 1.0) * (-s.powi(8)).exp(), 1.8),
                 ),
             ] {
                 let u = if function == Gamma { u + 0.2 } else { u };
@@ -699,15 +635,10 @@ mod tests {
         }
         for m in [-50.0, -1.0, -0.3, 0.0, 0.4, 0.9, 0.999] {
             let value = integral(&|t| (1.0 - m * t.sin().powi(2)).sqrt().recip(), 0.5 * PI);
-            assert!(
-                (EllipticK.value(m, 0.0) / value - 1.0).abs() < 1e-13,
-                "K({m})"
-            );
+            assert!((EllipticK.value(m, 0.0) / value - 1.0).abs() < 1e-13, "K({m})");
         }
         assert_eq!(
-            Expr::function(Gamma, vec![Expr::number(ratio(5, 2))])
-                .unwrap()
-                .to_string(),
+            Expr::function(Gamma, vec![Expr::number(ratio(5, 2))]).unwrap().to_string(),
             "3*sqrt(pi)/4"
         );
     }
@@ -715,9 +646,7 @@ mod tests {
     /// What simplification claims must be what the numbers say.
     #[test]
     fn exact_values_agree_with_the_numbers() {
-        let points = [
-            "0", "1", "-1", "1/2", "-2", "pi", "pi/2", "-3*pi/2", "2*pi", "5*pi/2",
-        ];
+        let points = ["0", "1", "-1", "1/2", "-2", "pi", "pi/2", "-3*pi/2", "2*pi", "5*pi/2"];
         for function in Function::all() {
             for first in points {
                 for second in ["0", "-2", "pi"] {

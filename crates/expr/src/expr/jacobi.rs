@@ -34,10 +34,8 @@ pub(super) fn jacobi(u: f64, m: f64) -> [f64; 3] {
         (a, b) = (0.5 * (a + b), (a * b).sqrt());
     }
     let first = f64::from(1_u32 << STEPS) * a * u;
-    let phi = ratios
-        .iter()
-        .rev()
-        .fold(first, |phi, ratio| 0.5 * (phi + (ratio * phi.sin()).asin()));
+    let phi =
+        ratios.iter().rev().fold(first, |phi, ratio| 0.5 * (phi + (ratio * phi.sin()).asin()));
     let (sn, cn) = phi.sin_cos();
     [sn, cn, (cn * cn + complement * sn * sn).sqrt()]
 }
@@ -51,9 +49,7 @@ mod tests {
     /// Functions 22.15).
     #[test]
     fn they_invert_the_integral() {
-        for m in [
-            -400.0, -3.0, -0.5, 0.0, 1e-12, 0.3, 0.5, 0.9, 0.99, 0.999_999,
-        ] {
+        for m in [-400.0, -3.0, -0.5, 0.0, 1e-12, 0.3, 0.5, 0.9, 0.99, 0.999_999] {
             // Near m = 1 the integrand has a narrow peak at pi/2, over which the quadrature does
             // not come.
             let far = if m < 0.999 { vec![4.0] } else { vec![] };

@@ -189,9 +189,7 @@ impl Expr {
     pub fn power(base: &Self, exponent: &Self) -> Result<Self, ExprError> {
         let result = normal::power(base, exponent)?;
         match normal::has_large_exponent(&result) {
-            true => Err(ExprError::ExponentTooLarge(print::power_in_message(
-                base, exponent,
-            ))),
+            true => Err(ExprError::ExponentTooLarge(print::power_in_message(base, exponent))),
             false => Ok(result),
         }
     }
@@ -207,10 +205,7 @@ impl Expr {
     /// The denominator is zero.
     pub fn divide(numerator: &Self, denominator: &Self) -> Result<Self, ExprError> {
         if denominator.is_zero() {
-            return Err(ExprError::DivisionByZero(format!(
-                "{}/0",
-                print::in_message(numerator)
-            )));
+            return Err(ExprError::DivisionByZero(format!("{}/0", print::in_message(numerator))));
         }
         Ok(numerator * normal::power(denominator, &Self::from(-1))?)
     }
@@ -253,11 +248,9 @@ impl Expr {
                 Ok(normal::scaled_product(coefficient.clone(), children))
             }
             (Node::Power(..), [base, exponent]) => Self::power(base, exponent),
-            (Node::Power(..), _) => Err(ExprError::WrongArguments {
-                function: "^",
-                expected: 2,
-                given: children.len(),
-            }),
+            (Node::Power(..), _) => {
+                Err(ExprError::WrongArguments { function: "^", expected: 2, given: children.len() })
+            }
             (Node::Function(function, _), _) => Self::function(*function, children.to_vec()),
         }
     }
@@ -353,8 +346,7 @@ impl Expr {
 
     /// Does the symbol occur?
     pub fn contains(&self, symbol: Symbol) -> bool {
-        self.unique_nodes()
-            .any(|expr| expr.as_symbol() == Some(symbol))
+        self.unique_nodes().any(|expr| expr.as_symbol() == Some(symbol))
     }
 
     /// Does the function occur?
@@ -386,10 +378,7 @@ impl Expr {
                 continue;
             }
             values.clear();
-            values.extend(
-                expr.children()
-                    .filter_map(|child| done.get(&child.address()).cloned()),
-            );
+            values.extend(expr.children().filter_map(|child| done.get(&child.address()).cloned()));
             let value = step(expr, &values)?;
             if open.is_empty() {
                 return Ok(value);
@@ -451,15 +440,8 @@ impl Expr {
                 matches!(function, Function::Step | Function::Sign)
             }
         };
-        let size = node
-            .children()
-            .fold(1, |size: u32, child| size.saturating_add(child.0.size));
-        Self(Arc::new(Inner {
-            node,
-            hash: hasher.finish(),
-            size,
-            stepwise,
-        }))
+        let size = node.children().fold(1, |size: u32, child| size.saturating_add(child.0.size));
+        Self(Arc::new(Inner { node, hash: hasher.finish(), size, stepwise }))
     }
 
     /// Constant between jumps: built from numbers, `H` and `sgn` alone. Zero there means zero on a
@@ -609,15 +591,9 @@ macro_rules! operator {
     };
 }
 
-operator!(Add, add, |left, right| Expr::sum([
-    left.clone(),
-    right.clone()
-]));
+operator!(Add, add, |left, right| Expr::sum([left.clone(), right.clone()]));
 operator!(Sub, sub, |left, right| Expr::sum([left.clone(), -right]));
-operator!(Mul, mul, |left, right| Expr::product([
-    left.clone(),
-    right.clone()
-]));
+operator!(Mul, mul, |left, right| Expr::product([left.clone(), right.clone()]));
 
 impl std::ops::Neg for &Expr {
     type Output = Expr;
@@ -697,10 +673,7 @@ mod tests {
         assert_eq!(expr.to_string().len(), 5 * depth + 1);
         assert_eq!(expr.expand().unwrap(), expr);
         assert_ne!(expr.substitute(x, &Expr::symbol("y")).unwrap(), expr);
-        assert_eq!(
-            expr.differentiate(x).unwrap_err(),
-            ExprError::TooManyTerms(300_000)
-        );
+        assert_eq!(expr.differentiate(x).unwrap_err(), ExprError::TooManyTerms(300_000));
         // cos repeated without end converges to the solution of cos(u) = u.
         let value = expr.evaluate(&BTreeMap::from([(x, 1.0)])).unwrap();
         assert!((value - value.cos()).abs() < 1e-15);

@@ -64,12 +64,7 @@ fn symbol_class(symbol: Symbol) -> Class {
 }
 
 fn compare_names(a: Symbol, b: Symbol) -> Ordering {
-    let folded = |symbol: Symbol| {
-        symbol
-            .name()
-            .chars()
-            .map(|letter| letter.to_ascii_lowercase())
-    };
+    let folded = |symbol: Symbol| symbol.name().chars().map(|letter| letter.to_ascii_lowercase());
     folded(a).cmp(folded(b)).then_with(|| a.cmp(&b))
 }
 
@@ -83,12 +78,8 @@ struct TermKey {
 
 impl TermKey {
     fn of(term: &Expr) -> Self {
-        let mut key = Self {
-            kind: 1,
-            degree: 0.0,
-            monomial: Vec::new(),
-            factors: term.factors().1.to_vec(),
-        };
+        let mut key =
+            Self { kind: 1, degree: 0.0, monomial: Vec::new(), factors: term.factors().1.to_vec() };
         for factor in &key.factors {
             let (base, exponent) = match factor.node() {
                 Node::Power(base, exponent) => (base, exponent.as_number().map(to_f64)),
@@ -188,10 +179,9 @@ pub(super) fn compare_structure(a: &Expr, b: &Expr) -> Ordering {
             (Node::Number(a), Node::Number(b)) => number::compare(a, b),
             (Node::Symbol(a), Node::Symbol(b)) => a.cmp(b),
             (Node::Sum(a), Node::Sum(b)) => a.len().cmp(&b.len()),
-            (Node::Product(first, a), Node::Product(second, b)) => a
-                .len()
-                .cmp(&b.len())
-                .then_with(|| number::compare(first, second)),
+            (Node::Product(first, a), Node::Product(second, b)) => {
+                a.len().cmp(&b.len()).then_with(|| number::compare(first, second))
+            }
             (Node::Function(first, a), Node::Function(second, b)) => {
                 first.cmp(second).then(a.len().cmp(&b.len()))
             }

@@ -29,9 +29,7 @@ impl Expr {
         };
         let found = self.fold(|part, children: &[Found]| {
             let value = value(part);
-            let inner = children
-                .iter()
-                .find(|child| !matches!(child, Found::Finite(_)));
+            let inner = children.iter().find(|child| !matches!(child, Found::Finite(_)));
             Ok::<Found, Infallible>(match (value.is_finite(), inner) {
                 (true, _) => Found::Finite(value),
                 (false, Some(inner)) => inner.clone(),

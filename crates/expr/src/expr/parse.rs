@@ -130,12 +130,7 @@ pub fn parse_equation(text: &str) -> Result<Equation, ParseError> {
         terms.extend(typed);
     }
     match parser.peek() {
-        Kind::End => Ok(Equation {
-            left,
-            right,
-            coordinate,
-            typed: Typed::new(text, terms),
-        }),
+        Kind::End => Ok(Equation { left, right, coordinate, typed: Typed::new(text, terms) }),
         Kind::Equals => {
             Err(parser.error(parser.token().span(), "a second `=`", "an equation has one"))
         }
@@ -157,14 +152,7 @@ struct Parser<'a> {
 impl<'a> Parser<'a> {
     fn new(text: &'a str, special: bool) -> Result<Self, ParseError> {
         let tokens = lexer::tokens(text)?;
-        let parser = Self {
-            text,
-            tokens,
-            next: 0,
-            depth: 0,
-            work: 0,
-            special,
-        };
+        let parser = Self { text, tokens, next: 0, depth: 0, work: 0, special };
         if parser.peek() == Kind::End {
             return Err(parser.error(0..0, "the text is empty", "an example: `x'' + sin(x) = 0`"));
         }
@@ -420,22 +408,14 @@ impl<'a> Parser<'a> {
                 "",
             ));
         }
-        let size = exponent
-            .trim_start_matches(['+', '-'])
-            .trim_start_matches('0');
-        let size = if size.is_empty() {
-            Some(0)
-        } else {
-            size.parse().ok()
-        };
+        let size = exponent.trim_start_matches(['+', '-']).trim_start_matches('0');
+        let size = if size.is_empty() { Some(0) } else { size.parse().ok() };
         let Some(size) = size.filter(|size: &usize| *size <= LARGEST_DECIMAL_EXPONENT) else {
             let message =
                 format!("the exponent of this number is beyond {LARGEST_DECIMAL_EXPONENT}");
             return Err(self.error(token.span(), &message, ""));
         };
-        let digits = format!("0{whole}{fraction}")
-            .parse()
-            .unwrap_or_else(|_| Integer::zero());
+        let digits = format!("0{whole}{fraction}").parse().unwrap_or_else(|_| Integer::zero());
         let ten_to = |power: usize| num_traits::pow(Integer::from(10), power);
         let (mut numerator, mut denominator) = (digits, ten_to(fraction.len()));
         if exponent.starts_with('-') {
@@ -475,11 +455,7 @@ impl<'a> Parser<'a> {
     fn enter(&mut self, token: Token) -> Result<(), ParseError> {
         self.depth += 1;
         match self.depth > DEEPEST {
-            true => Err(self.error(
-                token.span(),
-                &format!("nested more than {DEEPEST} deep"),
-                "",
-            )),
+            true => Err(self.error(token.span(), &format!("nested more than {DEEPEST} deep"), "")),
             false => Ok(()),
         }
     }
@@ -556,11 +532,7 @@ mod tests {
             ("1 - 2 - 3", -4, 1),
         ] {
             let expected = Rational::new(numerator.into(), denominator.into());
-            assert_eq!(
-                parse_expression(text).unwrap(),
-                Expr::number(expected),
-                "{text}"
-            );
+            assert_eq!(parse_expression(text).unwrap(), Expr::number(expected), "{text}");
         }
     }
 
@@ -603,37 +575,16 @@ mod tests {
             let equation = parse_equation(&format!("{name}'' + {name} = 0")).unwrap();
             assert_eq!(equation.coordinate.name(), name);
         }
-        assert_eq!(
-            parse_equation("theta'' + sin(theta)")
-                .unwrap()
-                .coordinate
-                .name(),
-            "theta"
-        );
+        assert_eq!(parse_equation("theta'' + sin(theta)").unwrap().coordinate.name(), "theta");
     }
 
     /// Text, the part that is meant, the message and the help.
     #[test]
     fn mistakes_are_located_and_named() {
         for (text, place, message, help) in [
-            (
-                "x'' + 2x = 0",
-                "2x",
-                "`2x`: a product needs its sign",
-                "try `2*x`",
-            ),
-            (
-                "2(x) + x''",
-                "2(x)",
-                "`2(x)`: a product needs its sign",
-                "try `2*(x)`",
-            ),
-            (
-                "x sin(x)",
-                "x sin(x)",
-                "`x sin(x)`: a product needs its sign",
-                "try `x*sin(x)`",
-            ),
+            ("x'' + 2x = 0", "2x", "`2x`: a product needs its sign", "try `2*x`"),
+            ("2(x) + x''", "2(x)", "`2(x)`: a product needs its sign", "try `2*(x)`"),
+            ("x sin(x)", "x sin(x)", "`x sin(x)`: a product needs its sign", "try `x*sin(x)`"),
             (
                 "(x+1)(x-1)",
                 "(x+1)(x-1)",
@@ -646,19 +597,9 @@ mod tests {
                 "`sin(x)(x-1)`: a product needs its sign",
                 "try `sin(x)*(x-1)`",
             ),
-            (
-                "k(x)",
-                "k(x)",
-                "`k(x)`: a product needs its sign",
-                "try `k*(x)`",
-            ),
+            ("k(x)", "k(x)", "`k(x)`: a product needs its sign", "try `k*(x)`"),
             ("2e", "2e", "`2e`: a product needs its sign", "try `2*e`"),
-            (
-                "0x10",
-                "0x10",
-                "`0x10`: a product needs its sign",
-                "try `0*x10`",
-            ),
+            ("0x10", "0x10", "`0x10`: a product needs its sign", "try `0*x10`"),
             ("x 1", "x 1", "`x 1`: a product needs its sign", "try `x*1`"),
             (
                 "d2x/dt2 + x",
@@ -666,30 +607,15 @@ mod tests {
                 "`d2x/dt2`: derivatives are written with primes",
                 "try `x''`",
             ),
-            (
-                "x + du/dt",
-                "du/dt",
-                "`du/dt`: derivatives are written with primes",
-                "try `u'`",
-            ),
+            ("x + du/dt", "du/dt", "`du/dt`: derivatives are written with primes", "try `u'`"),
             (
                 "d^2x/dt^2 + x",
                 "d^2x/dt^2",
                 "`d^2x/dt^2`: derivatives are written with primes",
                 "try `x''`",
             ),
-            (
-                "x + x_dot",
-                "x_dot",
-                "`x_dot`: derivatives are written with primes",
-                "try `x'`",
-            ),
-            (
-                "uddot + u",
-                "uddot",
-                "`uddot`: derivatives are written with primes",
-                "try `u''`",
-            ),
+            ("x + x_dot", "x_dot", "`x_dot`: derivatives are written with primes", "try `x'`"),
+            ("uddot + u", "uddot", "`uddot`: derivatives are written with primes", "try `u''`"),
             (
                 "\\ddot{x} + x",
                 "\\ddot{x}",
@@ -702,72 +628,17 @@ mod tests {
                 "`diff(x, t)`: derivatives are written with primes",
                 "try `x'` for the velocity, `x''` for the acceleration",
             ),
-            (
-                "1 + sn(x)",
-                "sn",
-                "there is no function `sn`",
-                "did you mean `sin`?",
-            ),
-            (
-                "Sin(x)",
-                "Sin",
-                "there is no function `Sin`",
-                "did you mean `sin`?",
-            ),
-            (
-                "sqr(x)",
-                "sqr",
-                "there is no function `sqr`",
-                "did you mean `sqrt`?",
-            ),
-            (
-                "ln(x)",
-                "ln",
-                "there is no function `ln`",
-                "did you mean `log`?",
-            ),
-            (
-                "x + sin x",
-                "sin x",
-                "`sin` needs parentheses around its argument",
-                "try `sin(x)`",
-            ),
-            (
-                "cos",
-                "cos",
-                "`cos` needs parentheses around its argument",
-                "try `cos(x)`",
-            ),
-            (
-                "sin^2(x)",
-                "sin",
-                "`sin` needs parentheses around its argument",
-                "try `sin(x)^2`",
-            ),
-            (
-                "x''' + x",
-                "x'''",
-                "`x'''` has 3 primes",
-                "the highest derivative is `x''`",
-            ),
-            (
-                "t' + x",
-                "t'",
-                "`t` is no coordinate and carries no prime",
-                "",
-            ),
-            (
-                "(x)'",
-                "'",
-                "a prime stands directly after its letter",
-                "try `x'`",
-            ),
-            (
-                "x\" + x",
-                "\"",
-                "a double quote is no pair of primes",
-                "try `x''`",
-            ),
+            ("1 + sn(x)", "sn", "there is no function `sn`", "did you mean `sin`?"),
+            ("Sin(x)", "Sin", "there is no function `Sin`", "did you mean `sin`?"),
+            ("sqr(x)", "sqr", "there is no function `sqr`", "did you mean `sqrt`?"),
+            ("ln(x)", "ln", "there is no function `ln`", "did you mean `log`?"),
+            ("x + sin x", "sin x", "`sin` needs parentheses around its argument", "try `sin(x)`"),
+            ("cos", "cos", "`cos` needs parentheses around its argument", "try `cos(x)`"),
+            ("sin^2(x)", "sin", "`sin` needs parentheses around its argument", "try `sin(x)^2`"),
+            ("x''' + x", "x'''", "`x'''` has 3 primes", "the highest derivative is `x''`"),
+            ("t' + x", "t'", "`t` is no coordinate and carries no prime", ""),
+            ("(x)'", "'", "a prime stands directly after its letter", "try `x'`"),
+            ("x\" + x", "\"", "a double quote is no pair of primes", "try `x''`"),
             ("x +", "+", "something is missing after `+`", ""),
             ("x + * 2", "+", "something is missing after `+`", ""),
             ("* x", "*", "something is missing before `*`", ""),
@@ -777,30 +648,15 @@ mod tests {
             (")(", ")", "this `)` closes nothing", ""),
             ("()", "()", "nothing stands between these parentheses", ""),
             ("sin()", "sin()", "`sin` has no argument", ""),
-            (
-                "sin(x, 1)",
-                "sin(x, 1)",
-                "`sin` takes 1 argument, not 2",
-                "",
-            ),
+            ("sin(x, 1)", "sin(x, 1)", "`sin` takes 1 argument, not 2", ""),
             ("max(x)", "max(x)", "`max` takes 2 arguments, not 1", ""),
-            (
-                "x == 1",
-                "==",
-                "`==`: an equation has a single sign",
-                "try `=`",
-            ),
+            ("x == 1", "==", "`==`: an equation has a single sign", "try `=`"),
             ("x = 1 = 2", "=", "a second `=`", "an equation has one"),
             ("(x = 1)", "=", "an `=` inside parentheses", ""),
             ("x =", "=", "something is missing after `=`", ""),
             ("1/0", "0", "division by zero", ""),
             ("0/0", "0", "division by zero", ""),
-            (
-                "x/(1 - 1)",
-                "(1 - 1)",
-                "division by zero: `(1 - 1)` is 0",
-                "",
-            ),
+            ("x/(1 - 1)", "(1 - 1)", "division by zero: `(1 - 1)` is 0", ""),
             ("x + log(0)", "log(0)", "`log(0)` has no real value", ""),
             ("sqrt(-1)", "sqrt(-1)", "`(-1)^(1/2)` has no real value", ""),
             ("asin(2)", "asin(2)", "`asin(2)` has no real value", ""),
@@ -813,50 +669,15 @@ mod tests {
                 "a `,` stands between the arguments of `max` and `min` alone",
                 "a decimal point is `.`",
             ),
-            (
-                "1..2",
-                "1..",
-                "this is no number",
-                "a decimal point stands among digits: `0.5`",
-            ),
-            (
-                "x\u{b2}",
-                "\u{b2}",
-                "`\u{b2}` (U+00B2) is not understood",
-                "try `^2`",
-            ),
-            (
-                "x \u{2212} 1",
-                "\u{2212}",
-                "`\u{2212}` (U+2212) is not understood",
-                "try `-`",
-            ),
-            (
-                "2\u{b7}x",
-                "\u{b7}",
-                "`\u{b7}` (U+00B7) is not understood",
-                "try `*`",
-            ),
-            (
-                "x \u{202e}1",
-                "\u{202e}",
-                "the character U+202E is not understood",
-                "",
-            ),
+            ("1..2", "1..", "this is no number", "a decimal point stands among digits: `0.5`"),
+            ("x\u{b2}", "\u{b2}", "`\u{b2}` (U+00B2) is not understood", "try `^2`"),
+            ("x \u{2212} 1", "\u{2212}", "`\u{2212}` (U+2212) is not understood", "try `-`"),
+            ("2\u{b7}x", "\u{b7}", "`\u{b7}` (U+00B7) is not understood", "try `*`"),
+            ("x \u{202e}1", "\u{202e}", "the character U+202E is not understood", ""),
             ("x\0", "\0", "a NUL character", ""),
             ("x\u{1b}[31m", "\u{1b}", "a control character, U+001B", ""),
-            (
-                "__import__(\"os\").getcwd()",
-                "_",
-                "a name begins with a letter",
-                "",
-            ),
-            (
-                "|x|",
-                "|",
-                "`|` is no sign here",
-                "the absolute value is `abs(x)`",
-            ),
+            ("__import__(\"os\").getcwd()", "_", "a name begins with a letter", ""),
+            ("|x|", "|", "`|` is no sign here", "the absolute value is `abs(x)`"),
             (
                 "u'' + x",
                 "x",
@@ -875,28 +696,15 @@ mod tests {
                 "`kx''`: primes belong to a single letter or a Greek one",
                 "try `x''` or `phi''`",
             ),
-            (
-                "",
-                "",
-                "the text is empty",
-                "an example: `x'' + sin(x) = 0`",
-            ),
-            (
-                " \n",
-                "",
-                "the text is empty",
-                "an example: `x'' + sin(x) = 0`",
-            ),
+            ("", "", "the text is empty", "an example: `x'' + sin(x) = 0`"),
+            (" \n", "", "the text is empty", "an example: `x'' + sin(x) = 0`"),
         ] {
             let error = parse_equation(text).expect_err(text);
             assert_eq!(error.message, message, "{text:?}");
             assert_eq!(&text[error.span.clone()], place, "{text:?}: {error}");
             assert_eq!(error.help.as_deref().unwrap_or(""), help, "{text:?}");
         }
-        assert_eq!(
-            parse_expression("x = 1").unwrap_err().message,
-            "an `=` in an expression"
-        );
+        assert_eq!(parse_expression("x = 1").unwrap_err().message, "an `=` in an expression");
     }
 
     #[test]
@@ -910,30 +718,14 @@ mod tests {
             shown("x'' +\n  x + 2x\n= 0"),
             "`2x`: a product needs its sign\n    x + 2x\n        ^^ try `2*x`"
         );
-        assert_eq!(
-            shown(""),
-            "the text is empty\n  an example: `x'' + sin(x) = 0`"
-        );
+        assert_eq!(shown(""), "the text is empty\n  an example: `x'' + sin(x) = 0`");
         assert_eq!(shown("x +"), "something is missing after `+`\n  x +\n    ^");
         // What a terminal would obey or reorder is not shown.
-        assert_eq!(
-            shown("x\u{1b}[31m"),
-            "a control character, U+001B\n  x?[31m\n   ^"
-        );
-        assert_eq!(
-            shown("\u{202e}x"),
-            "the character U+202E is not understood\n  ?x\n  ^"
-        );
-        let long = shown(&format!(
-            "{}2x{}",
-            "x + ".repeat(1_000),
-            " + x".repeat(1_000)
-        ));
+        assert_eq!(shown("x\u{1b}[31m"), "a control character, U+001B\n  x?[31m\n   ^");
+        assert_eq!(shown("\u{202e}x"), "the character U+202E is not understood\n  ?x\n  ^");
+        let long = shown(&format!("{}2x{}", "x + ".repeat(1_000), " + x".repeat(1_000)));
         let lines: Vec<&str> = long.lines().collect();
-        assert_eq!(
-            lines[2].find('^').map(|place| &lines[1][place..place + 2]),
-            Some("2x")
-        );
+        assert_eq!(lines[2].find('^').map(|place| &lines[1][place..place + 2]), Some("2x"));
         assert!(lines[1].len() < 110 && lines[1].ends_with("..."), "{long}");
     }
 
@@ -946,10 +738,7 @@ mod tests {
         let deep = "nested more than 256 deep";
         let long = "the numbers here are too long to be written out";
         let wide = "the expression is too large to be brought into normal form";
-        let different = (0..8_000)
-            .map(|k| format!("x{k}"))
-            .collect::<Vec<_>>()
-            .join("+");
+        let different = (0..8_000).map(|k| format!("x{k}")).collect::<Vec<_>>().join("+");
         for (text, message) in [
             (nested("(", ")", 2_000), deep),
             (nested("sin(", ")", 2_000), deep),
@@ -963,49 +752,16 @@ mod tests {
             ("x".repeat(60_000), "a name of more than 64 letters"),
             ("9".repeat(60_000), "a number of more than 1000 digits"),
             ("x + ".repeat(20_000), "the text is longer than 64 KiB"),
-            (
-                "9^9^9^9^9".into(),
-                "`9^387420489` is too large a number to be written out",
-            ),
-            (
-                "x^1000000000".into(),
-                "the exponent in `x^1000000000` is beyond 10000",
-            ),
-            (
-                "((x^9999)^9999)".into(),
-                "the exponent in `(x^9999)^9999` is beyond 10000",
-            ),
-            (
-                "x^9999*x^9999".into(),
-                "this product has an exponent beyond 10000",
-            ),
-            (
-                "x^(1/10001)".into(),
-                "the exponent in `x^(1/10001)` is beyond 10000",
-            ),
-            (
-                "1e999999999999".into(),
-                "the exponent of this number is beyond 400",
-            ),
-            (
-                "1e-99999999999999999999999".into(),
-                "the exponent of this number is beyond 400",
-            ),
-            (
-                (3..2_000).map(|n| format!("{n}^9999*")).collect::<String>() + "1",
-                long,
-            ),
-            (
-                (3..2_000)
-                    .map(|n| format!("1/{n}^900+"))
-                    .collect::<String>()
-                    + "1",
-                long,
-            ),
-            (
-                format!("{}{}{}", "(".repeat(250), different, "+y)".repeat(250)),
-                wide,
-            ),
+            ("9^9^9^9^9".into(), "`9^387420489` is too large a number to be written out"),
+            ("x^1000000000".into(), "the exponent in `x^1000000000` is beyond 10000"),
+            ("((x^9999)^9999)".into(), "the exponent in `(x^9999)^9999` is beyond 10000"),
+            ("x^9999*x^9999".into(), "this product has an exponent beyond 10000"),
+            ("x^(1/10001)".into(), "the exponent in `x^(1/10001)` is beyond 10000"),
+            ("1e999999999999".into(), "the exponent of this number is beyond 400"),
+            ("1e-99999999999999999999999".into(), "the exponent of this number is beyond 400"),
+            ((3..2_000).map(|n| format!("{n}^9999*")).collect::<String>() + "1", long),
+            ((3..2_000).map(|n| format!("1/{n}^900+")).collect::<String>() + "1", long),
+            (format!("{}{}{}", "(".repeat(250), different, "+y)".repeat(250)), wide),
         ] {
             assert_eq!(
                 parse_expression(&text).unwrap_err().message,
@@ -1035,10 +791,7 @@ mod tests {
     fn the_deepest_text_fits_a_small_stack() {
         let text = format!("{}x{}", "sin(".repeat(256), ")".repeat(256));
         let parse = move || parse_expression(&text).is_ok();
-        let thread = std::thread::Builder::new()
-            .stack_size(1024 * 1024)
-            .spawn(parse)
-            .unwrap();
+        let thread = std::thread::Builder::new().stack_size(1024 * 1024).spawn(parse).unwrap();
         assert!(thread.join().unwrap());
     }
 
@@ -1049,25 +802,10 @@ mod tests {
         assert_eq!(sum("x", 20_000).to_string(), "20000*x");
         assert_eq!(sum("sin(x)", 9_000).to_string(), "9000*sin(x)");
         let different: Vec<String> = (0..9_000).map(|k| format!("x{k}")).collect();
+        assert_eq!(parse_expression(&different.join("+")).unwrap().terms().len(), 9_000);
+        assert_eq!(parse_expression(&different.join("*")).unwrap().factors().1.len(), 9_000);
         assert_eq!(
-            parse_expression(&different.join("+"))
-                .unwrap()
-                .terms()
-                .len(),
-            9_000
-        );
-        assert_eq!(
-            parse_expression(&different.join("*"))
-                .unwrap()
-                .factors()
-                .1
-                .len(),
-            9_000
-        );
-        assert_eq!(
-            parse_expression(&vec!["(x+1)"; 9_000].join("*"))
-                .unwrap()
-                .to_string(),
+            parse_expression(&vec!["(x+1)"; 9_000].join("*")).unwrap().to_string(),
             "(1 + x)^9000"
         );
         let quotients: Vec<String> = (10_001..17_000).map(|n| format!("1/{n}")).collect();

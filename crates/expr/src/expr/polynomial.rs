@@ -55,22 +55,14 @@ fn degree_of(part: &Expr, degrees: &[u32], variable: Symbol) -> Option<u32> {
         Node::Symbol(name) => Some(u32::from(*name == variable)),
         Node::Sum(_) => {
             // A sum of constants may be zero.
-            let highest = degrees
-                .iter()
-                .copied()
-                .max()
-                .filter(|&highest| highest > 0)?;
+            let highest = degrees.iter().copied().max().filter(|&highest| highest > 0)?;
             let alone = degrees.iter().filter(|&&degree| degree == highest).count() == 1;
             alone.then_some(highest)
         }
-        Node::Product(..) => degrees
-            .iter()
-            .try_fold(0_u32, |sum, &degree| sum.checked_add(degree)),
+        Node::Product(..) => degrees.iter().try_fold(0_u32, |sum, &degree| sum.checked_add(degree)),
         Node::Power(_, exponent) if !constant => {
             let exponent = exponent.as_number().filter(|number| number.is_integer())?;
-            degrees
-                .first()?
-                .checked_mul(exponent.to_integer().to_u32()?)
+            degrees.first()?.checked_mul(exponent.to_integer().to_u32()?)
         }
         Node::Function(..) if !constant => None,
         Node::Number(_) | Node::Pi | Node::Power(..) | Node::Function(..) => Some(0),
@@ -85,10 +77,9 @@ fn single_factor(factor: &Expr, name: &mut dyn FnMut(&Expr) -> Option<Symbol>) -
             (Node::Symbol(symbol), Some(power)) if power.is_integer() => {
                 Some(Monomial::power_of(*symbol, power.to_integer().to_i32()?))
             }
-            (Node::Pi, Some(power)) if power.is_integer() => Some(Monomial::power_of(
-                Symbol::new("pi"),
-                power.to_integer().to_i32()?,
-            )),
+            (Node::Pi, Some(power)) if power.is_integer() => {
+                Some(Monomial::power_of(Symbol::new("pi"), power.to_integer().to_i32()?))
+            }
             // One name for all powers of a constant.
             (_, Some(power)) if power.is_integer() => {
                 let power = power.to_integer().to_i32()?;
@@ -151,9 +142,7 @@ mod tests {
             let mut constant = |factor: &Expr| (!factor.contains(x)).then(|| Symbol::new("c"));
             let polynomial = expression.to_polynomial(&mut constant).unwrap();
             let range = polynomial.and_then(|polynomial| polynomial.exponent_range(x));
-            let known = range
-                .filter(|range| range.0 >= 0)
-                .map(|range| range.1 as u32);
+            let known = range.filter(|range| range.0 >= 0).map(|range| range.1 as u32);
             assert_eq!(known, degree, "{text}");
             let found = expression.degree_at_sight(x);
             assert_eq!(found, degree.filter(|_| at_sight), "{text}");

@@ -52,11 +52,7 @@ impl Expr {
                 _ => numerator.push(factor.clone()),
             }
         }
-        Fraction {
-            negative: coefficient.is_negative(),
-            numerator,
-            denominator,
-        }
+        Fraction { negative: coefficient.is_negative(), numerator, denominator }
     }
 }
 
@@ -94,10 +90,7 @@ impl Expr {
             };
             Self::product(std::iter::once(Self::number(number)).chain(factors.iter().cloned()))
         });
-        Some(Self::from_node(Node::Power(
-            Self::sum(rounded),
-            exponent.clone(),
-        )))
+        Some(Self::from_node(Node::Power(Self::sum(rounded), exponent.clone())))
     }
 }
 
@@ -134,15 +127,9 @@ impl Expr {
     /// stand before it.
     pub fn terms_inside(&self) -> impl Iterator<Item = &Self> {
         let terms = self.terms();
-        let minus = terms
-            .iter()
-            .take_while(|term| term.has_leading_minus())
-            .count();
+        let minus = terms.iter().take_while(|term| term.has_leading_minus()).count();
         let (minus, others) = terms.split_at(minus);
-        let plus = others
-            .iter()
-            .take_while(|term| !term.has_leading_minus())
-            .count();
+        let plus = others.iter().take_while(|term| !term.has_leading_minus()).count();
         let (plus, others) = others.split_at(plus);
         plus.iter().chain(minus).chain(others)
     }
@@ -344,11 +331,7 @@ impl Write for Shortened {
         const LONGEST: usize = 40;
         let room = LONGEST.saturating_sub(self.0.chars().count());
         self.0.extend(text.chars().take(room));
-        if text.chars().count() > room {
-            Err(fmt::Error)
-        } else {
-            Ok(())
-        }
+        if text.chars().count() > room { Err(fmt::Error) } else { Ok(()) }
     }
 }
 
@@ -419,14 +402,8 @@ mod tests {
             ("1/30000000000000", "1/30000000000000"),
             ("549183/2097152", "549183/2097152"),
             ("7/4503599627370496", "7/4503599627370496"),
-            (
-                "A/403291461126605635584000000",
-                "A/403291461126605635584000000",
-            ),
-            (
-                "0.1234567890123456789",
-                "1234567890123456789/10000000000000000000",
-            ),
+            ("A/403291461126605635584000000", "A/403291461126605635584000000"),
+            ("0.1234567890123456789", "1234567890123456789/10000000000000000000"),
         ] {
             let number = parse_expression(text).unwrap();
             assert_eq!(number.to_string(), printed);
@@ -441,10 +418,7 @@ mod tests {
                 "sqrt(1.41421356237309 + 1.06066017177982*A^2)",
                 Some("sqrt(1.41421356237309 + 1.06066017177982*A^2)"),
             ),
-            (
-                "sqrt(4.76220315590459 + 3*A^2/4)",
-                Some("sqrt(4.76220315590459 + 3*A^2/4)"),
-            ),
+            ("sqrt(4.76220315590459 + 3*A^2/4)", Some("sqrt(4.76220315590459 + 3*A^2/4)")),
             (
                 "1.6e-13*sqrt(5.52427172801989e25 + 4.14320379601491e25*A^2 + 2.58950237250933e25*A^4)",
                 Some("sqrt(1.41421356237309 + 1.06066017177982*A^2 + 0.662912607362388*A^4)"),
@@ -456,20 +430,14 @@ mod tests {
         ] {
             let expr = parse_expression(text).unwrap();
             let read = expr.with_number_under_root();
-            assert_eq!(
-                read.as_ref().map(ToString::to_string).as_deref(),
-                printed,
-                "{text}"
-            );
+            assert_eq!(read.as_ref().map(ToString::to_string).as_deref(), printed, "{text}");
         }
     }
 
     #[test]
     fn fractions_split() {
         let texts = |list: &[Expr]| list.iter().map(ToString::to_string).collect::<Vec<_>>();
-        let fraction = parse_expression("-8*eps*A/(3*pi*sqrt(k))")
-            .unwrap()
-            .fraction();
+        let fraction = parse_expression("-8*eps*A/(3*pi*sqrt(k))").unwrap().fraction();
         assert!(fraction.negative);
         assert_eq!(texts(&fraction.numerator), ["8", "eps", "A"]);
         assert_eq!(texts(&fraction.denominator), ["3", "pi", "sqrt(k)"]);

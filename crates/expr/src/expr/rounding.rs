@@ -79,9 +79,8 @@ impl Expr {
                         false => (value, 0.0),
                     })
                 };
-                if let Some((value, error)) = self
-                    .evaluate_rounded(&there)
-                    .filter(|(value, _)| value.is_finite())
+                if let Some((value, error)) =
+                    self.evaluate_rounded(&there).filter(|(value, _)| value.is_finite())
                 {
                     least = least.min(error);
                     size = size.max(value.abs());
@@ -97,10 +96,7 @@ impl Expr {
             return Ok(());
         }
         let of_one = |name: &Symbol| values.get(name).map_or(0.0, |value| value.abs());
-        let worst = uncertain
-            .iter()
-            .copied()
-            .filter(|name| self.contains(*name));
+        let worst = uncertain.iter().copied().filter(|name| self.contains(*name));
         let Some(name) = worst.max_by(|one, other| of_one(one).total_cmp(&of_one(other))) else {
             return Ok(());
         };
@@ -127,8 +123,7 @@ impl Expr {
         &self,
         value_of: &dyn Fn(Symbol) -> Option<Rounded>,
     ) -> Option<Rounded> {
-        self.fold(|expr, children: &[Rounded]| node(expr, children, value_of).ok_or(()))
-            .ok()
+        self.fold(|expr, children: &[Rounded]| node(expr, children, value_of).ok_or(())).ok()
     }
 }
 
@@ -220,11 +215,7 @@ fn moved(function: &dyn Fn(f64) -> f64) -> Rounded {
     let spread = [-1.0, 1.0].map(|side| (function(side) - value).abs());
     // At the edge of where the function is defined only one side says something.
     let spread = spread.into_iter().fold(0.0, f64::max);
-    let error = if spread.is_nan() {
-        f64::INFINITY
-    } else {
-        spread
-    };
+    let error = if spread.is_nan() { f64::INFINITY } else { spread };
     (value, error + 2.0 * UNIT * value.abs())
 }
 
@@ -249,10 +240,7 @@ mod tests {
                 let at = |expr: &Expr| expr.evaluate_rounded(&|_| Some((amplitude, 0.0))).unwrap();
                 let ((value, bound), (truth, own)) = (at(&cancels), at(&exact));
                 let error = (value - truth).abs();
-                assert!(
-                    error <= bound + own,
-                    "{cancels} at {amplitude}: {error} {bound}"
-                );
+                assert!(error <= bound + own, "{cancels} at {amplitude}: {error} {bound}");
                 assert!(
                     bound <= 1e-14 * value.abs() / amplitude.powi(2),
                     "{cancels} at {amplitude}: {bound}"

@@ -96,10 +96,7 @@ impl fmt::Display for Quotation {
 
 impl Typed {
     pub(super) fn new(text: &str, terms: Vec<TypedTerm>) -> Self {
-        Self {
-            text: text.to_owned(),
-            terms,
-        }
+        Self { text: text.to_owned(), terms }
     }
 
     /// What each term adds to the left side, in the order in which they were typed.
@@ -128,10 +125,8 @@ impl Typed {
     pub fn quote(&self, numbers: &[usize]) -> String {
         /// The longest text that a message quotes in full.
         const LONGEST: usize = 120;
-        let terms: Vec<&TypedTerm> = numbers
-            .iter()
-            .filter_map(|&number| self.terms.get(number))
-            .collect();
+        let terms: Vec<&TypedTerm> =
+            numbers.iter().filter_map(|&number| self.terms.get(number)).collect();
         let is_number =
             |term: &&TypedTerm| !self.text[term.span.clone()].contains(char::is_alphabetic);
         let scaled =

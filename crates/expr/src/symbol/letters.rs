@@ -45,11 +45,8 @@ pub struct Letters {
 }
 
 /// The letters of most answers.
-const USUAL: Letters = Letters {
-    amplitude: AMPLITUDE,
-    first_harmonic: FIRST_HARMONIC,
-    frequency: FREQUENCY,
-};
+const USUAL: Letters =
+    Letters { amplitude: AMPLITUDE, first_harmonic: FIRST_HARMONIC, frequency: FREQUENCY };
 
 thread_local! {
     static IN_FORCE: Cell<Letters> = const { Cell::new(USUAL) };
@@ -73,9 +70,7 @@ impl Letters {
     /// `driven` equation has its `Omega` for the drive.
     pub fn beside(names: &[Symbol], driven: bool) -> Self {
         let clash = |own: &Symbol| {
-            [AMPLITUDE, FIRST_HARMONIC, FREQUENCY]
-                .iter()
-                .any(|usual| usual.name() == own.name())
+            [AMPLITUDE, FIRST_HARMONIC, FREQUENCY].iter().any(|usual| usual.name() == own.name())
         };
         if !names.iter().any(clash) {
             return USUAL;
@@ -90,11 +85,7 @@ impl Letters {
             taken.push(letter);
             letter
         };
-        let frequencies: &[&str] = if driven {
-            &["nu", "w"]
-        } else {
-            &["Omega", "nu", "w"]
-        };
+        let frequencies: &[&str] = if driven { &["nu", "w"] } else { &["Omega", "nu", "w"] };
         Self {
             amplitude: free(AMPLITUDE, &["C", "X", "A_0"]),
             first_harmonic: free(FIRST_HARMONIC, &["r", "rho", "a_1"]),
@@ -115,10 +106,7 @@ impl Letters {
 
     /// Puts these letters in force in any case: for work that goes on on another thread.
     pub(crate) fn exactly(self) -> InForce {
-        InForce {
-            before: IN_FORCE.replace(self),
-            of_this_thread: PhantomData,
-        }
+        InForce { before: IN_FORCE.replace(self), of_this_thread: PhantomData }
     }
 
     /// The letters that are in force on this thread, the usual ones included.
@@ -133,9 +121,7 @@ impl Letters {
             (FIRST_HARMONIC, self.first_harmonic),
             (FREQUENCY, self.frequency),
         ];
-        pairs
-            .into_iter()
-            .filter(|(usual, written)| usual != written)
+        pairs.into_iter().filter(|(usual, written)| usual != written)
     }
 
     /// The symbol that a person means by this name beside an equation with these names: one of the
@@ -178,10 +164,7 @@ mod tests {
         let names = |letters: Letters| {
             [letters.amplitude, letters.first_harmonic, letters.frequency].map(Symbol::name)
         };
-        assert_eq!(
-            names(Letters::beside(&["x".into()], false)),
-            ["A", "a", "omega"]
-        );
+        assert_eq!(names(Letters::beside(&["x".into()], false)), ["A", "a", "omega"]);
         let all = ["A", "C", "a", "omega"].map(Symbol::new);
         assert_eq!(names(Letters::beside(&all, false)), ["X", "r", "Omega"]);
         assert_eq!(names(Letters::beside(&all, true)), ["X", "r", "nu"]);
@@ -195,10 +178,7 @@ mod tests {
         let letters = Letters::beside(&[equation], false);
         {
             let _letters = letters.in_force();
-            assert_eq!(
-                format!("{answer} {} {equation}", answer.derivative()),
-                "r r' a"
-            );
+            assert_eq!(format!("{answer} {} {equation}", answer.derivative()), "r r' a");
             let _others = Letters::beside(&["omega".into()], false).in_force();
             assert_eq!(answer.to_string(), "r");
         }

@@ -62,12 +62,7 @@ impl Geometry {
         };
         let (first_swing, at_rest) = (ratio(amplitude), ratio(REST_FRACTION * amplitude));
         let gain = (first_swing / at_rest).ln() / (2.0 * model.zeta);
-        Some(Self {
-            first_swing,
-            at_rest,
-            gain,
-        })
-        .filter(|geometry| geometry.gain.is_finite())
+        Some(Self { first_swing, at_rest, gain }).filter(|geometry| geometry.gain.is_finite())
     }
 }
 
@@ -116,11 +111,7 @@ pub fn baseline(motion: &Simulation) -> Result<Option<Baseline>, SimulationError
         geometry: Some(motion.rest())
             .filter(|rest| rest.place == 0.0)
             .and_then(|rest| Geometry::of(&model, rest.amplitude)),
-        no_barrier: rest(Model {
-            left: None,
-            right: None,
-            ..model
-        })?,
+        no_barrier: rest(Model { left: None, right: None, ..model })?,
         lossless_barrier: match model.mu == 0.0 {
             true => motion.rest().time,
             false => rest(Model { mu: 0.0, ..model })?,

@@ -231,10 +231,7 @@ impl Case {
             }
             None => return Err(CaseError::Amplitude(self.amplitude)),
         };
-        let start = Start {
-            x,
-            velocity: self.speed,
-        };
+        let start = Start { x, velocity: self.speed };
         let gamma = self.stiffness()?;
         let mu = self.contact_damping.mu(&self.scales(gamma, start))?;
         if gamma == 0.0 && mu > 0.0 {
@@ -254,12 +251,7 @@ impl Case {
                 },
             };
         let zeta = in_si(Parameter::Viscous, self.viscous, self.zeta, viscous_ratio)?;
-        let alpha = in_si(
-            Parameter::Torque,
-            self.torque,
-            self.alpha,
-            friction_of_torque,
-        )?;
+        let alpha = in_si(Parameter::Torque, self.torque, self.alpha, friction_of_torque)?;
         if self.beta != 0.0 && self.frequency_ratio == 0.0 {
             return Err(CaseError::NoFrequency(self.beta));
         }
@@ -275,13 +267,9 @@ impl Case {
             right: barrier(self.right),
         };
         let released = |error| match error {
-            ModelError::LostDigits {
-                parameter: Parameter::Start,
-                ..
-            } if self.start.is_none() => ModelError::LostDigits {
-                parameter: Parameter::Amplitude,
-                value: self.amplitude,
-            },
+            ModelError::LostDigits { parameter: Parameter::Start, .. } if self.start.is_none() => {
+                ModelError::LostDigits { parameter: Parameter::Amplitude, value: self.amplitude }
+            }
             error => error,
         };
         model.check(start).map_err(released)?;
@@ -324,9 +312,7 @@ impl Case {
     /// The speed at which a restitution is stated, in units of L omega; `None` where none is
     /// stated.
     fn stated_speed(&self) -> Option<f64> {
-        let Design {
-            length, gravity, ..
-        } = self.design;
+        let Design { length, gravity, .. } = self.design;
         let speed = self.at_speed?;
         Some(self.speed_unit.dimensionless(speed, length, gravity))
     }
@@ -351,16 +337,8 @@ impl Case {
             let barrier = barrier.filter(|barrier| reached(*barrier))?;
             Some(square(barrier).sqrt()).filter(|speed| *speed > 0.0)
         };
-        let rises = if velocity == 0.0 {
-            x.sin() < 0.0
-        } else {
-            velocity > 0.0
-        };
-        let (first, second) = if rises {
-            (self.right, self.left)
-        } else {
-            (self.left, self.right)
-        };
+        let rises = if velocity == 0.0 { x.sin() < 0.0 } else { velocity > 0.0 };
+        let (first, second) = if rises { (self.right, self.left) } else { (self.left, self.right) };
         // Over the top the motion never turns back.
         speed(first).or_else(|| speed(second).filter(|_| !over_the_top))
     }
@@ -390,21 +368,14 @@ impl Case {
         let form = |of: ContactDamping, scales: &ContactScales| {
             Some(damping.in_form(of, scales).ok()?.value())
         };
-        let at_touch = ContactScales {
-            speed: touch_speed,
-            ..scales
-        };
+        let at_touch = ContactScales { speed: touch_speed, ..scales };
         let of_touch =
             |mu| ContactDamping::Mu(mu).in_form(ContactDamping::Restitution(0.0), &at_touch);
         let either = |si: Option<f64>, own, number| if si.is_some() { own } else { number };
         Ok(Dissipation {
             contact: damping,
             mu: model.mu,
-            mu_over_gamma: if model.mu == 0.0 {
-                0.0
-            } else {
-                model.mu / model.gamma
-            },
+            mu_over_gamma: if model.mu == 0.0 { 0.0 } else { model.mu / model.gamma },
             lambda: match damping {
                 ContactDamping::Lambda(lambda) => Some(lambda),
                 _ => units.and_then(|_| form(ContactDamping::Lambda(0.0), &scales)),
@@ -425,14 +396,10 @@ impl Case {
             restitution: of_touch(model.mu).ok().map(ContactDamping::value),
             viscous_form: either(self.viscous, Parameter::Viscous, Parameter::Zeta),
             zeta: model.zeta,
-            viscous: self
-                .viscous
-                .or_else(|| Some(viscous_coefficient(model.zeta, units?))),
+            viscous: self.viscous.or_else(|| Some(viscous_coefficient(model.zeta, units?))),
             friction_form: either(self.torque, Parameter::Torque, Parameter::Alpha),
             alpha: model.alpha,
-            torque: self
-                .torque
-                .or_else(|| Some(torque_of_friction(model.alpha, units?))),
+            torque: self.torque.or_else(|| Some(torque_of_friction(model.alpha, units?))),
         })
     }
 }
@@ -446,16 +413,7 @@ mod tests {
     fn the_default_case_is_the_default_model() {
         let (model, start) = Case::default().motion().unwrap();
         assert!((model.gamma / Model::default().gamma - 1.0).abs() < 1e-15);
-        assert_eq!(
-            Model {
-                gamma: 1.0,
-                ..model
-            },
-            Model {
-                gamma: 1.0,
-                ..Model::default()
-            }
-        );
+        assert_eq!(Model { gamma: 1.0, ..model }, Model { gamma: 1.0, ..Model::default() });
         assert_eq!(start, Start::default());
     }
 
@@ -473,11 +431,7 @@ mod tests {
             let mut case = usual;
             case.set(parameter, 0.25);
             assert_eq!(case.get(parameter), Some(0.25), "{parameter}");
-            assert_ne!(
-                case.motion().unwrap(),
-                usual.motion().unwrap(),
-                "{parameter}"
-            );
+            assert_ne!(case.motion().unwrap(), usual.motion().unwrap(), "{parameter}");
         }
     }
 
@@ -492,39 +446,19 @@ mod tests {
             (Some(-0.3), Some(2.0), Some(0.1), 1.0),
             (None, Some(3.5), Some(0.1), 2.5),
         ] {
-            let case = Case {
-                left,
-                right,
-                start,
-                speed,
-                ..Case::default()
-            };
+            let case = Case { left, right, start, speed, ..Case::default() };
             let (model, start) = case.motion().unwrap();
             let motion =
                 simulate(&model, start, Integrator::RungeKutta, &Settings::default()).unwrap();
             let found = case.dissipation(None).unwrap().touch_speed.unwrap();
-            assert!(
-                (found / motion.impacts[0].speed_in - 1.0).abs() < 1e-8,
-                "{case:?}: {found}"
-            );
+            assert!((found / motion.impacts[0].speed_in - 1.0).abs() < 1e-8, "{case:?}: {found}");
         }
-        let unreached = Case {
-            right: Some(1.6),
-            ..Case::default()
-        };
+        let unreached = Case { right: Some(1.6), ..Case::default() };
         assert_eq!(unreached.dissipation(None).unwrap().touch_speed, None);
-        let upright = Case {
-            right: Some(3.5),
-            ..Case::default()
-        };
+        let upright = Case { right: Some(3.5), ..Case::default() };
         assert_eq!(upright.dissipation(None).unwrap().touch_speed, None);
-        let over_the_top = Case {
-            left: Some(-1.4),
-            right: None,
-            start: Some(1.2),
-            speed: 2.0,
-            ..Case::default()
-        };
+        let over_the_top =
+            Case { left: Some(-1.4), right: None, start: Some(1.2), speed: 2.0, ..Case::default() };
         assert_eq!(over_the_top.dissipation(None).unwrap().touch_speed, None);
     }
 
@@ -533,11 +467,7 @@ mod tests {
         let case = Case {
             gamma: Some(1e6),
             contact_damping: ContactDamping::Lambda(0.1),
-            design: Design {
-                length: 0.25,
-                gravity: 9.0,
-                ..Design::default()
-            },
+            design: Design { length: 0.25, gravity: 9.0, ..Design::default() },
             ..Case::default()
         };
         assert!((case.motion().unwrap().0.mu / 1.5e5 - 1.0).abs() < 1e-15);

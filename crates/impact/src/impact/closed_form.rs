@@ -121,9 +121,7 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
             Ok((law, phases)) => (Some(law), phases, None),
             Err(error) => {
                 // Where the same method was asked for both, its reason is the whole reason.
-                let alone = tried
-                    .iter()
-                    .all(|attempt| attempt.method == Method::LindstedtPoincare);
+                let alone = tried.iter().all(|attempt| attempt.method == Method::LindstedtPoincare);
                 if derived.is_none()
                     && alone
                     && matches!(error, ImpactError::Law(_) | ImpactError::Phases(_))
@@ -133,11 +131,8 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
                 (None, vec![], Some(error.to_string()))
             }
         };
-        let column = |(reading, phases)| Column {
-            reading,
-            deviation: trial.deviation(&phases),
-            phases,
-        };
+        let column =
+            |(reading, phases)| Column { reading, deviation: trial.deviation(&phases), phases };
         let mut columns: Vec<Column> = paper.into_iter().map(column).collect();
         let (flight, contact) = derived
             .map(|derived| {
@@ -174,11 +169,7 @@ fn methods_to_try(setup: &Setup) -> Vec<Method> {
     match (setup.method, setup.order) {
         (Some(method), _) => vec![method],
         (None, Some(_)) => vec![Method::LindstedtPoincare],
-        (None, None) => vec![
-            Method::LindstedtPoincare,
-            Method::HarmonicBalance,
-            Method::Exact,
-        ],
+        (None, None) => vec![Method::LindstedtPoincare, Method::HarmonicBalance, Method::Exact],
     }
 }
 
@@ -187,12 +178,7 @@ const PAPERS_ORDER: u32 = 2;
 
 /// The paper's law and its two readings: of a swing whose force is odd, by one cosine.
 pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhases)>), ImpactError> {
-    let Trial {
-        setup,
-        equations,
-        collision,
-        ..
-    } = trial;
+    let Trial { setup, equations, collision, .. } = trial;
     if setup.loss.is_some() {
         return Err(SetupError::LosesEnergy.into());
     }
@@ -200,10 +186,7 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
     if equations.equilibrium != 0.0
         || !is_odd(&swing.force, swing.coordinate).map_err(SetupError::from)?
     {
-        return Err(SetupError::NotOdd {
-            force: swing.force.to_string(),
-        }
-        .into());
+        return Err(SetupError::NotOdd { force: swing.force.to_string() }.into());
     }
     let order = match setup.method {
         None | Some(Method::LindstedtPoincare) => setup.order.unwrap_or(PAPERS_ORDER),
@@ -223,10 +206,7 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
         true => Some(amplitude),
         false => values.get(&name).copied(),
     };
-    let squared = law
-        .law
-        .frequency_squared()
-        .map(|squared| law.evaluate(squared, &known));
+    let squared = law.law.frequency_squared().map(|squared| law.evaluate(squared, &known));
     let swing = Swing {
         amplitude,
         barrier: collision.barrier,
@@ -237,10 +217,7 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
         elastic_force: collision.elastic_force,
         rule: setup.rule,
     };
-    let readings = [
-        (Reading::Paper, ContactSpeed::Paper),
-        (Reading::Energy, ContactSpeed::Energy),
-    ];
+    let readings = [(Reading::Paper, ContactSpeed::Paper), (Reading::Energy, ContactSpeed::Energy)];
     let side = setup.side.sign();
     let phases = readings
         .map(|(reading, speed)| Ok((reading, three_phases(&swing, speed)?.moved(side, 0.0))));
@@ -261,9 +238,7 @@ pub struct Quantity {
 impl Quantity {
     /// The relative error of each column, `closed form / runge_kutta - 1`.
     pub fn errors(&self) -> impl Iterator<Item = f64> + '_ {
-        self.closed_forms
-            .iter()
-            .map(|value| value / self.runge_kutta - 1.0)
+        self.closed_forms.iter().map(|value| value / self.runge_kutta - 1.0)
     }
 }
 
@@ -309,9 +284,7 @@ impl Impact {
             let between = |from: f64, to: f64| {
                 (0..=points).map(move |k| from + (to - from) * k as f64 / points as f64)
             };
-            let times = between(0.0, touch)
-                .chain(between(touch, exit))
-                .chain(between(exit, end));
+            let times = between(0.0, touch).chain(between(touch, exit)).chain(between(exit, end));
             SampledMotion {
                 samples: times.map(|t| (t, at(t).0, at(t).1)).collect(),
                 contact: between(touch, exit)
@@ -330,26 +303,15 @@ impl Impact {
             let (z, v) = truth.at(t);
             (self.equilibrium + sign * z, sign * v)
         });
-        std::iter::once(true_path)
-            .chain(self.columns.iter().map(closed_form))
-            .collect()
+        std::iter::once(true_path).chain(self.columns.iter().map(closed_form)).collect()
     }
 
     /// Speed, penetration and duration of the contact, the time to it, and the period.
     pub fn quantities(&self) -> [Quantity; 5] {
-        const NAMES: [&str; 5] = [
-            "time to contact",
-            "speed",
-            "penetration",
-            "duration",
-            "period",
-        ];
+        const NAMES: [&str; 5] = ["time to contact", "speed", "penetration", "duration", "period"];
         let truth = self.truth.quantities();
-        let columns: Vec<[f64; 5]> = self
-            .columns
-            .iter()
-            .map(|column| column.phases.quantities())
-            .collect();
+        let columns: Vec<[f64; 5]> =
+            self.columns.iter().map(|column| column.phases.quantities()).collect();
         std::array::from_fn(|index| Quantity {
             name: NAMES[index],
             runge_kutta: truth[index],
@@ -363,9 +325,8 @@ impl Impact {
         self.setup.loss?;
         let truth = losses([self.truth.touch.v, -self.truth.exit.v]);
         let columns = self.columns.iter().map(|column| &column.phases);
-        let found: Vec<[f64; 3]> = columns
-            .map(|phases| losses([phases.speed, phases.exit_speed]))
-            .collect();
+        let found: Vec<[f64; 3]> =
+            columns.map(|phases| losses([phases.speed, phases.exit_speed])).collect();
         let quantity = |index: usize, name| Quantity {
             name,
             runge_kutta: truth[index],
@@ -387,11 +348,7 @@ impl Impact {
     /// the flights over the amplitude, of the contact over the true depth.
     pub fn deviations(&self, column: &Column) -> [f64; 3] {
         let [approach, contact, back] = column.deviation.aligned;
-        [
-            approach / self.amplitude(),
-            contact / self.truth.penetration,
-            back / self.amplitude(),
-        ]
+        [approach / self.amplitude(), contact / self.truth.penetration, back / self.amplitude()]
     }
 
     /// The verdict on each column: every quantity within the tolerance, and the deviation in every
@@ -444,24 +401,10 @@ impl Impact {
             ("shape of the return", back),
         ]);
         let causes: [(&[&str], String); 3] = [
-            (
-                &[
-                    "time to contact",
-                    "period",
-                    "shape of the approach",
-                    "shape of the return",
-                ],
-                swing,
-            ),
+            (&["time to contact", "period", "shape of the approach", "shape of the return"], swing),
             (&["speed"], speed),
             (
-                &[
-                    "penetration",
-                    "duration",
-                    "shape of the contact",
-                    "restitution",
-                    "speed out",
-                ],
+                &["penetration", "duration", "shape of the contact", "restitution", "speed out"],
                 contact,
             ),
         ];

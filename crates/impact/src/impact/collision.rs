@@ -126,32 +126,20 @@ impl CollisionError {
     pub(super) fn seen_from(self, sign: f64, origin: f64) -> Self {
         let x = |z: f64| origin + sign * z;
         match self {
-            Self::NeverReaches {
-                release,
-                furthest,
-                barrier,
-            } => Self::NeverReaches {
+            Self::NeverReaches { release, furthest, barrier } => Self::NeverReaches {
                 release: x(release),
                 furthest: x(furthest),
                 barrier: x(barrier),
             },
-            Self::ReleasedBehindBarrier { release, barrier } => Self::ReleasedBehindBarrier {
-                release: x(release),
-                barrier: x(barrier),
-            },
-            Self::Inside {
-                release,
-                barrier,
-                what,
-            } => Self::Inside {
-                release: x(release),
-                barrier: x(barrier),
-                what,
-            },
-            Self::OutsideTheWell { release, at } => Self::OutsideTheWell {
-                release: x(release),
-                at: x(at),
-            },
+            Self::ReleasedBehindBarrier { release, barrier } => {
+                Self::ReleasedBehindBarrier { release: x(release), barrier: x(barrier) }
+            }
+            Self::Inside { release, barrier, what } => {
+                Self::Inside { release: x(release), barrier: x(barrier), what }
+            }
+            Self::OutsideTheWell { release, at } => {
+                Self::OutsideTheWell { release: x(release), at: x(at) }
+            }
             other => other,
         }
     }
@@ -166,12 +154,7 @@ impl Collision<'_> {
     /// # Errors
     /// [`CollisionError`].
     pub(super) fn check(&self) -> Result<(), CollisionError> {
-        let &Collision {
-            release,
-            barrier,
-            stiffness,
-            ..
-        } = self;
+        let &Collision { release, barrier, stiffness, .. } = self;
         if !release.is_finite() {
             return Err(CollisionError::Release(release));
         }
@@ -185,11 +168,7 @@ impl Collision<'_> {
         // than that.
         let furthest = release.abs();
         if barrier >= furthest && release < 0.0 || release > 0.0 && barrier > release {
-            return Err(CollisionError::NeverReaches {
-                release,
-                furthest,
-                barrier,
-            });
+            return Err(CollisionError::NeverReaches { release, furthest, barrier });
         }
         if barrier <= release {
             return Err(CollisionError::ReleasedBehindBarrier { release, barrier });
@@ -208,18 +187,8 @@ impl Collision<'_> {
     /// [`CollisionError::Inside`] where the barrier does not push it out, or the swing does not
     /// bring it back.
     pub(super) fn turning_point(&self, inside: f64) -> Result<f64, CollisionError> {
-        let &Collision {
-            barrier,
-            stiffness,
-            restoring_force,
-            elastic_force,
-            ..
-        } = self;
-        let stays = |what| CollisionError::Inside {
-            release: inside,
-            barrier,
-            what,
-        };
+        let &Collision { barrier, stiffness, restoring_force, elastic_force, .. } = self;
+        let stays = |what| CollisionError::Inside { release: inside, barrier, what };
         let depth = inside - barrier;
         let stored = stiffness * work(elastic_force, depth)?;
         let energy = stored + integrate_smooth(restoring_force, barrier, inside, 1e-13)?.0;
@@ -271,12 +240,7 @@ impl Collision<'_> {
     /// # Ok::<(), lindstedt::impact::CollisionError>(())
     /// ```
     pub fn contact_speed(&self) -> Result<f64, CollisionError> {
-        let &Collision {
-            release,
-            barrier,
-            restoring_force,
-            ..
-        } = self;
+        let &Collision { release, barrier, restoring_force, .. } = self;
         // It starts only if the force drives it; a force of rounding size is the unstable
         // equilibrium itself.
         let typical = (1..=16)
@@ -285,10 +249,7 @@ impl Collision<'_> {
             })
             .fold(0.0, f64::max);
         if restoring_force(release) > -1e-12 * typical {
-            return Err(CollisionError::OutsideTheWell {
-                release,
-                at: release,
-            });
+            return Err(CollisionError::OutsideTheWell { release, at: release });
         }
         let parts = 32;
         let mut gained = 0.0;

@@ -154,9 +154,7 @@ pub fn compare(setup: Setup) -> Result<ImpactComparison, ImpactError> {
                     rows.push(row(name, order, solution.degrees, found.phases));
                 }
                 (None, tried) => {
-                    let reason = tried
-                        .iter()
-                        .find_map(|attempt| attempt.error.as_ref().err());
+                    let reason = tried.iter().find_map(|attempt| attempt.error.as_ref().err());
                     refused.push((name, reason.cloned().unwrap_or_default()));
                 }
             }

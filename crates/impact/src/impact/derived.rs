@@ -149,17 +149,8 @@ impl Flight {
         // An answer that is no number fails as well.
         let starts_there = (start - from).abs() <= 1e-6 * distance.abs();
         match starts_there {
-            true => Ok(Self {
-                solution,
-                amplitude,
-                sign,
-                is_turned: turned.is_some(),
-                motion,
-            }),
-            false => Err(NoFlight::Start {
-                start: sign * start,
-                release,
-            }),
+            true => Ok(Self { solution, amplitude, sign, is_turned: turned.is_some(), motion }),
+            false => Err(NoFlight::Start { start: sign * start, release }),
         }
     }
 
@@ -227,9 +218,7 @@ impl Flight {
         Form::Harmonics {
             centre: part(displacement.cosine(0)),
             frequency: self.motion.frequency(),
-            harmonics: (1..=displacement.highest_harmonic())
-                .filter_map(wave)
-                .collect(),
+            harmonics: (1..=displacement.highest_harmonic()).filter_map(wave).collect(),
         }
     }
 }
@@ -254,21 +243,12 @@ fn turned(swing: &Oscillator) -> Result<Option<Oscillator>, NoFlight> {
         return Ok(None);
     }
     let acceleration = x.derivative().derivative();
-    let turned = swing.residual.substitute_all(
-        &[x, acceleration]
-            .map(|name| (name, -&Expr::from(name)))
-            .into(),
-    )?;
-    let equation = Equation {
-        left: -&turned,
-        right: Expr::zero(),
-        ..swing.equation()
-    };
+    let turned = swing
+        .residual
+        .substitute_all(&[x, acceleration].map(|name| (name, -&Expr::from(name))).into())?;
+    let equation = Equation { left: -&turned, right: Expr::zero(), ..swing.equation() };
     let about = swing.about.as_ref().map(|about| -about);
-    Ok(Some(Oscillator {
-        about,
-        ..Oscillator::from_equation(&equation)?
-    }))
+    Ok(Some(Oscillator { about, ..Oscillator::from_equation(&equation)? }))
 }
 
 /// How close the printed series of a contact comes to its motion, as a part of the depth.
@@ -331,18 +311,8 @@ pub(super) fn phases_of(
     let end = exit + way_back;
     let depth = contact.sine_series();
     let velocity_jump = depth.at(0.0).1 - speed;
-    let pressed = Form::Contact {
-        barrier,
-        inward: -flight.sign,
-        depth,
-    };
-    let phase = |name, [start, end, clock]: [f64; 3], form| Phase {
-        name,
-        start,
-        end,
-        clock,
-        form,
-    };
+    let pressed = Form::Contact { barrier, inward: -flight.sign, depth };
+    let phase = |name, [start, end, clock]: [f64; 3], form| Phase { name, start, end, clock, form };
     Ok(ThreePhases {
         phases: [
             phase("approach", [0.0, touch, 0.0], flight.form()),

@@ -207,13 +207,7 @@ impl ContactDamping {
         } else if value.is_nan() || value < 0.0 {
             return Err(DampingError::Negative { key, value });
         }
-        let &ContactScales {
-            gamma,
-            mass,
-            length,
-            gravity,
-            ..
-        } = scales;
+        let &ContactScales { gamma, mass, length, gravity, .. } = scales;
         let mu = match self {
             Self::Mu(mu) => mu,
             Self::MuOverGamma(ratio) => gamma * ratio,
@@ -239,13 +233,7 @@ impl ContactDamping {
     /// As [`ContactDamping::mu`].
     pub fn in_form(self, other: Self, scales: &ContactScales) -> Result<Self, DampingError> {
         let mu = self.mu(scales)?;
-        let &ContactScales {
-            gamma,
-            mass,
-            length,
-            gravity,
-            ..
-        } = scales;
+        let &ContactScales { gamma, mass, length, gravity, .. } = scales;
         let ratio = mu / gamma;
         Ok(match other {
             Self::Mu(_) => Self::Mu(mu),
@@ -339,11 +327,9 @@ impl Dissipation {
     pub fn at_speed_in_words(&self) -> Option<String> {
         let own = format!("{} {}", decimal(self.at_speed?), SpeedUnit::RadOmega.name());
         Some(match self.at_speed_si {
-            Some(speed) => format!(
-                "{} {}, {own}",
-                decimal(speed),
-                SpeedUnit::MetresPerSecond.name()
-            ),
+            Some(speed) => {
+                format!("{} {}, {own}", decimal(speed), SpeedUnit::MetresPerSecond.name())
+            }
             None => own,
         })
     }
@@ -410,13 +396,7 @@ mod tests {
     fn the_numbers_of_equation_7_are_forces_over_the_weight() {
         let units = units(0.02, 0.25, 9.81);
         let gamma = 1e6;
-        let scales = ContactScales {
-            gamma,
-            mass: 0.02,
-            length: 0.25,
-            gravity: 9.81,
-            speed: None,
-        };
+        let scales = ContactScales { gamma, mass: 0.02, length: 0.25, gravity: 9.81, speed: None };
         let (depth, rate) = (2e-3_f64, 0.7_f64); // rad, rad times omega
         let (metres, speed) = (0.25 * depth, 0.25 * rate / units.time());
         let k = units.contact_stiffness(gamma);
@@ -443,19 +423,11 @@ mod tests {
 
     #[test]
     fn what_is_no_damping_is_refused_by_name() {
-        let scales = ContactScales {
-            gamma: 1e6,
-            mass: 0.02,
-            length: 0.25,
-            gravity: 9.81,
-            speed: None,
-        };
+        let scales =
+            ContactScales { gamma: 1e6, mass: 0.02, length: 0.25, gravity: 9.81, speed: None };
         for (damping, words) in [
             (ContactDamping::Lambda(-1.0), "[contact] lambda must"),
-            (
-                ContactDamping::Coefficient(f64::NAN),
-                "[contact] damping must",
-            ),
+            (ContactDamping::Coefficient(f64::NAN), "[contact] damping must"),
             (ContactDamping::Restitution(0.0), "above 0"),
             (ContactDamping::Restitution(0.5), "at_speed"),
             (ContactDamping::MuOverGamma(1e305), "no finite"),
@@ -463,13 +435,7 @@ mod tests {
             let error = damping.mu(&scales).expect_err("no damping").to_string();
             assert!(error.contains(words), "{error}");
         }
-        let still = ContactScales {
-            speed: Some(0.0),
-            ..scales
-        };
-        assert_eq!(
-            ContactDamping::Restitution(0.5).mu(&still),
-            Err(DampingError::Speed(0.0))
-        );
+        let still = ContactScales { speed: Some(0.0), ..scales };
+        assert_eq!(ContactDamping::Restitution(0.5).mu(&still), Err(DampingError::Speed(0.0)));
     }
 }

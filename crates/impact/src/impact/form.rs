@@ -90,10 +90,7 @@ impl Form {
         let (frequency, parabola, sum) = (self.frequency(), self.parabola(), self.harmonics());
         let waves = sum.iter().flat_map(|&(number, amplitude)| {
             let frequency = f64::from(number) * frequency;
-            let wave = |function| Term::Wave {
-                function,
-                frequency,
-            };
+            let wave = |function| Term::Wave { function, frequency };
             [(wave("cos"), amplitude.re), (wave("sin"), -amplitude.im)]
         });
         // A parabola is as large as its vertex.
@@ -101,9 +98,7 @@ impl Form {
             Term::Constant | Term::Wave { .. } => value.abs(),
             Term::Parabola => value.abs() * (0.5 * PI / frequency).powi(2),
         };
-        let moving: Vec<_> = std::iter::once((Term::Parabola, parabola))
-            .chain(waves)
-            .collect();
+        let moving: Vec<_> = std::iter::once((Term::Parabola, parabola)).chain(waves).collect();
         let largest = moving.iter().map(size).fold(0.0, f64::max);
         let terms = std::iter::once((Term::Constant, self.centre())).chain(moving);
         terms.filter(|term| size(term) > felt * largest).collect()
@@ -140,16 +135,12 @@ impl Form {
     /// sin(k frequency s).
     pub fn harmonics(&self) -> Vec<(u32, Complex64)> {
         match self {
-            &Self::Cosine {
-                amplitude, phase, ..
-            } => vec![(1, amplitude * Complex64::cis(phase))],
+            &Self::Cosine { amplitude, phase, .. } => vec![(1, amplitude * Complex64::cis(phase))],
             &Self::Oscillation { amplitude, .. } => vec![(1, amplitude)],
             Self::Harmonics { harmonics, .. } => harmonics.clone(),
             Self::Contact { inward, depth, .. } => {
                 let sines = depth.sines().into_iter();
-                sines
-                    .map(|(k, sine)| (k, Complex64::new(0.0, -inward * sine)))
-                    .collect()
+                sines.map(|(k, sine)| (k, Complex64::new(0.0, -inward * sine))).collect()
             }
         }
     }
@@ -158,41 +149,20 @@ impl Form {
     pub(super) fn moved(&self, sign: f64, offset: f64) -> Self {
         match self {
             // A cosine swings about zero.
-            &Self::Cosine {
-                amplitude,
-                frequency,
-                phase,
-            } => Self::Cosine {
-                amplitude: sign * amplitude,
-                frequency,
-                phase,
-            },
-            &Self::Oscillation {
-                centre,
-                amplitude,
-                frequency,
-            } => Self::Oscillation {
+            &Self::Cosine { amplitude, frequency, phase } => {
+                Self::Cosine { amplitude: sign * amplitude, frequency, phase }
+            }
+            &Self::Oscillation { centre, amplitude, frequency } => Self::Oscillation {
                 centre: offset + sign * centre,
                 amplitude: sign * amplitude,
                 frequency,
             },
-            Self::Harmonics {
-                centre,
-                frequency,
-                harmonics,
-            } => Self::Harmonics {
+            Self::Harmonics { centre, frequency, harmonics } => Self::Harmonics {
                 centre: offset + sign * centre,
                 frequency: *frequency,
-                harmonics: harmonics
-                    .iter()
-                    .map(|&(k, amplitude)| (k, sign * amplitude))
-                    .collect(),
+                harmonics: harmonics.iter().map(|&(k, amplitude)| (k, sign * amplitude)).collect(),
             },
-            Self::Contact {
-                barrier,
-                inward,
-                depth,
-            } => Self::Contact {
+            Self::Contact { barrier, inward, depth } => Self::Contact {
                 barrier: offset + sign * barrier,
                 inward: sign * inward,
                 depth: depth.clone(),
@@ -203,27 +173,15 @@ impl Form {
     /// Displacement and velocity at the time s on the clock of the phase.
     pub fn at(&self, elapsed: f64) -> (f64, f64) {
         match self {
-            &Self::Cosine {
-                amplitude,
-                frequency,
-                phase,
-            } => {
+            &Self::Cosine { amplitude, frequency, phase } => {
                 let (sine, cosine) = (frequency * elapsed + phase).sin_cos();
                 (amplitude * cosine, -amplitude * frequency * sine)
             }
-            &Self::Oscillation {
-                centre,
-                amplitude,
-                frequency,
-            } => {
+            &Self::Oscillation { centre, amplitude, frequency } => {
                 let turned = amplitude * Complex64::cis(frequency * elapsed);
                 (centre + turned.re, -frequency * turned.im)
             }
-            Self::Harmonics {
-                centre,
-                frequency,
-                harmonics,
-            } => {
+            Self::Harmonics { centre, frequency, harmonics } => {
                 // exp(i k phi) by turns of phi: one sine and cosine for all.
                 let turn = Complex64::cis(frequency * elapsed);
                 let (mut wave, mut reached) = (Complex64::ONE, 0);
@@ -240,11 +198,7 @@ impl Form {
                 }
                 (x, v)
             }
-            Self::Contact {
-                barrier,
-                inward,
-                depth,
-            } => {
+            Self::Contact { barrier, inward, depth } => {
                 let (depth, rate) = depth.at(elapsed);
                 (barrier + inward * depth, inward * rate)
             }

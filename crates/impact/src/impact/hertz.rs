@@ -63,13 +63,7 @@ pub const DEFAULT_STIFFNESS: f64 = 30_406_664.685_165_863;
 
 impl Default for Design {
     fn default() -> Self {
-        Self {
-            mass: 0.0112,
-            radius: 0.0096,
-            length: 0.0681,
-            modulus: 1.439e9,
-            gravity: 9.81,
-        }
+        Self { mass: 0.0112, radius: 0.0096, length: 0.0681, modulus: 1.439e9, gravity: 9.81 }
     }
 }
 
@@ -132,10 +126,8 @@ pub fn elastic_force(depth: f64) -> f64 {
 /// # Ok::<(), lindstedt::impact::hertz::NotPositive>(())
 /// ```
 pub fn penetration(stiffness: f64, speed: f64) -> Result<f64, NotPositive> {
-    let (stiffness, speed) = (
-        positive("stiffness gamma", stiffness)?,
-        positive("speed of contact", speed)?,
-    );
+    let (stiffness, speed) =
+        (positive("stiffness gamma", stiffness)?, positive("speed of contact", speed)?);
     Ok(greatest_depth(stiffness, speed))
 }
 
@@ -183,11 +175,7 @@ pub fn duration_factor() -> f64 {
 }
 
 pub(super) fn positive(quantity: &'static str, value: f64) -> Result<f64, NotPositive> {
-    if value.is_finite() && value > 0.0 {
-        Ok(value)
-    } else {
-        Err(NotPositive { quantity, value })
-    }
+    if value.is_finite() && value > 0.0 { Ok(value) } else { Err(NotPositive { quantity, value }) }
 }
 
 #[cfg(test)]
@@ -209,23 +197,12 @@ mod tests {
     #[test]
     fn depth_and_duration_agree_with_the_integrated_contact() {
         for (stiffness, speed) in [(1.0, 1.0), (1e6, 1.3), (3e7, 1e-3)] {
-            let (depth, time) = (
-                penetration(stiffness, speed).unwrap(),
-                duration(stiffness, speed).unwrap(),
-            );
-            let options = Options {
-                absolute_tolerance: 1e-12 * depth,
-                ..Options::with_tolerance(1e-12)
-            };
-            let events = [
-                Event::record(|_, _, v| v),
-                Event::stop(|_, d, _| d).falling(),
-            ];
-            let start = State {
-                t: 0.0,
-                x: 0.0,
-                v: speed,
-            };
+            let (depth, time) =
+                (penetration(stiffness, speed).unwrap(), duration(stiffness, speed).unwrap());
+            let options =
+                Options { absolute_tolerance: 1e-12 * depth, ..Options::with_tolerance(1e-12) };
+            let events = [Event::record(|_, _, v| v), Event::stop(|_, d, _| d).falling()];
+            let start = State { t: 0.0, x: 0.0, v: speed };
             let path = integrate(
                 |_, d, _| -stiffness * elastic_force(d),
                 start,
@@ -238,10 +215,7 @@ mod tests {
                 (path.occurrences()[0].state.x / depth - 1.0).abs() < 1e-10,
                 "depth at gamma {stiffness}"
             );
-            assert!(
-                (path.end().t / time - 1.0).abs() < 1e-9,
-                "duration at gamma {stiffness}"
-            );
+            assert!((path.end().t / time - 1.0).abs() < 1e-9, "duration at gamma {stiffness}");
         }
     }
 
@@ -258,25 +232,9 @@ mod tests {
 
     #[test]
     fn what_is_not_positive_is_named() {
-        let refused = Design {
-            radius: 0.0,
-            ..Design::default()
-        }
-        .stiffness()
-        .unwrap_err();
-        assert_eq!(
-            refused.to_string(),
-            "the radius must be a positive number, not 0"
-        );
-        assert!(
-            Design {
-                modulus: 1e300,
-                mass: 1e-300,
-                ..Design::default()
-            }
-            .stiffness()
-            .is_err()
-        );
+        let refused = Design { radius: 0.0, ..Design::default() }.stiffness().unwrap_err();
+        assert_eq!(refused.to_string(), "the radius must be a positive number, not 0");
+        assert!(Design { modulus: 1e300, mass: 1e-300, ..Design::default() }.stiffness().is_err());
         assert!(penetration(0.0, 1.0).is_err() && duration(1e6, f64::NAN).is_err());
     }
 }

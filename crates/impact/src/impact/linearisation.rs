@@ -170,10 +170,7 @@ pub fn fit(
     if work <= 0.0 {
         return Err(LinearisationError::NotElastic(deepest));
     }
-    let through_touch = |slope: f64| Line {
-        slope,
-        at_touch: 0.0,
-    };
+    let through_touch = |slope: f64| Line { slope, at_touch: 0.0 };
     match rule {
         Rule::LeastSquares => least_squares(&elastic_force, deepest, true),
         Rule::LeastSquaresThroughTouch => least_squares(&elastic_force, deepest, false),
@@ -202,18 +199,13 @@ pub fn fit(
 /// A force that is not finite or not smooth.
 pub fn work(elastic_force: impl Fn(f64) -> f64, depth: f64) -> Result<f64, QuadratureError> {
     // d = q^2 makes any force in powers of sqrt(d) smooth.
-    match integrate_smooth(
-        |q| 2.0 * q * elastic_force(q * q),
-        0.0,
-        depth.max(0.0).sqrt(),
-        1e-14,
-    ) {
+    match integrate_smooth(|q| 2.0 * q * elastic_force(q * q), 0.0, depth.max(0.0).sqrt(), 1e-14) {
         // A force that is a difference near the touch leaves no more digits than this.
-        Err(QuadratureError::NotConverged {
-            value,
-            error_estimate,
-            ..
-        }) if error_estimate <= 1e-11 * value.abs() => Ok(value),
+        Err(QuadratureError::NotConverged { value, error_estimate, .. })
+            if error_estimate <= 1e-11 * value.abs() =>
+        {
+            Ok(value)
+        }
         result => result.map(|(work, _)| work),
     }
 }
@@ -274,10 +266,7 @@ fn least_squares(
         let root_weight = (2.0 * q * weight).sqrt();
         let force = elastic_force(deepest * q * q) / peak;
         if !force.is_finite() {
-            return Err(QuadratureError::NonFinite {
-                at: deepest * q * q,
-            }
-            .into());
+            return Err(QuadratureError::NonFinite { at: deepest * q * q }.into());
         }
         right[row] = root_weight * force;
         matrix[(row, 0)] = root_weight * q * q;
@@ -291,15 +280,8 @@ fn least_squares(
         .r()
         .solve_upper_triangular(&projected)
         .ok_or(LinearisationError::NotElastic(deepest))?;
-    let at_touch = if with_constant {
-        solution[1] * peak
-    } else {
-        0.0
-    };
-    Ok(Line {
-        slope: solution[0] * peak / deepest,
-        at_touch,
-    })
+    let at_touch = if with_constant { solution[1] * peak } else { 0.0 };
+    Ok(Line { slope: solution[0] * peak / deepest, at_touch })
 }
 
 /// Duration of a contact turned at this depth by the force alone, at unit gamma: 2 int_0^D dd /
@@ -334,10 +316,7 @@ mod tests {
     /// Slope and constant in units of sqrt(D) and D^(3/2), for F = d^(3/2).
     fn hertz_line(rule: Rule, deepest: f64) -> (f64, f64) {
         let line = fit(rule, hertz::elastic_force, deepest).unwrap();
-        (
-            line.slope / deepest.sqrt(),
-            line.at_touch / deepest.powf(1.5),
-        )
+        (line.slope / deepest.sqrt(), line.at_touch / deepest.powf(1.5))
     }
 
     #[test]
@@ -421,11 +400,7 @@ mod tests {
         }
         let unknown = "least_squares".parse::<Rule>().unwrap_err().to_string();
         assert!(unknown.contains("`least_squares`") && unknown.contains("equal-duration"));
-        assert!(
-            Rule::ALL
-                .into_iter()
-                .all(|rule| unknown.contains(rule.name()))
-        );
+        assert!(Rule::ALL.into_iter().all(|rule| unknown.contains(rule.name())));
     }
 
     #[test]
@@ -439,17 +414,11 @@ mod tests {
         for rule in Rule::ALL {
             assert!(fit(rule, |_| f64::NAN, 1.0).is_err(), "{rule}");
             assert!(
-                matches!(
-                    fit(rule, |depth| -depth, 1.0),
-                    Err(LinearisationError::NotElastic(_))
-                ),
+                matches!(fit(rule, |depth| -depth, 1.0), Err(LinearisationError::NotElastic(_))),
                 "{rule}"
             );
         }
-        assert!(matches!(
-            greatest_depth(|_| 0.0, 1.0),
-            Err(LinearisationError::NeverStops(_))
-        ));
+        assert!(matches!(greatest_depth(|_| 0.0, 1.0), Err(LinearisationError::NeverStops(_))));
         assert!(greatest_depth(|_| f64::NAN, 1.0).is_err());
     }
 }

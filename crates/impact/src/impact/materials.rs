@@ -114,10 +114,7 @@ impl Default for MaterialQuestion {
             },
             materials: Material::defaults(),
             sphere_yield: None,
-            settings: Settings {
-                duration: DEFAULT_DURATION,
-                ..Settings::default()
-            },
+            settings: Settings { duration: DEFAULT_DURATION, ..Settings::default() },
             integrator: Integrator::Taylor,
             defaults: vec![Parameter::Lambda, Parameter::Zeta],
         }
@@ -180,13 +177,8 @@ pub fn course(
     integrator: Integrator,
     settings: &Settings,
 ) -> Result<Course, SimulationError> {
-    let settings = Settings {
-        keep_path: false,
-        ..*settings
-    };
-    Ok(Course::from(&simulate(
-        model, start, integrator, &settings,
-    )?))
+    let settings = Settings { keep_path: false, ..*settings };
+    Ok(Course::from(&simulate(model, start, integrator, &settings)?))
 }
 
 impl From<&Simulation> for Course {
@@ -268,12 +260,7 @@ impl HeldFixed {
     /// The materials that rest first and last, by their numbers; nothing where one of them does not
     /// rest.
     pub fn extremes(&self) -> Option<[usize; 2]> {
-        let times: Vec<f64> = self
-            .rest_times
-            .iter()
-            .copied()
-            .collect::<Result<_, _>>()
-            .ok()?;
+        let times: Vec<f64> = self.rest_times.iter().copied().collect::<Result<_, _>>().ok()?;
         let numbers = 0..times.len();
         let by_time = |one: &usize, other: &usize| times[*one].total_cmp(&times[*other]);
         Some([numbers.clone().min_by(by_time)?, numbers.max_by(by_time)?])
@@ -341,16 +328,9 @@ pub fn study_materials(question: MaterialQuestion) -> Result<MaterialStudy, Mate
         barrier_yield: None,
     };
     let dissipation = case.dissipation(Some(&units))?;
-    let rows = question
-        .materials
-        .iter()
-        .map(|material| row(&question, &units, material));
+    let rows = question.materials.iter().map(|material| row(&question, &units, material));
     let rows: Vec<MaterialRow> = rows.collect::<Result<_, _>>()?;
-    let without = Model {
-        left: None,
-        right: None,
-        ..model
-    };
+    let without = Model { left: None, right: None, ..model };
     let loses = model.mu > 0.0 && rows.iter().any(|row| row.first.is_some());
     let held_fixed = match loses {
         true => held_fixed(&question, &dissipation)?,
@@ -361,13 +341,8 @@ pub fn study_materials(question: MaterialQuestion) -> Result<MaterialStudy, Mate
         model,
         start,
         rows,
-        no_barrier: course(
-            &without,
-            start,
-            question.integrator,
-            &longer(&question.settings),
-        )?
-        .rest_time,
+        no_barrier: course(&without, start, question.integrator, &longer(&question.settings))?
+            .rest_time,
         dissipation,
         held_fixed,
         question,
@@ -376,10 +351,7 @@ pub fn study_materials(question: MaterialQuestion) -> Result<MaterialStudy, Mate
 
 /// The settings of a motion that rests later.
 fn longer(settings: &Settings) -> Settings {
-    Settings {
-        duration: BASELINE_DURATIONS * settings.duration,
-        ..*settings
-    }
+    Settings { duration: BASELINE_DURATIONS * settings.duration, ..*settings }
 }
 
 impl MaterialQuestion {
@@ -404,10 +376,8 @@ impl MaterialQuestion {
 
     /// The equation of a material, and its start.
     fn motion_of(material: &Material, case: &Case) -> Result<(Model, Start), MaterialsError> {
-        case.motion().map_err(|error| MaterialsError::Material {
-            name: material.name.clone(),
-            error,
-        })
+        case.motion()
+            .map_err(|error| MaterialsError::Material { name: material.name.clone(), error })
     }
 }
 
@@ -424,31 +394,18 @@ fn row(
         None => None,
     };
     let lossless = Model { mu: 0.0, ..model };
-    let limits = [
-        ("sphere", question.sphere_yield),
-        ("barrier", material.yield_limit),
-    ];
+    let limits = [("sphere", question.sphere_yield), ("barrier", material.yield_limit)];
     let checks = limits.into_iter().filter_map(|(body, limit)| {
         let limit = limit?;
-        Some(YieldCheck {
-            body,
-            limit,
-            onset: FIRST_YIELD * limit,
-            pressure: first?.peak_pressure,
-        })
+        Some(YieldCheck { body, limit, onset: FIRST_YIELD * limit, pressure: first?.peak_pressure })
     });
     Ok(MaterialRow {
         gamma: model.gamma,
         dissipation: case.dissipation(Some(units))?,
         yield_checks: checks.collect(),
         first,
-        lossless: self::course(
-            &lossless,
-            start,
-            question.integrator,
-            &longer(&question.settings),
-        )?
-        .rest_time,
+        lossless: self::course(&lossless, start, question.integrator, &longer(&question.settings))?
+            .rest_time,
         course,
         material: material.clone(),
     })
@@ -473,11 +430,7 @@ fn first_contact(
         true => HuntCrossley::new(1.5, model.gamma, model.mu / model.gamma, impact.speed_in).ok(),
         false => None,
     };
-    let until = Settings {
-        duration: exit,
-        keep_path: true,
-        ..question.settings
-    };
+    let until = Settings { duration: exit, keep_path: true, ..question.settings };
     let motion = simulate(model, start, question.integrator, &until)?;
     let (duration, peak_force) = match closed_form {
         Some(contact) => (contact.duration, contact.peak_force),
@@ -513,9 +466,7 @@ fn held_fixed(
         Parameter::ContactDamping => dissipation.coefficient.map(ContactDamping::Coefficient),
         _ => None,
     };
-    let others = ContactDamping::FORMS
-        .into_iter()
-        .filter(|form| *form != given.form());
+    let others = ContactDamping::FORMS.into_iter().filter(|form| *form != given.form());
     let forms = std::iter::once(given).chain(others.filter_map(form));
     let mut found = Vec::new();
     for damping in forms {
@@ -570,10 +521,7 @@ impl MaterialStudy {
         let always = |sooner: fn(f64, f64) -> bool| {
             rests.windows(2).all(|pair| sooner(pair[0].1, pair[1].1))
         };
-        match (
-            always(|soft, hard| soft < hard),
-            always(|soft, hard| soft > hard),
-        ) {
+        match (always(|soft, hard| soft < hard), always(|soft, hard| soft > hard)) {
             (true, false) => Some(true),
             (false, true) => Some(false),
             _ => None,
@@ -596,11 +544,7 @@ impl MaterialStudy {
         held: Option<&HeldFixed>,
         duration: f64,
     ) -> Result<Simulation, MaterialsError> {
-        let material = self
-            .question
-            .materials
-            .get(row)
-            .ok_or(MaterialsError::NoMaterial)?;
+        let material = self.question.materials.get(row).ok_or(MaterialsError::NoMaterial)?;
         let case = match held {
             None => self.question.own_case(material),
             Some(held) => Case {
@@ -622,16 +566,8 @@ impl MaterialStudy {
         duration: f64,
     ) -> Result<Simulation, MaterialsError> {
         let model = match barrier_of.and_then(|row| self.rows.get(row)) {
-            None => Model {
-                left: None,
-                right: None,
-                ..self.model
-            },
-            Some(row) => Model {
-                gamma: row.gamma,
-                mu: 0.0,
-                ..self.model
-            },
+            None => Model { left: None, right: None, ..self.model },
+            Some(row) => Model { gamma: row.gamma, mu: 0.0, ..self.model },
         };
         self.follow(&model, self.start, duration)
     }
@@ -642,11 +578,7 @@ impl MaterialStudy {
         start: Start,
         duration: f64,
     ) -> Result<Simulation, MaterialsError> {
-        let settings = Settings {
-            duration,
-            keep_path: true,
-            ..self.question.settings
-        };
+        let settings = Settings { duration, keep_path: true, ..self.question.settings };
         Ok(simulate(model, start, self.question.integrator, &settings)?)
     }
 }

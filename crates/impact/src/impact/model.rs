@@ -127,10 +127,7 @@ pub struct Start {
 impl Default for Start {
     /// The default release, from rest at minus [`DEFAULT_AMPLITUDE`].
     fn default() -> Self {
-        Self {
-            x: -DEFAULT_AMPLITUDE,
-            velocity: 0.0,
-        }
+        Self { x: -DEFAULT_AMPLITUDE, velocity: 0.0 }
     }
 }
 
@@ -204,9 +201,8 @@ impl Model {
         if let Some(&(parameter, value)) = numbers.iter().find(|(_, value)| !value.is_finite()) {
             return Err(ModelError::NotFinite { parameter, value });
         }
-        if let Some(&(parameter, value)) = numbers[5..8]
-            .iter()
-            .find(|(_, value)| value.abs() > LARGEST_ANGLE)
+        if let Some(&(parameter, value)) =
+            numbers[5..8].iter().find(|(_, value)| value.abs() > LARGEST_ANGLE)
         {
             return Err(ModelError::LostDigits { parameter, value });
         }
@@ -326,11 +322,7 @@ impl Model {
                 continue;
             }
             // On its way out: direction * drive * cos(phase) > 0.
-            let angle = if direction * drive > 0.0 {
-                level.asin()
-            } else {
-                PI - level.asin()
-            };
+            let angle = if direction * drive > 0.0 { level.asin() } else { PI - level.asin() };
             let turns = ((phase - angle) / TAU).floor();
             // The state may stand at the level already, to rounding: then it goes at once.
             let near = 1e-14 * phase.abs().max(1.0);

@@ -92,20 +92,10 @@ impl Parameter {
 
     const fn row(self) -> Row {
         match self {
-            Self::Amplitude => (
-                "amplitude",
-                "pendulum",
-                "rad",
-                "the release from rest at x = -A",
-            ),
+            Self::Amplitude => ("amplitude", "pendulum", "rad", "the release from rest at x = -A"),
             Self::Start => ("start", "pendulum", "rad", "the displacement x(0)"),
             Self::Speed => ("speed", "pendulum", "rad*omega", "the velocity x'(0)"),
-            Self::Barrier => (
-                "barrier",
-                "pendulum",
-                "rad",
-                "the place x_c of the right barrier",
-            ),
+            Self::Barrier => ("barrier", "pendulum", "rad", "the place x_c of the right barrier"),
             Self::Gamma => ("gamma", "contact", "", "the stiffness of the contact"),
             Self::Mu => ("mu", "contact", "", "the damping of the contact"),
             Self::MuOverGamma => (
@@ -126,12 +116,7 @@ impl Parameter {
                 "",
                 "the coefficient of restitution that damps the contact",
             ),
-            Self::AtSpeed => (
-                "at_speed",
-                "contact",
-                "rad*omega",
-                "the speed at which that holds",
-            ),
+            Self::AtSpeed => ("at_speed", "contact", "rad*omega", "the speed at which that holds"),
             Self::ContactDamping => (
                 "damping",
                 "contact",
@@ -139,35 +124,19 @@ impl Parameter {
                 "the damping c of the contact, of the force (k + c d') d^(3/2)",
             ),
             Self::Zeta => ("zeta", "damping", "", "the viscous damping ratio"),
-            Self::Viscous => (
-                "viscous",
-                "damping",
-                "N s/m",
-                "the coefficient of the viscous force on the bob",
-            ),
+            Self::Viscous => {
+                ("viscous", "damping", "N s/m", "the coefficient of the viscous force on the bob")
+            }
             Self::Alpha => ("alpha", "damping", "", "the Coulomb friction"),
-            Self::Torque => (
-                "torque",
-                "damping",
-                "N m",
-                "the torque of the Coulomb friction",
-            ),
+            Self::Torque => ("torque", "damping", "N m", "the torque of the Coulomb friction"),
             Self::Beta => ("beta", "excitation", "", "the excitation by the pivot"),
-            Self::FrequencyRatio => (
-                "frequency_ratio",
-                "excitation",
-                "",
-                "Omega/omega of the excitation",
-            ),
+            Self::FrequencyRatio => {
+                ("frequency_ratio", "excitation", "", "Omega/omega of the excitation")
+            }
             Self::Mass => ("mass", "design", "kg", "the mass of the pendulum"),
             Self::Radius => ("radius", "design", "m", "the radius of its sphere"),
             Self::Length => ("length", "design", "m", "the length of the pendulum"),
-            Self::Modulus => (
-                "modulus",
-                "design",
-                "Pa",
-                "the elastic modulus of the barrier",
-            ),
+            Self::Modulus => ("modulus", "design", "Pa", "the elastic modulus of the barrier"),
             Self::Gravity => ("gravity", "design", "m/s^2", "the acceleration of gravity"),
         }
     }
@@ -225,9 +194,7 @@ impl FromStr for Parameter {
 
     /// By its name alone: `zeta`.
     fn from_str(name: &str) -> Result<Self, UnknownParameter> {
-        let known = Self::ALL
-            .into_iter()
-            .find(|parameter| parameter.name() == name);
+        let known = Self::ALL.into_iter().find(|parameter| parameter.name() == name);
         known.ok_or_else(|| UnknownParameter {
             name: name.to_owned(),
             nearest: nearest(name, Self::ALL.map(Self::name)),
@@ -246,9 +213,6 @@ mod tests {
         }
         let error = "zetta".parse::<Parameter>().unwrap_err();
         assert_eq!(error.help().as_deref(), Some("did you mean `zeta`?"));
-        assert_eq!(
-            Parameter::FrequencyRatio.to_string(),
-            "[excitation] frequency_ratio"
-        );
+        assert_eq!(Parameter::FrequencyRatio.to_string(), "[excitation] frequency_ratio");
     }
 }

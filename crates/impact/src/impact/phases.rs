@@ -180,14 +180,7 @@ pub enum PhasesError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, PhasesError> {
-    let &Swing {
-        amplitude,
-        barrier,
-        stiffness,
-        frequency_squared,
-        linear_stiffness,
-        ..
-    } = swing;
+    let &Swing { amplitude, barrier, stiffness, frequency_squared, linear_stiffness, .. } = swing;
     check(swing)?;
     let frequency = frequency_squared.sqrt();
     let swing_speed = frequency * (amplitude - barrier).sqrt() * (amplitude + barrier).sqrt();
@@ -222,29 +215,15 @@ pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, 
                 start: 0.0,
                 end: touch,
                 clock: 0.0,
-                form: Form::Cosine {
-                    amplitude: -amplitude,
-                    frequency,
-                    phase: 0.0,
-                },
+                form: Form::Cosine { amplitude: -amplitude, frequency, phase: 0.0 },
             },
-            Phase {
-                name: "contact",
-                start: touch,
-                end: exit,
-                clock: touch,
-                form: oscillation,
-            },
+            Phase { name: "contact", start: touch, end: exit, clock: touch, form: oscillation },
             Phase {
                 name: "return",
                 start: exit,
                 end,
                 clock: exit,
-                form: Form::Cosine {
-                    amplitude,
-                    frequency,
-                    phase,
-                },
+                form: Form::Cosine { amplitude, frequency, phase },
             },
         ],
         speed,
@@ -253,29 +232,18 @@ pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, 
         duration: contact.duration(),
         period: end,
         velocity_jump: speed - swing_speed,
-        fitted: Some(FittedLine {
-            line,
-            depth: fitted_depth,
-        }),
+        fitted: Some(FittedLine { line, depth: fitted_depth }),
     })
 }
 
 fn check(swing: &Swing) -> Result<(), PhasesError> {
-    let &Swing {
-        amplitude,
-        frequency_squared,
-        linear_stiffness,
-        ..
-    } = swing;
+    let &Swing { amplitude, frequency_squared, linear_stiffness, .. } = swing;
     if !(amplitude.is_finite() && amplitude > 0.0) {
         return Err(CollisionError::Amplitude(amplitude).into());
     }
     swing.collision().check()?;
     if !(frequency_squared.is_finite() && frequency_squared > 0.0) {
-        return Err(PhasesError::BeyondTheLaw {
-            frequency_squared,
-            amplitude,
-        });
+        return Err(PhasesError::BeyondTheLaw { frequency_squared, amplitude });
     }
     if !linear_stiffness.is_finite() {
         return Err(PhasesError::LinearStiffness(linear_stiffness));
@@ -302,23 +270,17 @@ impl ThreePhases {
     /// knows no offset.
     pub(super) fn moved(&self, sign: f64, offset: f64) -> Self {
         Self {
-            phases: self.phases.each_ref().map(|phase| Phase {
-                form: phase.form.moved(sign, offset),
-                ..*phase
-            }),
+            phases: self
+                .phases
+                .each_ref()
+                .map(|phase| Phase { form: phase.form.moved(sign, offset), ..*phase }),
             ..self.clone()
         }
     }
 
     /// Time to contact, speed, penetration, duration, period: the numbers that are judged.
     pub fn quantities(&self) -> [f64; 5] {
-        [
-            self.phases[0].end,
-            self.speed,
-            self.penetration,
-            self.duration,
-            self.period,
-        ]
+        [self.phases[0].end, self.speed, self.penetration, self.duration, self.period]
     }
 
     /// Displacement at this time; the motion repeats with its period, but one that has lost energy
@@ -382,27 +344,15 @@ impl Phase {
             None => "t".to_owned(),
         };
         match &self.form {
-            &Form::Cosine {
-                amplitude,
-                frequency,
-                phase,
-            } => {
-                let shift = if phase == 0.0 {
-                    String::new()
-                } else {
-                    signed_term(phase, 6)
-                };
+            &Form::Cosine { amplitude, frequency, phase } => {
+                let shift = if phase == 0.0 { String::new() } else { signed_term(phase, 6) };
                 format!(
                     "{coordinate}(t) = {} cos({} {clock}{shift})",
                     significant(amplitude, 6),
                     significant(frequency, 6)
                 )
             }
-            &Form::Oscillation {
-                centre,
-                amplitude,
-                frequency,
-            } => {
+            &Form::Oscillation { centre, amplitude, frequency } => {
                 let frequency = significant(frequency, 6);
                 format!(
                     "{coordinate}(t) = {}{} cos({frequency} {clock}){} sin({frequency} {clock})",
@@ -413,21 +363,15 @@ impl Phase {
             }
             Form::Harmonics { .. } | Form::Contact { .. } => {
                 let written =
-                    self.form
-                        .felt_terms()
-                        .into_iter()
-                        .map(|(function, value)| match function {
-                            Term::Constant => significant(value, 9),
-                            Term::Parabola => format!("{} {clock} (t2 - t)", significant(value, 6)),
-                            Term::Wave {
-                                function,
-                                frequency,
-                            } => format!(
-                                "{} {function}({} {clock})",
-                                significant(value, 6),
-                                significant(frequency, 6)
-                            ),
-                        });
+                    self.form.felt_terms().into_iter().map(|(function, value)| match function {
+                        Term::Constant => significant(value, 9),
+                        Term::Parabola => format!("{} {clock} (t2 - t)", significant(value, 6)),
+                        Term::Wave { function, frequency } => format!(
+                            "{} {function}({} {clock})",
+                            significant(value, 6),
+                            significant(frequency, 6)
+                        ),
+                    });
                 format!("{coordinate}(t) = {}", terms::sum(written))
             }
         }
@@ -464,23 +408,15 @@ mod tests {
     }
 
     fn near(value: f64, expected: f64, allowed: f64) {
-        assert!(
-            (value - expected).abs() <= allowed,
-            "{value} against {expected}"
-        );
+        assert!((value - expected).abs() <= allowed, "{value} against {expected}");
     }
 
     #[test]
     fn the_swing_of_the_paper() {
-        let motion = three_phases(
-            &paper(Design::default().stiffness().unwrap()),
-            ContactSpeed::Paper,
-        )
-        .unwrap();
-        let Form::Cosine {
-            frequency, phase, ..
-        } = motion.phases[2].form
-        else {
+        let motion =
+            three_phases(&paper(Design::default().stiffness().unwrap()), ContactSpeed::Paper)
+                .unwrap();
+        let Form::Cosine { frequency, phase, .. } = motion.phases[2].form else {
             panic!("return is a cosine")
         };
         near(frequency, 0.847_791_247_9, 5e-11);
@@ -495,23 +431,16 @@ mod tests {
     #[test]
     fn the_energy_column_has_the_exact_speed_and_prints_the_jump() {
         let motion = three_phases(&paper(3.0407e7), ContactSpeed::Energy).unwrap();
-        near(
-            motion.speed,
-            (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt(),
-            1e-14,
-        );
+        near(motion.speed, (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt(), 1e-14);
         near(motion.speed, 1.324_802_058_11, 5e-12);
         near(motion.velocity_jump, 1.324_802_058_11 - 1.241_853_869, 1e-9);
         near(motion.fitted.unwrap().depth, 1.3909e-3, 5e-8);
         // The cubic restoring force of equation (11).
         near(
-            Swing {
-                restoring_force: &|x| x - x * x * x / 6.0,
-                ..paper(3.0407e7)
-            }
-            .collision()
-            .contact_speed()
-            .unwrap(),
+            Swing { restoring_force: &|x| x - x * x * x / 6.0, ..paper(3.0407e7) }
+                .collision()
+                .contact_speed()
+                .unwrap(),
             1.313_279_499_96,
             5e-12,
         );
@@ -519,21 +448,11 @@ mod tests {
 
     #[test]
     fn every_join_is_continuous_in_the_papers_column() {
-        for (barrier, stiffness) in [
-            (0.323, 3.0407e7),
-            (0.0, 1e6),
-            (-0.9, 1e4),
-            (1.4, 1e9),
-            (0.323, 1.0),
-        ] {
-            let motion = three_phases(
-                &Swing {
-                    barrier,
-                    ..paper(stiffness)
-                },
-                ContactSpeed::Paper,
-            )
-            .unwrap();
+        for (barrier, stiffness) in
+            [(0.323, 3.0407e7), (0.0, 1e6), (-0.9, 1e4), (1.4, 1e9), (0.323, 1.0)]
+        {
+            let motion =
+                three_phases(&Swing { barrier, ..paper(stiffness) }, ContactSpeed::Paper).unwrap();
             let [approach, contact, back] = &motion.phases;
             for (left, right) in [(approach, contact), (contact, back)] {
                 let before = left.form.at(left.end - left.start);
@@ -556,42 +475,23 @@ mod tests {
             (-0.5, 1e3, Rule::EqualEnergy),
             (0.9, 30.0, Rule::LeastSquares),
         ] {
-            let swing = Swing {
-                barrier,
-                rule,
-                ..paper(stiffness)
-            };
+            let swing = Swing { barrier, rule, ..paper(stiffness) };
             let motion = three_phases(&swing, ContactSpeed::Energy).unwrap();
-            let (p, q) = (
-                motion.fitted.unwrap().line.slope,
-                motion.fitted.unwrap().line.q(barrier),
-            );
+            let (p, q) =
+                (motion.fitted.unwrap().line.slope, motion.fitted.unwrap().line.q(barrier));
             let contact = &motion.phases[1];
             let options = Options::with_tolerance(1e-13);
-            let start = State {
-                t: contact.start,
-                x: barrier,
-                v: motion.speed,
-            };
+            let start = State { t: contact.start, x: barrier, v: motion.speed };
             let events = [
                 Event::record(|_, _, v| v).falling(),
                 Event::stop(move |_, x, _| x - barrier).falling(),
             ];
-            let path = integrate(
-                |_, x, _| -x - stiffness * (p * x - q),
-                start,
-                10.0,
-                &events,
-                &options,
-            )
-            .unwrap();
+            let path =
+                integrate(|_, x, _| -x - stiffness * (p * x - q), start, 10.0, &events, &options)
+                    .unwrap();
             near(path.end().t, contact.end, 1e-10);
             near(path.end().v, -motion.speed, 1e-10);
-            near(
-                path.occurrences()[0].state.x - barrier,
-                motion.penetration,
-                1e-11,
-            );
+            near(path.occurrences()[0].state.x - barrier, motion.penetration, 1e-11);
             for state in path.samples(50) {
                 let (x, v) = contact.form.at(state.t - contact.start);
                 near(x, state.x, 1e-11);
@@ -618,11 +518,7 @@ mod tests {
             let line = linearisation::fit(rule, elastic_force, depth).unwrap();
             let contact = LineContact::new(line, 1e6, [0.0; 2], speed).unwrap();
             let duration = crate::impact::hertz::duration(1e6, speed).unwrap();
-            near(
-                100.0 * (contact.duration() / duration - 1.0),
-                duration_error,
-                0.06,
-            );
+            near(100.0 * (contact.duration() / duration - 1.0), duration_error, 0.06);
             near(100.0 * (contact.depth() / depth - 1.0), depth_error, 0.06);
         }
     }
@@ -630,14 +526,8 @@ mod tests {
     #[test]
     fn the_formulas_as_people_write_them() {
         let motion = three_phases(&paper(3.0407e7), ContactSpeed::Paper).unwrap();
-        assert_eq!(
-            motion.phases[0].closed_form(),
-            "x(t) = -1.5 cos(0.847791 t)"
-        );
-        assert_eq!(
-            motion.phases[2].closed_form(),
-            "x(t) = 1.5 cos(0.847791 (t - t2) + 1.35376)"
-        );
+        assert_eq!(motion.phases[0].closed_form(), "x(t) = -1.5 cos(0.847791 t)");
+        assert_eq!(motion.phases[2].closed_form(), "x(t) = 1.5 cos(0.847791 (t - t2) + 1.35376)");
         let contact = motion.phases[1].closed_form();
         assert!(
             contact.starts_with("x(t) = 0.323")
@@ -671,24 +561,16 @@ mod tests {
         for barrier in [1.5, 2.0] {
             let refused = refuse(Swing { barrier, ..usual });
             assert!(
-                refused
-                    .to_string()
-                    .starts_with("the pendulum never reaches the barrier"),
+                refused.to_string().starts_with("the pendulum never reaches the barrier"),
                 "{refused}"
             );
         }
         assert!(matches!(
-            refuse(Swing {
-                barrier: -1.5,
-                ..usual
-            }),
+            refuse(Swing { barrier: -1.5, ..usual }),
             PhasesError::Collision(CollisionError::ReleasedBehindBarrier { .. })
         ));
         assert!(matches!(
-            refuse(Swing {
-                barrier: f64::NAN,
-                ..usual
-            }),
+            refuse(Swing { barrier: f64::NAN, ..usual }),
             PhasesError::Collision(CollisionError::Barrier(_))
         ));
         for stiffness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -703,37 +585,20 @@ mod tests {
                 PhasesError::Collision(CollisionError::Amplitude(_))
             ));
         }
-        let beyond = refuse(Swing {
-            amplitude: 3.0,
-            frequency_squared: 1.0 - 9.0 / 8.0,
-            ..usual
-        });
-        assert!(
-            beyond.to_string().contains("omega^2 = -0.125 at A = 3"),
-            "{beyond}"
-        );
+        let beyond = refuse(Swing { amplitude: 3.0, frequency_squared: 1.0 - 9.0 / 8.0, ..usual });
+        assert!(beyond.to_string().contains("omega^2 = -0.125 at A = 3"), "{beyond}");
         for amplitude in [std::f64::consts::PI, 3.5] {
             let outside = refuse(Swing { amplitude, ..usual });
             assert!(
-                matches!(
-                    outside,
-                    PhasesError::Collision(CollisionError::OutsideTheWell { .. })
-                ),
+                matches!(outside, PhasesError::Collision(CollisionError::OutsideTheWell { .. })),
                 "{outside}"
             );
         }
         // A hill on the way: V = cos(3 x)-like, higher in the middle than at the release.
         let hill = |x: f64| -(3.0 * x).sin();
-        let outside = refuse(Swing {
-            restoring_force: &hill,
-            amplitude: 0.9,
-            ..usual
-        });
+        let outside = refuse(Swing { restoring_force: &hill, amplitude: 0.9, ..usual });
         assert!(
-            matches!(
-                outside,
-                PhasesError::Collision(CollisionError::OutsideTheWell { .. })
-            ),
+            matches!(outside, PhasesError::Collision(CollisionError::OutsideTheWell { .. })),
             "{outside}"
         );
     }

@@ -272,19 +272,14 @@ impl NearTouch {
     fn new(force: &Expr, depth: Symbol, stiffness: (Symbol, f64)) -> Option<Self> {
         /// A depth below all that matter: digits that are there at this one are there everywhere.
         const SMALLEST: f64 = 1e-12;
-        if force
-            .substitute(depth, &Expr::zero())
-            .is_ok_and(|at_touch| !at_touch.is_zero())
-        {
+        if force.substitute(depth, &Expr::zero()).is_ok_and(|at_touch| !at_touch.is_zero()) {
             return None;
         }
         let exponents = force.unique_nodes().filter_map(|part| match part.node() {
             Node::Power(base, exponent) if base.contains(depth) => exponent.as_number(),
             _ => None,
         });
-        let root = exponents.fold(Integer::from(1), |root, exponent| {
-            root.lcm(exponent.denom())
-        });
+        let root = exponents.fold(Integer::from(1), |root, exponent| root.lcm(exponent.denom()));
         let root = root.to_u32().filter(|root| *root <= Self::HIGHEST_ROOT)?;
         let q = Expr::from(depth);
         // sqrt(q^2 + q^4) = q sqrt(1 + q^2): the power of q that all terms of a base have is taken
@@ -306,10 +301,7 @@ impl NearTouch {
         });
         let numbers = BTreeMap::from([stiffness]);
         let force = Force::new(&in_root.ok()?, depth, &Expr::zero(), &numbers, SMALLEST)?;
-        Some(Self {
-            polynomial: force.polynomial_near_rest()?.clone(),
-            root,
-        })
+        Some(Self { polynomial: force.polynomial_near_rest()?.clone(), root })
     }
 
     fn value(&self, depth: f64) -> Option<f64> {
@@ -376,11 +368,7 @@ impl Setup {
             }
         };
         let pressed = &(&sign * &pressed) * &Expr::function(Function::Step, vec![inside])?;
-        Ok(Equation {
-            left: &swing.residual + &pressed,
-            right: Expr::zero(),
-            ..swing.equation()
-        })
+        Ok(Equation { left: &swing.residual + &pressed, right: Expr::zero(), ..swing.equation() })
     }
 
     /// The equations and their forces.
@@ -412,10 +400,7 @@ impl Setup {
         }
         let letters = self.letters(&swing);
         let own = |name: &Symbol| {
-            let of_force = self
-                .force
-                .as_ref()
-                .is_some_and(|force| force.contains(*name));
+            let of_force = self.force.as_ref().is_some_and(|force| force.contains(*name));
             swing.parameters.contains(name)
                 || of_force && *name != letters.stiffness && *name != letters.depth
         };
@@ -443,32 +428,21 @@ impl Setup {
         let function = |expression: &Expr, argument: Symbol| {
             let expression = in_numbers(expression)?;
             let known = [argument, letters.stiffness, Symbol::new("pi")];
-            match expression
-                .symbols()
-                .into_iter()
-                .find(|name| !known.contains(name))
-            {
+            match expression.symbols().into_iter().find(|name| !known.contains(name)) {
                 Some(name) => Err(SetupError::NoValue { name }),
-                None => Ok(CompiledFunction::new(
-                    &expression,
-                    &[argument, letters.stiffness],
-                )?),
+                None => Ok(CompiledFunction::new(&expression, &[argument, letters.stiffness])?),
             }
         };
         let (known, rest) = self.values.split(&swing.parameters);
         let numerical = with_numbers_where_needed(&swing, &known)?;
         let swing_in_numbers = swing.with_values(&known)?;
         let centred = centred(&swing_in_numbers, None).ok();
-        if centred
-            .as_ref()
-            .is_some_and(|centred| centred.cross_well.is_some())
-        {
+        if centred.as_ref().is_some_and(|centred| centred.cross_well.is_some()) {
             return Err(no_bottom(&swing_in_numbers).into());
         }
         let position = centred.as_ref().map(|centred| &centred.position);
-        let equilibrium = position
-            .and_then(|position| position.evaluate(&[].into()).ok())
-            .unwrap_or(0.0);
+        let equilibrium =
+            position.and_then(|position| position.evaluate(&[].into()).ok()).unwrap_or(0.0);
         let through = (self.release - equilibrium) * (self.barrier - equilibrium) <= 0.0;
         if through && centred.is_some_and(|centred| centred.endless) {
             return Err(SetupError::InfinitelyFast {
@@ -477,10 +451,7 @@ impl Setup {
             });
         }
         let swing_alone = in_numbers(&swing.force)?;
-        for place in [self.release, self.barrier]
-            .into_iter()
-            .filter(|place| place.is_finite())
-        {
+        for place in [self.release, self.barrier].into_iter().filter(|place| place.is_finite()) {
             swing_alone.check_digits(&BTreeMap::from([(x, place)]), &[x])?;
         }
         let elastic = Expr::divide(&per_unit, &mass)?;
@@ -498,11 +469,7 @@ impl Setup {
             ),
             gamma: self.stiffness,
             judged: judged.to_string(),
-            values: if numerical.is_some() {
-                rest
-            } else {
-                self.values.clone()
-            },
+            values: if numerical.is_some() { rest } else { self.values.clone() },
             swing: numerical.unwrap_or(swing),
             letters,
             stiffness,

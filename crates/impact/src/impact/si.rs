@@ -96,11 +96,8 @@ impl Impact {
                 },
             },
             peak_pressure: units.radius.map(|_| {
-                let pressure = |depth| {
-                    units
-                        .pressure(force(depth), metres(depth))
-                        .unwrap_or(f64::NAN)
-                };
+                let pressure =
+                    |depth| units.pressure(force(depth), metres(depth)).unwrap_or(f64::NAN);
                 converted("peak pressure", &penetration, pressure)
             }),
         };
@@ -129,11 +126,7 @@ fn converted(name: &'static str, quantity: &Quantity, convert: impl Fn(f64) -> f
     Quantity {
         name,
         runge_kutta: convert(quantity.runge_kutta),
-        closed_forms: quantity
-            .closed_forms
-            .iter()
-            .map(|value| convert(*value))
-            .collect(),
+        closed_forms: quantity.closed_forms.iter().map(|value| convert(*value)).collect(),
     }
 }
 

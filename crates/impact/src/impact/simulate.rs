@@ -110,19 +110,9 @@ pub fn known_until(motion: &Simulation) -> Option<f64> {
     if motion.model.beta == 0.0 || matches!(motion.stop, Stop::Interrupted { .. }) {
         return None;
     }
-    let displaced = |value: f64| {
-        value
-            + DISPLACEMENT
-                * if value == 0.0 {
-                    motion.model.beta
-                } else {
-                    value
-                }
-    };
-    let start = Start {
-        x: displaced(motion.start.x),
-        velocity: displaced(motion.start.velocity),
-    };
+    let displaced =
+        |value: f64| value + DISPLACEMENT * if value == 0.0 { motion.model.beta } else { value };
+    let start = Start { x: displaced(motion.start.x), velocity: displaced(motion.start.velocity) };
     let other = simulate(&motion.model, start, motion.integrator, &motion.settings).ok()?;
     let until = motion.end_time.min(other.end_time);
     let places = (0..=LOOKS).filter_map(|look| {
@@ -130,9 +120,7 @@ pub fn known_until(motion: &Simulation) -> Option<f64> {
         Some((time, motion.path.at(time)?.0, other.path.at(time)?.0))
     });
     let places: Vec<(f64, f64, f64)> = places.collect();
-    let size = places
-        .iter()
-        .fold(0.0_f64, |size, (_, x, _)| size.max(x.abs()));
+    let size = places.iter().fold(0.0_f64, |size, (_, x, _)| size.max(x.abs()));
     let lost = DISPLACEMENT * SIX_DIGITS / motion.settings.relative_tolerance.max(f64::EPSILON);
     let is_lost = |(_, x, other): &&(f64, f64, f64)| (x - other).abs() > lost * size;
     let first = places.iter().position(|place| is_lost(&place))?;
@@ -163,9 +151,7 @@ pub fn simulate_many(
         check(model, *start, settings).map_err(|error| (number, error))?;
     }
     let mut results: Vec<Option<Simulation>> = motions.iter().map(|_| None).collect();
-    let runs = motions
-        .iter()
-        .map(|(model, start)| taylor::Runner::new(*model, *start, *settings));
+    let runs = motions.iter().map(|(model, start)| taylor::Runner::new(*model, *start, *settings));
     taylor::follow(runs, |number, runner| {
         if let Some((place, (_, start))) = results.get_mut(number).zip(motions.get(number)) {
             *place = Some(runner.finish(*start));

@@ -63,24 +63,17 @@ pub struct TooMany {
 pub fn grid_size(axes: &[Axis]) -> Result<usize, TooMany> {
     let counts = axes.iter().map(|axis| axis.values().len());
     let product = counts.clone().try_fold(1_usize, usize::checked_mul);
-    product
-        .filter(|product| *product <= MOST_MOTIONS)
-        .ok_or_else(|| {
-            let counts: Vec<String> = counts.clone().map(|count| count.to_string()).collect();
-            let product = match product {
-                Some(product) => product.to_string(),
-                None => format!(
-                    "{:.2e}",
-                    axes.iter()
-                        .map(|axis| axis.values().len() as f64)
-                        .product::<f64>()
-                ),
-            };
-            TooMany {
-                counts: counts.join(" * "),
-                product,
-            }
-        })
+    product.filter(|product| *product <= MOST_MOTIONS).ok_or_else(|| {
+        let counts: Vec<String> = counts.clone().map(|count| count.to_string()).collect();
+        let product = match product {
+            Some(product) => product.to_string(),
+            None => format!(
+                "{:.2e}",
+                axes.iter().map(|axis| axis.values().len() as f64).product::<f64>()
+            ),
+        };
+        TooMany { counts: counts.join(" * "), product }
+    })
 }
 
 /// The values of the parameters in the motion of this number, where the last axis varies fastest.
@@ -186,10 +179,7 @@ pub fn sweep(
     settings: &Settings,
     progress: impl Fn(usize) + Sync,
 ) -> Result<Vec<Summary>, (usize, SimulationError)> {
-    let settings = Settings {
-        keep_path: false,
-        ..*settings
-    };
+    let settings = Settings { keep_path: false, ..*settings };
     let run = |(chunk, motions): &(usize, &[(Model, Start)])| {
         let found = summaries(motions, integrator, &settings)
             .map_err(|(number, error)| (chunk * CHUNK + number, error))?;

@@ -161,20 +161,12 @@ impl Trial<'_> {
             Some(ContactLoss::Restitution(wanted)) => damping_for(wanted)? / energy_speed,
         };
         restitution(damping * energy_speed)?;
-        if let (Some(_), None, Some(force)) = (
-            setup.loss,
-            exponent_of(collision.elastic_force),
-            &setup.force,
-        ) {
-            return Err(SetupError::NoPower {
-                force: force.to_string(),
-            }
-            .into());
+        if let (Some(_), None, Some(force)) =
+            (setup.loss, exponent_of(collision.elastic_force), &setup.force)
+        {
+            return Err(SetupError::NoPower { force: force.to_string() }.into());
         }
-        let collision = Collision {
-            damping,
-            ..collision
-        };
+        let collision = Collision { damping, ..collision };
         let options = Options {
             maximum_steps: setup.step_limit as usize,
             ..Options::with_tolerance(setup.integrator_tolerance)
@@ -212,10 +204,7 @@ impl Trial<'_> {
             let (found, attempts) = self.climb(method);
             tried.extend(attempts);
             best = closer(best, found);
-            if best
-                .as_ref()
-                .is_some_and(|best| best.error <= self.setup.tolerance)
-            {
+            if best.as_ref().is_some_and(|best| best.error <= self.setup.tolerance) {
                 break;
             }
         }
@@ -232,12 +221,12 @@ impl Trial<'_> {
             _ => None,
         };
         let rungs: Vec<Rung> = match (setup.order, setup.degrees) {
-            (None, None) if takes(Choice::Degrees) => (1..=highest_order(method))
-                .map(|n| (None, same(n)))
-                .collect(),
-            (None, None) if takes(Choice::Order) => (1..=highest_order(method))
-                .map(|order| (Some(order), None))
-                .collect(),
+            (None, None) if takes(Choice::Degrees) => {
+                (1..=highest_order(method)).map(|n| (None, same(n))).collect()
+            }
+            (None, None) if takes(Choice::Order) => {
+                (1..=highest_order(method)).map(|order| (Some(order), None)).collect()
+            }
             chosen => vec![chosen],
         };
         let mut tried: Vec<Attempt> = Vec::new();
@@ -251,11 +240,8 @@ impl Trial<'_> {
                 amplitude: setup.amplitude_convention,
                 ..Default::default()
             };
-            let flight = Flight::derive(
-                self.equations,
-                [self.turning_point, -setup.side.sign()],
-                &options,
-            );
+            let flight =
+                Flight::derive(self.equations, [self.turning_point, -setup.side.sign()], &options);
             // An order that adds nothing to a formula is passed over.
             let solution = flight.as_ref().ok().map(|flight| &flight.solution);
             let same = |last: &Solution, new: &Solution| {
@@ -280,10 +266,7 @@ impl Trial<'_> {
                 method,
                 order,
                 degrees,
-                error: found
-                    .as_ref()
-                    .map(|found| found.error)
-                    .map_err(|reason| reason.of(method)),
+                error: found.as_ref().map(|found| found.error).map_err(|reason| reason.of(method)),
             });
             best = closer(best, found.ok());
             // Orders that bring nothing closer for long: an expansion beyond its radius.
@@ -297,9 +280,7 @@ impl Trial<'_> {
             if refused
                 || no_law
                 || stalls
-                || best
-                    .as_ref()
-                    .is_some_and(|best| best.error <= setup.tolerance)
+                || best.as_ref().is_some_and(|best| best.error <= setup.tolerance)
             {
                 break;
             }
@@ -311,13 +292,8 @@ impl Trial<'_> {
     fn with_contact(&self, flight: Flight) -> Result<Derived, NoFlight> {
         let (touch, speed) = flight.touch(self.setup.barrier)?;
         let contact = self.contact(speed)?;
-        let phases = phases_of(
-            &flight,
-            self.equations,
-            self.setup.barrier,
-            [touch, speed],
-            &contact,
-        )?;
+        let phases =
+            phases_of(&flight, self.equations, self.setup.barrier, [touch, speed], &contact)?;
         // A law of the contact that is far off must not be made up for by the swing: that is chosen
         // by its flight.
         let is_exact = self.setup.contact_law == ContactLaw::Exact && self.setup.loss.is_none();
@@ -329,21 +305,14 @@ impl Trial<'_> {
             (true, false) => worst(&[numbers, self.errors(&phases)[5]]),
             (false, _) => numbers,
         };
-        Ok(Derived {
-            flight,
-            phases,
-            contact,
-            error,
-        })
+        Ok(Derived { flight, phases, contact, error })
     }
 
     /// The contact entered at this speed, the force of the swing included where nothing is lost.
     fn contact(&self, speed: f64) -> Result<DerivedContact, ContactError> {
         let touch = self.touch(speed);
         match self.setup.loss {
-            None => Ok(DerivedContact::Elastic(Box::new(
-                touch.by(self.setup.contact_law)?,
-            ))),
+            None => Ok(DerivedContact::Elastic(Box::new(touch.by(self.setup.contact_law)?))),
             Some(_) => {
                 let exponent = touch.exponent.ok_or(ContactError::NoPowerLaw)?;
                 let stiffness = touch.stiffness * (touch.elastic_force)(1.0);
@@ -356,13 +325,7 @@ impl Trial<'_> {
 
     /// What meets at this speed.
     fn touch(&self, speed: f64) -> Touch<'_> {
-        let Collision {
-            barrier,
-            stiffness,
-            restoring_force,
-            elastic_force,
-            ..
-        } = self.collision;
+        let Collision { barrier, stiffness, restoring_force, elastic_force, .. } = self.collision;
         Touch {
             speed,
             barrier,
@@ -418,10 +381,8 @@ fn closer(one: Option<Derived>, other: Option<Derived>) -> Option<Derived> {
 
 /// The largest of them in size; what is no number is the largest.
 pub(super) fn worst<'a>(errors: impl IntoIterator<Item = &'a f64>) -> f64 {
-    errors
-        .into_iter()
-        .fold(0.0, |worst: f64, error| match error.is_nan() {
-            true => f64::INFINITY,
-            false => worst.max(error.abs()),
-        })
+    errors.into_iter().fold(0.0, |worst: f64, error| match error.is_nan() {
+        true => f64::INFINITY,
+        false => worst.max(error.abs()),
+    })
 }

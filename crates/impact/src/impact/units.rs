@@ -130,13 +130,8 @@ impl Units {
 
     /// The bodies with a stated yield limit, and that limit, Pa.
     pub fn yield_limits(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        let limits = [
-            ("sphere", self.sphere_yield),
-            ("barrier", self.barrier_yield),
-        ];
-        limits
-            .into_iter()
-            .filter_map(|(body, limit)| limit.map(|limit| (body, limit)))
+        let limits = [("sphere", self.sphere_yield), ("barrier", self.barrier_yield)];
+        limits.into_iter().filter_map(|(body, limit)| limit.map(|limit| (body, limit)))
     }
 }
 
@@ -147,33 +142,15 @@ mod tests {
 
     #[test]
     fn the_equivalent_modulus_at_its_limits() {
-        let steel = Elastic {
-            modulus: 2e11,
-            poisson: 0.3,
-        };
-        let rigid = Elastic {
-            modulus: 1e300,
-            poisson: 0.3,
-        };
-        let together = |sphere| {
-            Modulus::Both {
-                barrier: steel,
-                sphere,
-            }
-            .value()
-        };
+        let steel = Elastic { modulus: 2e11, poisson: 0.3 };
+        let rigid = Elastic { modulus: 1e300, poisson: 0.3 };
+        let together = |sphere| Modulus::Both { barrier: steel, sphere }.value();
         assert!((together(rigid) / Modulus::RigidSphere(steel).value() - 1.0).abs() < 1e-15);
         assert!((together(rigid) / (2e11 / 0.91) - 1.0).abs() < 1e-15);
         assert!((together(steel) / (1e11 / 0.91) - 1.0).abs() < 1e-15);
         // Without lateral strain a rigid sphere meets the modulus of the barrier itself.
-        let cork = Elastic {
-            poisson: 0.0,
-            ..steel
-        };
-        assert_eq!(
-            Modulus::RigidSphere(cork).value(),
-            Modulus::BarrierAlone(cork.modulus).value()
-        );
+        let cork = Elastic { poisson: 0.0, ..steel };
+        assert_eq!(Modulus::RigidSphere(cork).value(), Modulus::BarrierAlone(cork.modulus).value());
     }
 
     #[test]
@@ -199,10 +176,7 @@ mod tests {
             let by_force = (6.0 * force * design.modulus.powi(2)
                 / (PI.powi(3) * design.radius.powi(2)))
             .cbrt();
-            assert!(
-                (pressure / by_force - 1.0).abs() < 1e-14,
-                "{pressure} and {by_force}"
-            );
+            assert!((pressure / by_force - 1.0).abs() < 1e-14, "{pressure} and {by_force}");
             // The mean pressure is two thirds of it.
             let area = PI * design.radius * depth;
             assert!((force / area / pressure - 2.0 / 3.0).abs() < 1e-14);

@@ -43,13 +43,7 @@ pub enum Role {
 
 impl Role {
     /// Every role.
-    pub const ALL: [Self; 5] = [
-        Self::Flat,
-        Self::Lower,
-        Self::Upper,
-        Self::Limit,
-        Self::Trade,
-    ];
+    pub const ALL: [Self; 5] = [Self::Flat, Self::Lower, Self::Upper, Self::Limit, Self::Trade];
 
     /// In a word or two.
     pub const fn name(self) -> &'static str {
@@ -157,10 +151,8 @@ impl Decision {
         let sensitivities: Vec<Sensitivity> = (0..question.variables.len())
             .map(|index| probe.sensitivity(best, index, level))
             .collect();
-        let mut near: Vec<[f64; 2]> = sensitivities
-            .iter()
-            .map(|sensitivity| sensitivity.alone)
-            .collect();
+        let mut near: Vec<[f64; 2]> =
+            sensitivities.iter().map(|sensitivity| sensitivity.alone).collect();
         near.extend(space.bounds().iter().skip(near.len()));
         // What is fixed at one value has no room of its own.
         for (range, [lower, upper]) in near.iter_mut().zip(space.bounds()) {
@@ -173,10 +165,9 @@ impl Decision {
         let (share, points) = probe.share(&near, level);
         let extents = (0..best.len()).map(|index| {
             let values = points.iter().map(|point| point[index]).chain([best[index]]);
-            values.fold(
-                [f64::INFINITY, f64::NEG_INFINITY],
-                |[least, most], value| [least.min(value), most.max(value)],
-            )
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], value| {
+                [least.min(value), most.max(value)]
+            })
         });
         Self {
             extents: extents.collect(),
@@ -216,12 +207,7 @@ impl Probe<'_> {
     /// The objective at a point, constraints aside.
     fn value(&self, point: &[f64]) -> Option<f64> {
         let objective = *self.question.objectives.first()?;
-        objective.value(
-            &self
-                .question
-                .follow(point, Route::Chain, objective.is_of_contact())
-                .ok()?,
-        )
+        objective.value(&self.question.follow(point, Route::Chain, objective.is_of_contact()).ok()?)
     }
 
     /// The objective of a point that keeps the constraints.
@@ -235,8 +221,7 @@ impl Probe<'_> {
         let value = Some(evaluation.value()).filter(|value| value.is_finite());
         let kept =
             value.filter(|_| evaluation.is_feasible(self.question.genetic.constraint_tolerance));
-        self.least
-            .set(kept.map_or(self.least.get(), |kept| self.least.get().min(kept)));
+        self.least.set(kept.map_or(self.least.get(), |kept| self.least.get().min(kept)));
         [value, kept]
     }
 
@@ -247,11 +232,8 @@ impl Probe<'_> {
             return Some(point);
         };
         let variables = &self.question.variables;
-        let place = |parameter| {
-            variables
-                .iter()
-                .position(|variable| variable.parameter == parameter)
-        };
+        let place =
+            |parameter| variables.iter().position(|variable| variable.parameter == parameter);
         let (mass, radius) = (place(Parameter::Mass), place(Parameter::Radius));
         if moved.is_some() && moved != mass && moved != radius {
             return Some(point);
@@ -294,8 +276,7 @@ impl Probe<'_> {
         let limits = [variable.lower, variable.upper];
         let good = |value: f64| {
             let point = self.moved(best, index, value)?;
-            self.feasible(&point)
-                .filter(|objective| *objective <= level)
+            self.feasible(&point).filter(|objective| *objective <= level)
         };
         let reach = |limit: f64| {
             let mut last = value;
@@ -319,11 +300,8 @@ impl Probe<'_> {
         let tried = limits.into_iter().flat_map(|limit| self.way(value, limit));
         let tried = tried.filter_map(|value| self.moved(best, index, value));
         let tried: Vec<[Option<f64>; 2]> = tried.map(|point| self.judged(&point)).collect();
-        let whole: Option<Vec<f64>> = tried
-            .iter()
-            .map(|[value, _]| *value)
-            .chain([self.value(best)])
-            .collect();
+        let whole: Option<Vec<f64>> =
+            tried.iter().map(|[value, _]| *value).chain([self.value(best)]).collect();
         let range = whole.map(|values| {
             let least = values.iter().copied().fold(f64::INFINITY, f64::min);
             [least, values.into_iter().fold(f64::NEG_INFINITY, f64::max)]
@@ -341,8 +319,7 @@ impl Probe<'_> {
             let beyond = alone[end] + 1e-3 * (limits[end] - alone[end]);
             alone[end] != limits[end]
                 && self.moved(best, index, beyond).is_none_or(|point| {
-                    self.value(&point)
-                        .is_some_and(|objective| objective <= level)
+                    self.value(&point).is_some_and(|objective| objective <= level)
                 })
         };
         let role = match range {
@@ -379,10 +356,8 @@ impl Probe<'_> {
                 point[index] = end;
                 point
             });
-            let design = self
-                .question
-                .follow(&point, Route::Integration, objective.is_of_contact())
-                .ok()?;
+            let design =
+                self.question.follow(&point, Route::Integration, objective.is_of_contact()).ok()?;
             objective.value(&design)
         };
         let [below, above] = [at(ends[0])?, at(ends[1])?];
@@ -410,10 +385,7 @@ impl Probe<'_> {
                 let Some(point) = self.on_surface(space.draw(&mut generator), None) else {
                     continue;
                 };
-                if self
-                    .feasible(&point)
-                    .is_some_and(|objective| objective <= level)
-                {
+                if self.feasible(&point).is_some_and(|objective| objective <= level) {
                     points.push(point);
                 }
             }
@@ -435,11 +407,7 @@ impl Probe<'_> {
         let mut active: Vec<String> = Vec::new();
         let limits = self.question.limits.len();
         for (index, excess) in evaluation.inequalities.iter().enumerate() {
-            let word = if index < limits {
-                words.get(index)
-            } else {
-                words.last()
-            };
+            let word = if index < limits { words.get(index) } else { words.last() };
             if *excess > -WITHIN {
                 active.extend(word.cloned());
             }
@@ -453,9 +421,8 @@ impl Probe<'_> {
     fn ends(&self, best: &[f64]) -> Option<Ends> {
         let objective = self.question.objectives.first()?;
         let variables = &self.question.variables;
-        let index = variables
-            .iter()
-            .position(|variable| variable.parameter == Parameter::Length)?;
+        let index =
+            variables.iter().position(|variable| variable.parameter == Parameter::Length)?;
         if !objective.is_rest_time() {
             return None;
         }
@@ -463,10 +430,8 @@ impl Probe<'_> {
         let both = |length: f64| {
             let mut point = best.to_vec();
             point[index] = length;
-            let design = self
-                .question
-                .follow(&point, Route::Chain, self.question.needs_contact())
-                .ok()?;
+            let design =
+                self.question.follow(&point, Route::Chain, self.question.needs_contact()).ok()?;
             let units = [Objective::RestTime, Objective::DimensionlessRestTime];
             let [seconds, dimensionless] = units.map(|objective| objective.value(&design));
             let tolerance = self.question.genetic.constraint_tolerance;
@@ -476,9 +441,7 @@ impl Probe<'_> {
         let [(short, _), (long, _)] = [both(lengths[0])?, both(lengths[1])?];
         let mut least = [f64::INFINITY; 2];
         let mut best_lengths = [best[index]; 2];
-        let tried = lengths
-            .into_iter()
-            .flat_map(|limit| self.way(best[index], limit));
+        let tried = lengths.into_iter().flat_map(|limit| self.way(best[index], limit));
         for length in lengths.into_iter().chain([best[index]]).chain(tried) {
             let Some((times, true)) = both(length) else {
                 continue;

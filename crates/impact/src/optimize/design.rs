@@ -41,24 +41,21 @@ impl HardestContact {
         units: &Units,
         contacts: impl Iterator<Item = (f64, f64, Option<f64>)>,
     ) -> Option<Self> {
-        contacts.fold(
-            None,
-            |hardest: Option<Self>, (force, depth, restitution)| {
-                let elastic = units.force() * hertz::force(model.gamma, depth);
-                let own = Self {
-                    force: units.force() * force,
-                    pressure: units.pressure(elastic, units.length * depth).unwrap_or(0.0),
-                    restitution,
-                };
-                Some(match hardest {
-                    None => own,
-                    Some(other) => Self {
-                        pressure: own.pressure.max(other.pressure),
-                        ..if own.force > other.force { own } else { other }
-                    },
-                })
-            },
-        )
+        contacts.fold(None, |hardest: Option<Self>, (force, depth, restitution)| {
+            let elastic = units.force() * hertz::force(model.gamma, depth);
+            let own = Self {
+                force: units.force() * force,
+                pressure: units.pressure(elastic, units.length * depth).unwrap_or(0.0),
+                restitution,
+            };
+            Some(match hardest {
+                None => own,
+                Some(other) => Self {
+                    pressure: own.pressure.max(other.pressure),
+                    ..if own.force > other.force { own } else { other }
+                },
+            })
+        })
     }
 }
 
@@ -116,10 +113,7 @@ impl Question {
     /// material has its own.
     pub fn holds_contact_damping(&self) -> bool {
         self.materials.is_empty()
-            || self
-                .materials
-                .iter()
-                .any(|material| material.damping.is_none())
+            || self.materials.iter().any(|material| material.damping.is_none())
     }
 
     /// Follows a design until it rests; `contact` asks for the hardest contact too.
@@ -138,14 +132,7 @@ impl Question {
             sphere_yield: self.sphere_yield,
             barrier_yield: None,
         };
-        let motion = DesignMotion {
-            question: self,
-            model,
-            start,
-            units,
-            route,
-            contact,
-        };
+        let motion = DesignMotion { question: self, model, start, units, route, contact };
         let followed = match self.main_mass {
             Some(main_mass) => motion.carried(&main_mass)?,
             None => motion.on_fixed_pivot().map_err(|error| error.to_string())?,
@@ -169,11 +156,7 @@ impl Question {
         let usual = Case::default();
         let value = |parameter: Parameter| usual.get(parameter);
         match self.materials.is_empty() {
-            true => self
-                .variables
-                .iter()
-                .map(|variable| value(variable.parameter))
-                .collect(),
+            true => self.variables.iter().map(|variable| value(variable.parameter)).collect(),
             false => None,
         }
     }
@@ -205,11 +188,7 @@ struct Followed {
 
 impl DesignMotion<'_> {
     fn on_fixed_pivot(&self) -> Result<Followed, SimulationError> {
-        let settings = Settings {
-            stop_at_rest: true,
-            keep_path: false,
-            ..self.question.settings
-        };
+        let settings = Settings { stop_at_rest: true, keep_path: false, ..self.question.settings };
         let by_chain = match self.route {
             Route::Integration => None,
             Route::Chain => match course(&self.model, self.start, Integrator::Chain, &settings) {
@@ -224,15 +203,10 @@ impl DesignMotion<'_> {
                 (course, hardest)
             }
             None => {
-                let settings = Settings {
-                    keep_path: self.contact,
-                    ..settings
-                };
+                let settings = Settings { keep_path: self.contact, ..settings };
                 let motion = simulate(&self.model, self.start, Integrator::Taylor, &settings)?;
                 let course = Course::from(&motion);
-                let hardest = self
-                    .contact
-                    .then(|| self.hardest_of_motion(&motion, &course));
+                let hardest = self.contact.then(|| self.hardest_of_motion(&motion, &course));
                 (course, hardest)
             }
         };
@@ -249,11 +223,7 @@ impl DesignMotion<'_> {
     fn in_closed_form(&self, contact: &Contact) -> Option<(f64, f64, Option<f64>)> {
         let ratio = self.model.mu / self.model.gamma;
         let force = peak_force(1.5, self.model.gamma, ratio, contact.speed_in)?;
-        Some((
-            force,
-            contact.penetration,
-            restitution(ratio * contact.speed_in).ok(),
-        ))
+        Some((force, contact.penetration, restitution(ratio * contact.speed_in).ok()))
     }
 
     /// The contact that is touched fastest, in closed form.
@@ -268,15 +238,12 @@ impl DesignMotion<'_> {
     /// force is that of the closed form: the swing's own forces have no time to act.
     fn hardest_of_motion(&self, motion: &Simulation, course: &Course) -> Option<HardestContact> {
         let contacts =
-            course
-                .impacts
-                .iter()
-                .filter_map(|contact| match motion.peak_force(contact) {
-                    Some(force) => Some((force, contact.penetration, contact.restitution)),
-                    None => self
-                        .in_closed_form(contact)
-                        .map(|(force, depth, _)| (force, depth, contact.restitution)),
-                });
+            course.impacts.iter().filter_map(|contact| match motion.peak_force(contact) {
+                Some(force) => Some((force, contact.penetration, contact.restitution)),
+                None => self
+                    .in_closed_form(contact)
+                    .map(|(force, depth, _)| (force, depth, contact.restitution)),
+            });
         HardestContact::from_contacts(&self.model, &self.units, contacts)
     }
 

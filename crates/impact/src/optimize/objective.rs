@@ -22,12 +22,7 @@ pub enum Objective {
 }
 
 /// Name, unit, meaning and value of an objective.
-type Row = (
-    &'static str,
-    &'static str,
-    &'static str,
-    fn(&Design) -> Option<f64>,
-);
+type Row = (&'static str, &'static str, &'static str, fn(&Design) -> Option<f64>);
 
 impl Objective {
     /// Every objective, in the order of the documentation.
@@ -52,30 +47,25 @@ impl Objective {
                 "the rest time in units of 1/omega",
                 |design| design.rest_time.ok(),
             ),
-            Self::PeakForce => (
-                "peak_force",
-                "N",
-                "the greatest force of a contact",
-                |design| Some(design.hardest.map_or(0.0, |contact| contact.force)),
-            ),
-            Self::PeakPressure => (
-                "peak_pressure",
-                "Pa",
-                "the greatest pressure of Hertz in a contact",
-                |design| Some(design.hardest.map_or(0.0, |contact| contact.pressure)),
-            ),
-            Self::Mass => ("mass", "kg", "the mass of the pendulum", |design| {
-                Some(design.case.design.mass)
+            Self::PeakForce => ("peak_force", "N", "the greatest force of a contact", |design| {
+                Some(design.hardest.map_or(0.0, |contact| contact.force))
             }),
-            Self::Impacts => ("impacts", "", "the contacts until it rests", |design| {
-                Some(design.impacts as f64)
-            }),
-            Self::PrimaryRestTime => (
-                "primary_rest_time",
-                "s",
-                "the rest time of the main mass",
-                |design| design.primary_rest_time?.ok(),
-            ),
+            Self::PeakPressure => {
+                ("peak_pressure", "Pa", "the greatest pressure of Hertz in a contact", |design| {
+                    Some(design.hardest.map_or(0.0, |contact| contact.pressure))
+                })
+            }
+            Self::Mass => {
+                ("mass", "kg", "the mass of the pendulum", |design| Some(design.case.design.mass))
+            }
+            Self::Impacts => {
+                ("impacts", "", "the contacts until it rests", |design| Some(design.impacts as f64))
+            }
+            Self::PrimaryRestTime => {
+                ("primary_rest_time", "s", "the rest time of the main mass", |design| {
+                    design.primary_rest_time?.ok()
+                })
+            }
         }
     }
 
@@ -116,8 +106,6 @@ impl Objective {
 
     /// The objective of this name.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL
-            .into_iter()
-            .find(|objective| objective.name() == name)
+        Self::ALL.into_iter().find(|objective| objective.name() == name)
     }
 }

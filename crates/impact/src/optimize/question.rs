@@ -83,11 +83,7 @@ impl Default for Question {
     /// The [`DEFAULT_BOX`], searched a hundred times for the least rest time in seconds, with the
     /// default dissipation.
     fn default() -> Self {
-        let variable = |(parameter, lower, upper)| Variable {
-            parameter,
-            lower,
-            upper,
-        };
+        let variable = |(parameter, lower, upper)| Variable { parameter, lower, upper };
         Self {
             case: Case {
                 contact_damping: ContactDamping::Lambda(default_lambda()),
@@ -103,10 +99,7 @@ impl Default for Question {
             sphere_yield: None,
             barrier_yield: None,
             main_mass: None,
-            settings: Settings {
-                duration: DEFAULT_DURATION,
-                ..Settings::default()
-            },
+            settings: Settings { duration: DEFAULT_DURATION, ..Settings::default() },
             genetic: Options::default(),
             runs: 100,
             seed: 1,
@@ -181,11 +174,8 @@ impl Question {
     /// # Errors
     /// [`OptimizeError::Limits`] where nothing may vary, or limits leave nothing between them.
     pub fn space(&self) -> Result<Space, OptimizeError> {
-        let mut bounds: Vec<[f64; 2]> = self
-            .variables
-            .iter()
-            .map(|variable| [variable.lower, variable.upper])
-            .collect();
+        let mut bounds: Vec<[f64; 2]> =
+            self.variables.iter().map(|variable| [variable.lower, variable.upper]).collect();
         if self.materials.len() > 1 {
             bounds.push([0.0, self.materials.len() as f64]);
         }
@@ -228,9 +218,8 @@ impl Question {
                 )));
             }
         }
-        if let Some(density) = self
-            .density
-            .filter(|density| !(*density > 0.0 && density.is_finite()))
+        if let Some(density) =
+            self.density.filter(|density| !(*density > 0.0 && density.is_finite()))
         {
             return Err(OptimizeError::Limits(format!(
                 "density must be a positive number, not {density}"
@@ -249,21 +238,14 @@ impl Question {
         }
         self.genetic.check()?;
         let middle: Vec<f64> = space.bounds().iter().map(|_| 0.5).collect();
-        self.follow(&space.at(&middle), Route::Chain, false)
-            .map_err(OptimizeError::Motion)?;
+        self.follow(&space.at(&middle), Route::Chain, false).map_err(OptimizeError::Motion)?;
         Ok(space)
     }
 
     /// Whether the greatest contact counts.
     pub(super) fn needs_contact(&self) -> bool {
         let limited = self.limits.iter().map(|limit| limit.objective);
-        self.elastic
-            || self
-                .objectives
-                .iter()
-                .copied()
-                .chain(limited)
-                .any(Objective::is_of_contact)
+        self.elastic || self.objectives.iter().copied().chain(limited).any(Objective::is_of_contact)
     }
 
     /// Whether the rest of the pendulum counts, or what happens until then.
@@ -275,10 +257,7 @@ impl Question {
 
     /// The reason for which a design has no value of an objective; `None` where it has all of them.
     pub(super) fn missing_value(&self, design: &Design) -> Option<String> {
-        let missing = self
-            .objectives
-            .iter()
-            .find(|objective| objective.value(design).is_none())?;
+        let missing = self.objectives.iter().find(|objective| objective.value(design).is_none())?;
         let rest = match missing.is_of_main_mass() {
             true => design.primary_rest_time.unwrap_or(design.rest_time),
             false => design.rest_time,
@@ -295,15 +274,8 @@ impl Question {
         let words = self.constraints();
         let mut broken = Vec::new();
         for (index, limit) in self.limits.iter().enumerate() {
-            if evaluation
-                .inequalities
-                .get(index)
-                .is_some_and(|excess| *excess > 0.0)
-            {
-                let value = limit
-                    .objective
-                    .value(design)
-                    .map_or("no value".to_owned(), decimal);
+            if evaluation.inequalities.get(index).is_some_and(|excess| *excess > 0.0) {
+                let value = limit.objective.value(design).map_or("no value".to_owned(), decimal);
                 broken.push(format!("{} ({value})", words[index]));
             }
         }
@@ -311,19 +283,13 @@ impl Question {
             && off.abs() > self.genetic.constraint_tolerance
         {
             let words = words.get(self.limits.len()).cloned().unwrap_or_default();
-            broken.push(format!(
-                "{words} (m is {} times that)",
-                significant(1.0 + off, 4)
-            ));
+            broken.push(format!("{words} (m is {} times that)", significant(1.0 + off, 4)));
         }
         if let Some(excess) = evaluation.inequalities.get(self.limits.len())
             && *excess > 0.0
         {
             let words = words.last().cloned().unwrap_or_default();
-            broken.push(format!(
-                "{words} ({} times that)",
-                significant(1.0 + excess, 4)
-            ));
+            broken.push(format!("{words} ({} times that)", significant(1.0 + excess, 4)));
         }
         broken
     }
@@ -334,10 +300,7 @@ impl Question {
             Some(number) => self.materials.get(number)?.yield_limit,
             None => self.barrier_yield,
         };
-        [self.sphere_yield, barrier]
-            .into_iter()
-            .flatten()
-            .reduce(f64::min)
+        [self.sphere_yield, barrier].into_iter().flatten().reduce(f64::min)
     }
 
     /// What a design is worth.

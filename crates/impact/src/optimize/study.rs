@@ -60,11 +60,7 @@ pub struct Watch<'a> {
 
 impl Default for Watch<'_> {
     fn default() -> Self {
-        Self {
-            stop: &|| false,
-            done: &|_| (),
-            progress: &|_| (),
-        }
+        Self { stop: &|| false, done: &|_| (), progress: &|_| () }
     }
 }
 
@@ -121,12 +117,8 @@ pub struct Rival {
 impl Rival {
     /// How the values are spread over the runs that found one.
     pub fn spread(&self) -> Option<Spread> {
-        let found: Vec<f64> = self
-            .values
-            .iter()
-            .copied()
-            .filter(|value| value.is_finite())
-            .collect();
+        let found: Vec<f64> =
+            self.values.iter().copied().filter(|value| value.is_finite()).collect();
         Spread::of(&found)
     }
 }
@@ -181,8 +173,7 @@ impl Question {
     /// The most generations of the whole study, those of the rivals among them.
     pub fn most_work(&self) -> usize {
         let rivals = if self.objectives.len() == 1 { 2 } else { 0 };
-        self.runs
-            .saturating_mul((1 + rivals) * self.genetic.generations)
+        self.runs.saturating_mul((1 + rivals) * self.genetic.generations)
     }
 
     /// The value of a design in a search, in which the best one so far has this value; what makes
@@ -207,11 +198,7 @@ impl Question {
             }
         };
         let (evaluation, is_integrated) = follow(Route::Chain);
-        let closest = evaluation
-            .inequalities
-            .iter()
-            .copied()
-            .fold(f64::NEG_INFINITY, f64::max);
+        let closest = evaluation.inequalities.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let tolerance = self.genetic.constraint_tolerance;
         let counts = self.objectives.len() > 1 || evaluation.value() < best;
         let decides =
@@ -282,9 +269,8 @@ pub fn optimize(
     watch: &Watch,
 ) -> Result<Study, OptimizeError> {
     let space = question.check()?;
-    let missing: Vec<usize> = (0..question.runs)
-        .filter(|number| known.iter().all(|run| run.number != *number))
-        .collect();
+    let missing: Vec<usize> =
+        (0..question.runs).filter(|number| known.iter().all(|run| run.number != *number)).collect();
     (watch.progress)((question.runs - missing.len()) * question.genetic.generations);
     // The first one has its random population at least: there is always something to hand back.
     let first = missing.first().copied();
@@ -299,10 +285,8 @@ pub fn optimize(
         Some(run)
     };
     let new = each(&missing, one);
-    let mut runs: Vec<SearchRun> = known
-        .into_iter()
-        .filter(|run| run.number < question.runs)
-        .collect();
+    let mut runs: Vec<SearchRun> =
+        known.into_iter().filter(|run| run.number < question.runs).collect();
     runs.extend(new.into_iter().flatten());
     runs.sort_by_key(|run| run.number);
     if runs.is_empty() {
@@ -319,9 +303,7 @@ pub fn optimize(
     }
     let (mut rivals, mut decision) = (vec![], None);
     if question.objectives.len() == 1 {
-        decision = finalists
-            .first()
-            .map(|best| Decision::of(&question, &space, &best.design));
+        decision = finalists.first().map(|best| Decision::of(&question, &space, &best.design));
         if complete {
             rivals = self::rivals(&question, &space, &runs, watch);
         }
@@ -329,10 +311,8 @@ pub fn optimize(
     // All of the default design, also what is held fixed here.
     let default_design = question.default_point().and_then(|point| {
         let mut usual = question.clone();
-        usual.case.design = hertz::Design {
-            gravity: question.case.design.gravity,
-            ..hertz::Design::default()
-        };
+        usual.case.design =
+            hertz::Design { gravity: question.case.design.gravity, ..hertz::Design::default() };
         usual.follow(&point, Route::Integration, true).ok()
     });
     Ok(Study {
@@ -373,11 +353,7 @@ fn nothing(question: &Question, space: &Space, watch: &Watch, complete: bool) ->
     let middle = space.at(&vec![0.5; space.bounds().len()]);
     let mut reason = None;
     let rests = (0..question.genetic.population.max(100)).any(|number| {
-        let point = if number == 0 {
-            middle.clone()
-        } else {
-            space.draw(&mut random)
-        };
+        let point = if number == 0 { middle.clone() } else { space.draw(&mut random) };
         let missing = match question.follow(&point, Route::Chain, question.needs_contact()) {
             Ok(design) => question.missing_value(&design),
             Err(error) => Some(error),
@@ -386,10 +362,7 @@ fn nothing(question: &Question, space: &Space, watch: &Watch, complete: bool) ->
         missing.is_none()
     });
     if let (false, Some(reason)) = (rests, reason) {
-        return OptimizeError::NoRest {
-            duration: question.settings.duration,
-            reason,
-        };
+        return OptimizeError::NoRest { duration: question.settings.duration, reason };
     }
     if question.constraints().is_empty() {
         return OptimizeError::NoRest {
@@ -408,25 +381,18 @@ fn nothing(question: &Question, space: &Space, watch: &Watch, complete: bool) ->
             false => f64::INFINITY,
         })
     };
-    let mut options = Options {
-        penalty: Penalty::Death,
-        ..question.genetic
-    };
+    let mut options = Options { penalty: Penalty::Death, ..question.genetic };
     if question.main_mass.is_none() {
         // Closed forms cost little: enough of them to say that there is nothing.
         options.population = options.population.max(ENOUGH[0]);
         options.generations = options.generations.max(ENOUGH[1]);
     }
-    let run = search(
-        space,
-        evaluate,
-        &options,
-        &mut generator(question.seed, u64::MAX - 1),
-        &mut |_| !(watch.stop)(),
-    );
-    let design = run
-        .best
-        .and_then(|best| question.follow(&best.point, Route::Integration, true).ok());
+    let run =
+        search(space, evaluate, &options, &mut generator(question.seed, u64::MAX - 1), &mut |_| {
+            !(watch.stop)()
+        });
+    let design =
+        run.best.and_then(|best| question.follow(&best.point, Route::Integration, true).ok());
     let broken = design.as_ref().map(|design| question.broken(design));
     let exists = broken.as_ref().is_some_and(Vec::is_empty);
     OptimizeError::NoFeasible {
@@ -461,14 +427,10 @@ fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
         found = front(&found, question.genetic.population);
     }
     let judge = |&(run, found): &(usize, &Found)| {
-        let design = question
-            .follow(&found.point, Route::Integration, true)
-            .ok()?;
+        let design = question.follow(&found.point, Route::Integration, true).ok()?;
         let evaluation = question.evaluation(&design);
         let by_chain = match question.main_mass {
-            None => question
-                .follow(&found.point, Route::Chain, question.needs_contact())
-                .ok()?,
+            None => question.follow(&found.point, Route::Chain, question.needs_contact()).ok()?,
             Some(_) => design.clone(),
         };
         Some(Finalist {
@@ -484,10 +446,8 @@ fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
     if question.objectives.len() > 1 {
         // By integration a design may break a constraint, or be worse than another in everything.
         finalists.retain(|finalist| finalist.feasible);
-        let evaluations: Vec<Evaluation> = finalists
-            .iter()
-            .map(|finalist| question.evaluation(&finalist.design))
-            .collect();
+        let evaluations: Vec<Evaluation> =
+            finalists.iter().map(|finalist| question.evaluation(&finalist.design)).collect();
         let front = non_dominated(
             &evaluations.iter().collect::<Vec<_>>(),
             question.genetic.constraint_tolerance,
@@ -508,10 +468,7 @@ fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
 fn distinct<'a>(question: &Question, found: &[(usize, &'a Found)]) -> Vec<(usize, &'a Found)> {
     const SAME: f64 = 1e-6;
     let same = |one: &Found, other: &Found| {
-        let ranges = question
-            .variables
-            .iter()
-            .map(|variable| variable.upper - variable.lower);
+        let ranges = question.variables.iter().map(|variable| variable.upper - variable.lower);
         // A material is a whole number.
         let ranges = ranges.chain(std::iter::once(1.0 / SAME));
         let pairs = one.point.iter().zip(&other.point).zip(ranges);
@@ -532,10 +489,8 @@ fn distinct<'a>(question: &Question, found: &[(usize, &'a Found)]) -> Vec<(usize
 
 /// Whom nobody dominates among the fronts of all runs; the loneliest where they are too many.
 fn front<'a>(found: &[(usize, &'a Found)], most: usize) -> Vec<(usize, &'a Found)> {
-    let evaluation = |found: &Found| Evaluation {
-        objectives: found.values.clone(),
-        ..Evaluation::default()
-    };
+    let evaluation =
+        |found: &Found| Evaluation { objectives: found.values.clone(), ..Evaluation::default() };
     let all: Vec<Evaluation> = found.iter().map(|(_, found)| evaluation(found)).collect();
     let mut left = non_dominated(&all.iter().collect::<Vec<_>>(), 0.0);
     while left.len() > most {
@@ -544,10 +499,8 @@ fn front<'a>(found: &[(usize, &'a Found)], most: usize) -> Vec<(usize, &'a Found
         // A tenth of what is too many at a time: neighbours that go together leave no gap.
         let mut order: Vec<usize> = (0..left.len()).collect();
         order.sort_by(|one, other| lonely[*one].total_cmp(&lonely[*other]));
-        let mut gone: Vec<usize> = order
-            .into_iter()
-            .take((left.len() - most).div_ceil(10))
-            .collect();
+        let mut gone: Vec<usize> =
+            order.into_iter().take((left.len() - most).div_ceil(10)).collect();
         gone.sort_unstable();
         for index in gone.into_iter().rev() {
             left.remove(index);
@@ -557,12 +510,7 @@ fn front<'a>(found: &[(usize, &'a Found)], most: usize) -> Vec<(usize, &'a Found
 }
 
 fn rivals(question: &Question, space: &Space, runs: &[SearchRun], watch: &Watch) -> Vec<Rival> {
-    let Options {
-        population,
-        constraint_tolerance,
-        generations,
-        ..
-    } = question.genetic;
+    let Options { population, constraint_tolerance, generations, .. } = question.genetic;
     let total: usize = runs.iter().map(|run| run.evaluations).sum();
     let evaluations = (total as f64 / runs.len() as f64).round() as usize;
     let compete = |name: &'static str, work: &(dyn Fn(usize) -> Run + Sync)| {
@@ -579,11 +527,8 @@ fn rivals(question: &Question, space: &Space, runs: &[SearchRun], watch: &Watch)
             let values: Vec<f64> = runs.iter().map(|run| run.curve[index]).collect();
             Spread::of(&values).map_or(f64::INFINITY, |spread| spread.median)
         };
-        let value = |run: &Run| {
-            run.best
-                .as_ref()
-                .map_or(f64::INFINITY, |best| best.evaluation.value())
-        };
+        let value =
+            |run: &Run| run.best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value());
         Some(Rival {
             name,
             evaluations: runs.first().map_or(0, |run| run.evaluations),
@@ -614,13 +559,10 @@ fn rivals(question: &Question, space: &Space, runs: &[SearchRun], watch: &Watch)
             seed,
         )
     };
-    [
-        compete("random search", &random),
-        compete("differential evolution", &differential),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    [compete("random search", &random), compete("differential evolution", &differential)]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 impl Study {
@@ -651,12 +593,7 @@ impl Study {
     /// The median over the runs of the best value after each generation; runs that have ended keep
     /// theirs.
     pub fn median_curve(&self) -> Vec<f64> {
-        let length = self
-            .runs
-            .iter()
-            .map(|run| run.curve.len())
-            .max()
-            .unwrap_or(0);
+        let length = self.runs.iter().map(|run| run.curve.len()).max().unwrap_or(0);
         let at = |index: usize| {
             let last = |run: &SearchRun| run.curve.get(index).or(run.curve.last()).copied();
             let values: Vec<f64> = self.runs.iter().filter_map(last).collect();
@@ -669,18 +606,12 @@ impl Study {
     pub fn settled(&self, part: f64) -> Option<usize> {
         let curve = self.median_curve();
         let last = *curve.last()?;
-        curve
-            .iter()
-            .position(|value| value - last <= part * last.abs())
+        curve.iter().position(|value| value - last <= part * last.abs())
     }
 
     /// The first objective.
     pub fn objective(&self) -> Objective {
-        self.question
-            .objectives
-            .first()
-            .copied()
-            .unwrap_or(Objective::RestTime)
+        self.question.objectives.first().copied().unwrap_or(Objective::RestTime)
     }
 }
 
@@ -699,10 +630,7 @@ mod tests {
             spread.worst,
         ];
         assert_eq!(numbers, [1.0, 2.0, 3.0, 4.0, 8.0]);
-        assert_eq!(
-            Spread::of(&[1.0, 2.0]).map(|spread| spread.lower_quartile),
-            Some(1.25)
-        );
+        assert_eq!(Spread::of(&[1.0, 2.0]).map(|spread| spread.lower_quartile), Some(1.25));
         assert_eq!(Spread::of(&[]), None);
     }
 }

@@ -39,11 +39,7 @@ pub fn heuristic(worse: &[f64], better: &[f64], ratio: f64, space: &Space) -> Ve
     let mut reach = ratio;
     for ((from, to), [lower, upper]) in worse.iter().zip(better).zip(space.bounds()) {
         let way = to - from;
-        let room = if way > 0.0 {
-            upper - from
-        } else {
-            lower - from
-        };
+        let room = if way > 0.0 { upper - from } else { lower - from };
         if way != 0.0 {
             reach = reach.min(room / way);
         }
@@ -52,22 +48,13 @@ pub fn heuristic(worse: &[f64], better: &[f64], ratio: f64, space: &Space) -> Ve
         // The last digit may lie outside.
         (from + reach * (to - from)).clamp(*lower, *upper)
     };
-    worse
-        .iter()
-        .zip(better)
-        .zip(space.bounds())
-        .map(place)
-        .collect()
+    worse.iter().zip(better).zip(space.bounds()).map(place).collect()
 }
 
 /// Every gene from one parent or the other, by the toss of a coin.
 pub fn scattered(one: &[f64], other: &[f64], generator: &mut impl Rng) -> Vec<f64> {
     let gene = |(one, other): (&f64, &f64)| {
-        if generator.random::<bool>() {
-            *one
-        } else {
-            *other
-        }
+        if generator.random::<bool>() { *one } else { *other }
     };
     one.iter().zip(other).map(gene).collect()
 }
@@ -80,11 +67,7 @@ pub fn one_point(one: &[f64], other: &[f64], generator: &mut impl Rng) -> Vec<f6
         return one.to_vec();
     }
     let place = generator.random_range(1..shared);
-    one[..place]
-        .iter()
-        .chain(&other[place..])
-        .copied()
-        .collect()
+    one[..place].iter().chain(&other[place..]).copied().collect()
 }
 
 #[cfg(test)]

@@ -111,11 +111,7 @@ fn directions(count: usize, step: f64, generator: &mut impl Rng) -> Vec<Vec<f64>
 /// ```
 pub fn bit_flips(parent: &[f64], rate: f64, generator: &mut impl Rng) -> Vec<f64> {
     let flip = |bit: &f64| {
-        if generator.random::<f64>() < rate {
-            1.0 - bit
-        } else {
-            *bit
-        }
+        if generator.random::<f64>() < rate { 1.0 - bit } else { *bit }
     };
     parent.iter().map(flip).collect()
 }
@@ -163,12 +159,8 @@ mod tests {
     fn a_parent_in_a_corner_still_has_children() {
         let space = Space::new(vec![[0.0, 1.0]; 4]).unwrap();
         let moved = (0..200).filter(|seed| {
-            let child = adaptive_feasible(
-                &[0.0, 1.0, 0.0, 1.0],
-                1e-4,
-                &space,
-                &mut generator(*seed, 0),
-            );
+            let child =
+                adaptive_feasible(&[0.0, 1.0, 0.0, 1.0], 1e-4, &space, &mut generator(*seed, 0));
             child != [0.0, 1.0, 0.0, 1.0]
         });
         assert!(moved.count() > 100);
@@ -190,10 +182,7 @@ mod tests {
             step = next_step(step, generation, *improved);
             step
         });
-        assert_eq!(
-            found.collect::<Vec<_>>(),
-            [1.0, 0.25, 0.0625, 0.015_625, 0.0625]
-        );
+        assert_eq!(found.collect::<Vec<_>>(), [1.0, 0.25, 0.0625, 0.015_625, 0.0625]);
         assert_eq!(next_step(SMALLEST_STEP, 9, false), SMALLEST_STEP);
     }
 }

@@ -37,18 +37,10 @@ pub fn simulated_binary(
             true => (2.0 * part).powf(power),
             false => (0.5 / (1.0 - part)).powf(power),
         };
-        let sign = if generator.random::<bool>() {
-            1.0
-        } else {
-            -1.0
-        };
+        let sign = if generator.random::<bool>() { 1.0 } else { -1.0 };
         (0.5 * (one + other) + sign * 0.5 * spread * (one - other)).clamp(*lower, *upper)
     };
-    one.iter()
-        .zip(other)
-        .zip(space.bounds())
-        .map(gene)
-        .collect()
+    one.iter().zip(other).zip(space.bounds()).map(gene).collect()
 }
 
 /// Each number changed with the probability 1/n, by a part of its range that is mostly small; kept
@@ -94,10 +86,7 @@ pub fn search_front(
         if generation >= options.generations {
             break Stop::Generations;
         }
-        if options
-            .budget
-            .is_some_and(|budget| evaluations + size > budget)
-        {
+        if options.budget.is_some_and(|budget| evaluations + size > budget) {
             break Stop::Budget;
         }
         if !go_on(generation + 1) {
@@ -106,10 +95,7 @@ pub fn search_front(
         let winner = |generator: &mut _| {
             let [one, other] = [0, 1].map(|_| RngExt::random_range(generator, 0..size));
             let by_rank = standing[one].cmp(&standing[other]);
-            match by_rank
-                .then(loneliness[other].total_cmp(&loneliness[one]))
-                .is_le()
-            {
+            match by_rank.then(loneliness[other].total_cmp(&loneliness[one])).is_le() {
                 true => one,
                 false => other,
             }
@@ -128,16 +114,11 @@ pub fn search_front(
         let (all, lonely) = standings(&population, tolerance);
         let mut order: Vec<usize> = (0..population.len()).collect();
         order.sort_by(|one, other| {
-            all[*one]
-                .cmp(&all[*other])
-                .then(lonely[*other].total_cmp(&lonely[*one]))
+            all[*one].cmp(&all[*other]).then(lonely[*other].total_cmp(&lonely[*one]))
         });
         order.truncate(size);
         let mut places: Vec<Option<Individual>> = population.into_iter().map(Some).collect();
-        population = order
-            .iter()
-            .filter_map(|index| places[*index].take())
-            .collect();
+        population = order.iter().filter_map(|index| places[*index].take()).collect();
         (standing, loneliness) = standings(&population, tolerance);
         curve.push(front_size(&population, &standing, tolerance));
         generation += 1;
@@ -145,16 +126,10 @@ pub fn search_front(
     let all: Vec<&Evaluation> = population.iter().map(|member| &member.evaluation).collect();
     let front = non_dominated(&all, tolerance);
     let front = front.into_iter().map(|index| population[index].clone());
-    let front: Vec<Individual> = front
-        .filter(|member| member.evaluation.is_feasible(tolerance))
-        .collect();
-    let run = Run {
-        best: front.first().cloned(),
-        curve,
-        generations: generation,
-        evaluations,
-        stop,
-    };
+    let front: Vec<Individual> =
+        front.filter(|member| member.evaluation.is_feasible(tolerance)).collect();
+    let run =
+        Run { best: front.first().cloned(), curve, generations: generation, evaluations, stop };
     (front, run)
 }
 
@@ -164,9 +139,7 @@ fn standings(population: &[Individual], tolerance: f64) -> (Vec<usize>, Vec<f64>
     let ranks = ranks(&all, tolerance);
     let mut lonely = vec![0.0; all.len()];
     for rank in 0..=ranks.iter().copied().max().unwrap_or(0) {
-        let same: Vec<usize> = (0..all.len())
-            .filter(|index| ranks[*index] == rank)
-            .collect();
+        let same: Vec<usize> = (0..all.len()).filter(|index| ranks[*index] == rank).collect();
         let of_rank: Vec<&Evaluation> = same.iter().map(|index| all[*index]).collect();
         for (index, distance) in same.iter().zip(crowding(&of_rank)) {
             lonely[*index] = distance;
@@ -211,39 +184,16 @@ mod tests {
             objectives: vec![point[0].powi(2), (point[0] - 2.0).powi(2)],
             ..Evaluation::default()
         };
-        let options = Options {
-            generations: 60,
-            ..Options::default()
-        };
-        let (front, run) = search_front(
-            &space,
-            schaffer,
-            &options,
-            &mut generator(1, 0),
-            &mut |_| true,
-        );
-        assert!(
-            front.len() > 80 && run.evaluations == 6100,
-            "{}",
-            front.len()
-        );
+        let options = Options { generations: 60, ..Options::default() };
+        let (front, run) =
+            search_front(&space, schaffer, &options, &mut generator(1, 0), &mut |_| true);
+        assert!(front.len() > 80 && run.evaluations == 6100, "{}", front.len());
         let mut places: Vec<f64> = front.iter().map(|member| member.point[0]).collect();
         places.sort_by(f64::total_cmp);
-        assert!(
-            places[0] > -0.02 && *places.last().unwrap() < 2.02,
-            "{places:?}"
-        );
-        assert!(
-            places.windows(2).all(|pair| pair[1] - pair[0] < 0.15),
-            "{places:?}"
-        );
+        assert!(places[0] > -0.02 && *places.last().unwrap() < 2.02, "{places:?}");
+        assert!(places.windows(2).all(|pair| pair[1] - pair[0] < 0.15), "{places:?}");
         for member in &front {
-            let sum: f64 = member
-                .evaluation
-                .objectives
-                .iter()
-                .map(|value| value.sqrt())
-                .sum();
+            let sum: f64 = member.evaluation.objectives.iter().map(|value| value.sqrt()).sum();
             assert!((sum - 2.0).abs() < 0.05, "{member:?}");
         }
     }

@@ -78,20 +78,10 @@ pub fn non_dominated(all: &[&Evaluation], tolerance: f64) -> Vec<usize> {
 /// neighbours on either side, in parts of the whole range; infinite at the ends.
 pub fn crowding(all: &[&Evaluation]) -> Vec<f64> {
     let mut distance = vec![0.0; all.len()];
-    let values = all
-        .iter()
-        .map(|each| each.objectives.len())
-        .max()
-        .unwrap_or(0);
+    let values = all.iter().map(|each| each.objectives.len()).max().unwrap_or(0);
     for value in 0..values {
         // What is not there is as bad as can be.
-        let of = |index: usize| {
-            all[index]
-                .objectives
-                .get(value)
-                .copied()
-                .unwrap_or(f64::INFINITY)
-        };
+        let of = |index: usize| all[index].objectives.get(value).copied().unwrap_or(f64::INFINITY);
         let mut order: Vec<usize> = (0..all.len()).collect();
         order.sort_by(|one, other| of(*one).total_cmp(&of(*other)));
         let (Some(&first), Some(&last)) = (order.first(), order.last()) else {
@@ -102,11 +92,8 @@ pub fn crowding(all: &[&Evaluation]) -> Vec<f64> {
         distance[last] = f64::INFINITY;
         for neighbours in order.windows(3) {
             let gap = of(neighbours[2]) - of(neighbours[0]);
-            distance[neighbours[1]] += if range > 0.0 && range.is_finite() {
-                gap / range
-            } else {
-                0.0
-            };
+            distance[neighbours[1]] +=
+                if range > 0.0 && range.is_finite() { gap / range } else { 0.0 };
         }
     }
     distance
@@ -149,18 +136,10 @@ mod tests {
 
     #[test]
     fn the_lonely_are_those_with_room_around_them() {
-        let all = of(&[
-            vec![0.0, 4.0],
-            vec![1.0, 3.0],
-            vec![1.5, 2.5],
-            vec![4.0, 0.0],
-        ]);
+        let all = of(&[vec![0.0, 4.0], vec![1.0, 3.0], vec![1.5, 2.5], vec![4.0, 0.0]]);
         let found = crowding(&all.iter().collect::<Vec<_>>());
         assert!(found[0].is_infinite() && found[3].is_infinite());
-        assert!(
-            (found[1] - 0.75).abs() < 1e-12 && (found[2] - 1.5).abs() < 1e-12,
-            "{found:?}"
-        );
+        assert!((found[1] - 0.75).abs() < 1e-12 && (found[2] - 1.5).abs() < 1e-12, "{found:?}");
     }
 
     #[test]

@@ -69,9 +69,8 @@ impl Multipliers {
         let equalities = self.equalities.iter().zip(&of.equalities);
         let equalities: f64 = equalities.map(|(l, c)| l * c + 0.5 * rho * c * c).sum();
         let inequalities = self.inequalities.iter().zip(&of.inequalities);
-        let inequalities: f64 = inequalities
-            .map(|(l, c)| ((l + rho * c).max(0.0).powi(2) - l * l) / (2.0 * rho))
-            .sum();
+        let inequalities: f64 =
+            inequalities.map(|(l, c)| ((l + rho * c).max(0.0).powi(2) - l * l) / (2.0 * rho)).sum();
         let score = of.value() + equalities + inequalities;
         if score.is_nan() { f64::INFINITY } else { score }
     }
@@ -106,15 +105,11 @@ pub fn scores(
         false => f64::INFINITY,
     };
     match (penalty, multipliers) {
-        (Penalty::AugmentedLagrangian { .. }, Some(multipliers)) => population
-            .iter()
-            .map(|of| multipliers.lagrangian(of))
-            .collect(),
+        (Penalty::AugmentedLagrangian { .. }, Some(multipliers)) => {
+            population.iter().map(|of| multipliers.lagrangian(of)).collect()
+        }
         (Penalty::FeasibleFirst, _) => {
-            let feasible = population
-                .iter()
-                .map(death)
-                .filter(|value| value.is_finite());
+            let feasible = population.iter().map(death).filter(|value| value.is_finite());
             let worst = feasible.fold(f64::NEG_INFINITY, f64::max);
             let worst = if worst.is_finite() { worst } else { 0.0 };
             let score = |of: &&Evaluation| match of.violation(tolerance) {
@@ -141,12 +136,8 @@ mod tests {
 
     #[test]
     fn death_is_final_and_the_feasible_come_first() {
-        let population = [
-            at(5.0, 0.0, -1.0),
-            at(1.0, 0.0, 0.5),
-            at(9.0, 0.0, 0.0),
-            at(2.0, 0.3, 0.0),
-        ];
+        let population =
+            [at(5.0, 0.0, -1.0), at(1.0, 0.0, 0.5), at(9.0, 0.0, 0.0), at(2.0, 0.3, 0.0)];
         let population: Vec<&Evaluation> = population.iter().collect();
         assert_eq!(
             scores(&population, Penalty::Death, None, 0.01),
@@ -185,18 +176,9 @@ mod tests {
             multipliers.update(&evaluate(point), 2.0, 1e-6);
             last = point;
         }
-        assert!(
-            (last[0] - 0.75).abs() < 1e-6 && (last[1] - 0.25).abs() < 1e-6,
-            "{last:?}"
-        );
-        assert!(
-            (multipliers.equalities[0] + 0.5).abs() < 1e-3,
-            "{multipliers:?}"
-        );
-        assert!(
-            (multipliers.inequalities[0] - 1.0).abs() < 1e-3,
-            "{multipliers:?}"
-        );
+        assert!((last[0] - 0.75).abs() < 1e-6 && (last[1] - 0.25).abs() < 1e-6, "{last:?}");
+        assert!((multipliers.equalities[0] + 0.5).abs() < 1e-3, "{multipliers:?}");
+        assert!((multipliers.inequalities[0] - 1.0).abs() < 1e-3, "{multipliers:?}");
     }
 
     #[test]

@@ -148,13 +148,7 @@ impl Options {
     /// # Errors
     /// [`OptionsError`] names the option.
     pub fn check(&self) -> Result<(), OptionsError> {
-        let &Self {
-            population,
-            elite,
-            generations,
-            crossover_fraction,
-            ..
-        } = self;
+        let &Self { population, elite, generations, crossover_fraction, .. } = self;
         if !(2..=MOST_INDIVIDUALS).contains(&population) {
             return Err(OptionsError::Population(population));
         }
@@ -233,9 +227,8 @@ impl Options {
     /// The most evaluations of one run.
     pub fn most_evaluations(&self) -> usize {
         let (crossed, mutated) = self.children();
-        let all = self
-            .population
-            .saturating_add(self.generations.saturating_mul(crossed + mutated));
+        let all =
+            self.population.saturating_add(self.generations.saturating_mul(crossed + mutated));
         self.budget.map_or(all, |budget| budget.min(all))
     }
 }
@@ -284,13 +277,8 @@ pub fn search(
     generator: &mut impl Rng,
     go_on: &mut dyn FnMut(usize) -> bool,
 ) -> Run {
-    let mut nursery = Nursery {
-        space,
-        options,
-        evaluate: &mut evaluate,
-        best: None,
-        evaluations: 0,
-    };
+    let mut nursery =
+        Nursery { space, options, evaluate: &mut evaluate, best: None, evaluations: 0 };
     let mut population = Vec::with_capacity(options.population);
     for _ in 0..options.population {
         population.push(nursery.born(options.coding.draw(space, generator)));
@@ -303,16 +291,9 @@ pub fn search(
     };
     let (crossed, mutated) = options.children();
     let score = |population: &[Member], multipliers: Option<&Multipliers>| {
-        let evaluations: Vec<&Evaluation> = population
-            .iter()
-            .map(|member| &member.individual.evaluation)
-            .collect();
-        scores(
-            &evaluations,
-            options.penalty,
-            multipliers,
-            options.constraint_tolerance,
-        )
+        let evaluations: Vec<&Evaluation> =
+            population.iter().map(|member| &member.individual.evaluation).collect();
+        scores(&evaluations, options.penalty, multipliers, options.constraint_tolerance)
     };
     let (mut curve, mut step, mut generation) = (vec![nursery.value()], 1.0, 0);
     let stop = loop {
@@ -325,13 +306,7 @@ pub fn search(
         let scored = score(&population, multipliers.as_ref());
         let expected = rank_scaling(&scored, 2 * crossed + mutated);
         let parents = stochastic_uniform(&expected, 2 * crossed + mutated, generator);
-        let children = children(
-            &population,
-            &scored,
-            &parents,
-            (space, options, step),
-            generator,
-        );
+        let children = children(&population, &scored, &parents, (space, options, step), generator);
         let mut order: Vec<usize> = (0..population.len()).collect();
         order.sort_by(|one, other| scored[*one].total_cmp(&scored[*other]));
         let mut places: Vec<Option<Member>> = population.into_iter().map(Some).collect();
@@ -379,10 +354,7 @@ impl<E: FnMut(&[f64]) -> Evaluation> Nursery<'_, E> {
         let individual = Individual { point, evaluation };
         let better = individual.evaluation.value() < self.value();
         let first = self.best.is_none();
-        if individual
-            .evaluation
-            .is_feasible(self.options.constraint_tolerance)
-            && (first || better)
+        if individual.evaluation.is_feasible(self.options.constraint_tolerance) && (first || better)
         {
             self.best = Some(individual.clone());
         }
@@ -399,12 +371,8 @@ impl<E: FnMut(&[f64]) -> Evaluation> Nursery<'_, E> {
 /// Why no further generation is begun, where one of the limits is reached.
 fn ended(options: &Options, curve: &[f64], generation: usize, evaluations: usize) -> Option<Stop> {
     let (crossed, mutated) = options.children();
-    if has_stalled(
-        curve,
-        options.stall_generations,
-        options.function_tolerance,
-        options.stall_test,
-    ) {
+    if has_stalled(curve, options.stall_generations, options.function_tolerance, options.stall_test)
+    {
         return Some(Stop::Stalled);
     }
     if generation >= options.generations {
@@ -464,13 +432,7 @@ mod tests {
         stream: u64,
     ) -> Run {
         let space = Space::new(vec![bounds; 2]).unwrap();
-        search(
-            &space,
-            evaluate,
-            options,
-            &mut generator(7, stream),
-            &mut |_| true,
-        )
+        search(&space, evaluate, options, &mut generator(7, stream), &mut |_| true)
     }
 
     #[test]
@@ -502,10 +464,7 @@ mod tests {
     fn a_seed_gives_the_same_run_for_ever() {
         let first = run([-5.0, 5.5], rastrigin, &Options::default(), 0);
         assert_eq!(first, run([-5.0, 5.5], rastrigin, &Options::default(), 0));
-        assert_ne!(
-            first.curve,
-            run([-5.0, 5.5], rastrigin, &Options::default(), 1).curve
-        );
+        assert_ne!(first.curve, run([-5.0, 5.5], rastrigin, &Options::default(), 1).curve);
         assert_eq!(first.curve[0], GOLDEN);
     }
 
@@ -519,14 +478,8 @@ mod tests {
             equalities: vec![point[0] + point[1] - 1.0],
             inequalities: vec![0.75 - point[0]],
         };
-        let beyond = |point: &[f64]| Evaluation {
-            equalities: vec![],
-            ..on_a_line(point)
-        };
-        let lagrangian = Penalty::AugmentedLagrangian {
-            initial: 10.0,
-            factor: 100.0,
-        };
+        let beyond = |point: &[f64]| Evaluation { equalities: vec![], ..on_a_line(point) };
+        let lagrangian = Penalty::AugmentedLagrangian { initial: 10.0, factor: 100.0 };
         let space = Space::new(vec![[-2.0, 2.0]; 2]).unwrap();
         for (penalty, equality) in [
             (Penalty::Death, false),
@@ -535,64 +488,33 @@ mod tests {
             (Penalty::FeasibleFirst, true),
             (lagrangian, true),
         ] {
-            let options = Options {
-                penalty,
-                ..Options::default()
-            };
+            let options = Options { penalty, ..Options::default() };
             let evaluate = |point: &[f64]| {
-                if equality {
-                    on_a_line(point)
-                } else {
-                    beyond(point)
-                }
+                if equality { on_a_line(point) } else { beyond(point) }
             };
-            let run = search(
-                &space,
-                evaluate,
-                &options,
-                &mut generator(1, 0),
-                &mut |_| true,
-            );
+            let run = search(&space, evaluate, &options, &mut generator(1, 0), &mut |_| true);
             let best = run.best.expect("a point that keeps them");
             assert!(best.evaluation.is_feasible(options.constraint_tolerance));
             let expected = if equality { [0.75, 0.25] } else { [0.75, 0.0] };
             let value = expected[0] * expected[0] + 2.0 * expected[1] * expected[1];
             let found = best.evaluation.value();
-            assert!(
-                found < value + 0.02,
-                "{penalty:?} {equality}: {:?}",
-                best.point
-            );
+            assert!(found < value + 0.02, "{penalty:?} {equality}: {:?}", best.point);
         }
     }
 
     #[test]
     fn a_run_ends_where_it_is_told() {
-        let few = Options {
-            generations: 7,
-            ..Options::default()
-        };
+        let few = Options { generations: 7, ..Options::default() };
         let run_of = |options: &Options| run([-5.0, 5.5], rastrigin, options, 0);
         let ended = run_of(&few);
         assert_eq!((ended.stop, ended.generations), (Stop::Generations, 7));
-        let little = Options {
-            budget: Some(450),
-            ..Options::default()
-        };
+        let little = Options { budget: Some(450), ..Options::default() };
         let ended = run_of(&little);
-        assert_eq!(
-            (ended.stop, ended.evaluations),
-            (Stop::Budget, 100 + 3 * 98)
-        );
+        assert_eq!((ended.stop, ended.evaluations), (Stop::Budget, 100 + 3 * 98));
         let space = Space::new(vec![[-5.0, 5.5]; 2]).unwrap();
         let mut until = |generation| generation <= 4;
-        let ended = search(
-            &space,
-            rastrigin,
-            &Options::default(),
-            &mut generator(7, 0),
-            &mut until,
-        );
+        let ended =
+            search(&space, rastrigin, &Options::default(), &mut generator(7, 0), &mut until);
         assert_eq!((ended.stop, ended.generations), (Stop::Interrupted, 4));
         let whole = run_of(&Options::default());
         assert_eq!(ended.curve[..], whole.curve[..5]);
@@ -601,34 +523,13 @@ mod tests {
     #[test]
     fn what_makes_no_population_is_refused_by_name() {
         let usual = Options::default();
-        let population = Options {
-            population: 1,
-            ..usual
-        };
-        let elite = Options {
-            elite: 100,
-            ..usual
-        };
-        let generations = Options {
-            generations: 0,
-            ..usual
-        };
-        let fraction = Options {
-            crossover_fraction: f64::NAN,
-            ..usual
-        };
-        let bits = Options {
-            coding: Coding::Bits(8),
-            ..usual
-        };
-        let flips = Options {
-            mutation: Mutation::BitFlips(0.1),
-            ..usual
-        };
-        let budget = Options {
-            budget: Some(99),
-            ..usual
-        };
+        let population = Options { population: 1, ..usual };
+        let elite = Options { elite: 100, ..usual };
+        let generations = Options { generations: 0, ..usual };
+        let fraction = Options { crossover_fraction: f64::NAN, ..usual };
+        let bits = Options { coding: Coding::Bits(8), ..usual };
+        let flips = Options { mutation: Mutation::BitFlips(0.1), ..usual };
+        let budget = Options { budget: Some(99), ..usual };
         for (options, words) in [
             (population, "population"),
             (elite, "elite"),

@@ -30,14 +30,7 @@ struct Watch<F> {
 
 impl<F: FnMut(&[f64]) -> Evaluation> Watch<F> {
     fn new(evaluate: F, tolerance: f64, every: usize) -> Self {
-        Self {
-            evaluate,
-            tolerance,
-            every,
-            best: None,
-            curve: vec![],
-            count: 0,
-        }
+        Self { evaluate, tolerance, every, best: None, curve: vec![], count: 0 }
     }
 
     fn see(&mut self, point: &[f64]) -> Evaluation {
@@ -45,10 +38,7 @@ impl<F: FnMut(&[f64]) -> Evaluation> Watch<F> {
         self.count += 1;
         let better = |best: &Individual| evaluation.value() < best.evaluation.value();
         if evaluation.is_feasible(self.tolerance) && self.best.as_ref().is_none_or(better) {
-            self.best = Some(Individual {
-                point: point.to_vec(),
-                evaluation: evaluation.clone(),
-            });
+            self.best = Some(Individual { point: point.to_vec(), evaluation: evaluation.clone() });
         }
         if self.count.is_multiple_of(self.every) {
             self.curve.push(self.value());
@@ -57,9 +47,7 @@ impl<F: FnMut(&[f64]) -> Evaluation> Watch<F> {
     }
 
     fn value(&self) -> f64 {
-        self.best
-            .as_ref()
-            .map_or(f64::INFINITY, |best| best.evaluation.value())
+        self.best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value())
     }
 
     fn finish(self, stop: Stop) -> Run {
@@ -133,19 +121,11 @@ pub fn differential_evolution(
     tolerance: f64,
     seed: u64,
 ) -> Run {
-    let (lower, upper): (Vec<f64>, Vec<f64>) = space
-        .bounds()
-        .iter()
-        .map(|[lower, upper]| (*lower, *upper))
-        .unzip();
-    let size = De::<f64>::default_pop_size(lower.len())
-        .min(evaluations / 2)
-        .max(4);
-    let problem = Boxed {
-        watch: RefCell::new(Watch::new(evaluate, tolerance, every.max(1))),
-        lower,
-        upper,
-    };
+    let (lower, upper): (Vec<f64>, Vec<f64>) =
+        space.bounds().iter().map(|[lower, upper]| (*lower, *upper)).unzip();
+    let size = De::<f64>::default_pop_size(lower.len()).min(evaluations / 2).max(4);
+    let problem =
+        Boxed { watch: RefCell::new(Watch::new(evaluate, tolerance, every.max(1))), lower, upper };
     // The first population is one more.
     let generations = (evaluations / size).saturating_sub(1).max(1) as u64;
     let start = PopulationProgress::<Vec<f64>>::empty();
@@ -190,9 +170,6 @@ mod tests {
         ] {
             assert!(best.expect("a point").point[0] >= 0.5);
         }
-        assert_eq!(
-            differential_evolution(&space, never, (500, 100), 1e-3, 1).best,
-            None
-        );
+        assert_eq!(differential_evolution(&space, never, (500, 100), 1e-3, 1).best, None);
     }
 }

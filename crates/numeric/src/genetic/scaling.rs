@@ -22,9 +22,7 @@ pub fn rank_scaling(scores: &[f64], parents: usize) -> Vec<f64> {
         expected[index] = 1.0 / ((rank + 1) as f64).sqrt();
     }
     let sum: f64 = expected.iter().sum();
-    expected
-        .iter_mut()
-        .for_each(|value| *value *= parents as f64 / sum);
+    expected.iter_mut().for_each(|value| *value *= parents as f64 / sum);
     expected
 }
 

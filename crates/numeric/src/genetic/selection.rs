@@ -30,10 +30,7 @@ pub fn stochastic_uniform(weights: &[f64], parents: usize, generator: &mut impl 
         }
     }
     // Rounding may leave the last step beyond the end.
-    let last = weights
-        .iter()
-        .rposition(|weight| *weight > 0.0)
-        .unwrap_or_default();
+    let last = weights.iter().rposition(|weight| *weight > 0.0).unwrap_or_default();
     chosen.resize(parents, last);
     chosen.shuffle(generator);
     chosen

@@ -39,11 +39,7 @@ impl Space {
             let range = upper - lower;
             if !(range > 0.0 && range.is_finite()) {
                 let number = index + 1;
-                return Err(SpaceError::Inverted {
-                    number,
-                    lower,
-                    upper,
-                });
+                return Err(SpaceError::Inverted { number, lower, upper });
             }
         }
         Ok(Self(bounds))
@@ -89,10 +85,7 @@ pub struct Evaluation {
 impl Evaluation {
     /// One value without constraints.
     pub fn of(value: f64) -> Self {
-        Self {
-            objectives: vec![value],
-            ..Self::default()
-        }
+        Self { objectives: vec![value], ..Self::default() }
     }
 
     /// The first objective; infinite where it is no number.
@@ -103,14 +96,9 @@ impl Evaluation {
 
     /// By how much it breaks its constraints, all together; an equality holds up to the tolerance.
     pub fn violation(&self, tolerance: f64) -> f64 {
-        let equalities = self
-            .equalities
-            .iter()
-            .map(|value| (value.abs() - tolerance).max(0.0));
+        let equalities = self.equalities.iter().map(|value| (value.abs() - tolerance).max(0.0));
         let inequalities = self.inequalities.iter().map(|value| value.max(0.0));
-        let sum = equalities
-            .chain(inequalities)
-            .fold(0.0, |sum, part| sum + part);
+        let sum = equalities.chain(inequalities).fold(0.0, |sum, part| sum + part);
         if sum.is_nan() { f64::INFINITY } else { sum }
     }
 

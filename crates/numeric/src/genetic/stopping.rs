@@ -37,12 +37,7 @@ pub enum Stop {
 
 impl Stop {
     /// Every reason.
-    pub const ALL: [Self; 4] = [
-        Self::Stalled,
-        Self::Generations,
-        Self::Budget,
-        Self::Interrupted,
-    ];
+    pub const ALL: [Self; 4] = [Self::Stalled, Self::Generations, Self::Budget, Self::Interrupted];
 
     /// `stalled`
     pub const fn name(self) -> &'static str {
@@ -91,9 +86,7 @@ pub fn has_stalled(best: &[f64], window: usize, tolerance: f64, test: StallTest)
         StallTest::Average => (first - last).abs() / window as f64,
         StallTest::Weighted => {
             let steps = generations.windows(2).rev().take(window);
-            steps
-                .rev()
-                .fold(0.0, |sum, pair| 0.5 * (sum + (pair[0] - pair[1]).abs()))
+            steps.rev().fold(0.0, |sum, pair| 0.5 * (sum + (pair[0] - pair[1]).abs()))
         }
     };
     change / scale <= tolerance
@@ -105,9 +98,7 @@ mod tests {
 
     /// The best values of a run that halves what is missing to 10 each generation.
     fn coming_down(count: i32) -> Vec<f64> {
-        (0..count)
-            .map(|generation| 10.0 + 0.5_f64.powi(generation))
-            .collect()
+        (0..count).map(|generation| 10.0 + 0.5_f64.powi(generation)).collect()
     }
 
     #[test]
@@ -129,12 +120,7 @@ mod tests {
         let mut best = vec![f64::INFINITY; 30];
         best.extend([5.0; 10]);
         assert!(!has_stalled(&best, 20, 1e-6, StallTest::Average));
-        assert!(has_stalled(
-            &[f64::INFINITY; 22],
-            20,
-            1e-6,
-            StallTest::Average
-        ));
+        assert!(has_stalled(&[f64::INFINITY; 22], 20, 1e-6, StallTest::Average));
         assert!(!has_stalled(&[], 20, 1e-6, StallTest::Weighted));
     }
 }

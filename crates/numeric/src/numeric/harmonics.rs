@@ -31,10 +31,8 @@ impl Harmonics {
         for (cosines, sines) in self.cosines.iter_mut().zip(&mut self.sines) {
             *cosines += value * cosine;
             *sines += value * sine;
-            (cosine, sine) = (
-                cosine * step_cosine - sine * step_sine,
-                sine * step_cosine + cosine * step_sine,
-            );
+            (cosine, sine) =
+                (cosine * step_cosine - sine * step_sine, sine * step_cosine + cosine * step_sine);
         }
     }
 
@@ -56,10 +54,7 @@ pub struct Transform(Arc<dyn Fft<f64>>);
 
 impl std::fmt::Debug for Transform {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter
-            .debug_tuple("Transform")
-            .field(&self.samples())
-            .finish()
+        formatter.debug_tuple("Transform").field(&self.samples()).finish()
     }
 }
 
@@ -80,19 +75,15 @@ impl Transform {
             values.iter().map(|value| Complex::from(*value)).collect();
         self.0.process(&mut parts);
         let factor = 2.0 / values.len() as f64;
-        let (cosines, sines) = parts
-            .iter()
-            .take(count + 1)
-            .map(|part| (factor * part.re, -factor * part.im))
-            .unzip();
+        let (cosines, sines) =
+            parts.iter().take(count + 1).map(|part| (factor * part.re, -factor * part.im)).unzip();
         Harmonics { cosines, sines }
     }
 
     /// The sum of waves, `(cosine, sine)` of the harmonics from 0 on, at the samples.
     pub fn sum_of_waves(&self, waves: impl Iterator<Item = [f64; 2]>) -> Vec<f64> {
-        let mut parts: Vec<Complex<f64>> = waves
-            .map(|[cosine, sine]| Complex::new(cosine, sine))
-            .collect();
+        let mut parts: Vec<Complex<f64>> =
+            waves.map(|[cosine, sine]| Complex::new(cosine, sine)).collect();
         parts.resize(self.samples(), Complex::from(0.0));
         self.0.process(&mut parts);
         parts.iter().map(|part| part.re).collect()
@@ -108,9 +99,8 @@ mod tests {
     fn harmonics_are_the_sums_that_define_them() {
         let transform = Transform::new(64);
         let phase = |sample: usize| std::f64::consts::TAU * sample as f64 / 64.0;
-        let values: Vec<f64> = (0..64)
-            .map(|sample| (2.0 * phase(sample).cos()).exp().sin())
-            .collect();
+        let values: Vec<f64> =
+            (0..64).map(|sample| (2.0 * phase(sample).cos()).exp().sin()).collect();
         let found = transform.harmonics(&values, 20);
         for (harmonic, (cosine, sine)) in found.cosines.iter().zip(&found.sines).enumerate() {
             let sum = |wave: fn(f64) -> f64| -> f64 {

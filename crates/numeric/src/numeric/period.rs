@@ -67,11 +67,9 @@ fn period_of_rates(rates: &Rates) -> Result<f64, PeriodError> {
             Ok((value, error)) => (half, estimate) = (half + value, estimate + error),
             // The force itself is rounded where it is a small difference, as x^2 - 4 near x = 2: no
             // panel gets below that.
-            Err(QuadratureError::NotConverged {
-                value,
-                error_estimate,
-                ..
-            }) => (half, estimate) = (half + value, estimate + error_estimate),
+            Err(QuadratureError::NotConverged { value, error_estimate, .. }) => {
+                (half, estimate) = (half + value, estimate + error_estimate)
+            }
             Err(error) => return Err(failure.unwrap_or(error).into()),
         }
     }
@@ -113,10 +111,7 @@ impl Swing {
     /// Position and velocity at a time from zero to the period.
     pub fn at(&self, t: f64) -> Option<(f64, f64)> {
         let (x, v) = self.path.at((t / self.time).min(self.path.end().t))?;
-        Some((
-            self.equilibrium + self.length * x,
-            self.length / self.time * v,
-        ))
+        Some((self.equilibrium + self.length * x, self.length / self.time * v))
     }
 
     /// The turning point at the end.
@@ -183,27 +178,15 @@ pub fn swing_with_cuts(
     let scaled = |t: f64, x: f64, v: f64| {
         time * (time / length * acceleration(time * t, equilibrium + length * x, length / time * v))
     };
-    let state = State {
-        t: 0.0,
-        x: (start - equilibrium) / length,
-        v: 0.0,
-    };
+    let state = State { t: 0.0, x: (start - equilibrium) / length, v: 0.0 };
     let turning = Event::stop(|_, _, v| v);
-    let turning = if start > equilibrium {
-        turning.falling()
-    } else {
-        turning.rising()
-    };
+    let turning = if start > equilibrium { turning.falling() } else { turning.rising() };
     let at_cut = |cut: f64| {
         let cut = (cut - equilibrium) / length;
-        Event::switch(
-            move |_, x, _| x - cut,
-            move |state: State| (0, State { x: cut, ..state }),
-        )
+        Event::switch(move |_, x, _| x - cut, move |state: State| (0, State { x: cut, ..state }))
     };
-    let events: Vec<Event> = std::iter::once(turning)
-        .chain(cuts.iter().map(|&cut| at_cut(cut)))
-        .collect();
+    let events: Vec<Event> =
+        std::iter::once(turning).chain(cuts.iter().map(|&cut| at_cut(cut))).collect();
     let path = integrate(
         scaled,
         state,
@@ -211,12 +194,7 @@ pub fn swing_with_cuts(
         &events,
         &Options::with_tolerance(STEP_TOLERANCE),
     )?;
-    let swing = Swing {
-        path,
-        equilibrium,
-        length,
-        time,
-    };
+    let swing = Swing { path, equilibrium, length, time };
     match swing.path.stop_reason() {
         StopReason::Event { .. } => Ok(swing),
         StopReason::NonFinite { .. } | StopReason::StepTooSmall { .. } => {
@@ -241,23 +219,14 @@ fn ending(
     let length = (start - equilibrium).abs();
     let [moving, still] = [state.v, 0.0].map(|speed| acceleration(state.t, state.x, speed).abs());
     if (state.x - equilibrium).abs() > FAR * length {
-        return PeriodError::Escapes {
-            start,
-            searched: state.x,
-            range: None,
-        };
+        return PeriodError::Escapes { start, searched: state.x, range: None };
     }
     if still.is_finite() && (!moving.is_finite() || moving > DRIVEN * still) {
         let six_digits = format!("{:.5e}", state.t);
-        return PeriodError::RunsAway {
-            start,
-            time: six_digits.parse().unwrap_or(state.t),
-        };
+        return PeriodError::RunsAway { start, time: six_digits.parse().unwrap_or(state.t) };
     }
     let at_rest = (state.x - equilibrium).abs() < 1e-9 * length;
-    PeriodError::Pole {
-        place: if at_rest { equilibrium } else { state.x },
-    }
+    PeriodError::Pole { place: if at_rest { equilibrium } else { state.x } }
 }
 
 #[cfg(test)]
@@ -279,18 +248,12 @@ mod tests {
             // By the complementary parameter 1 - m = cos^2(A/2): near the separatrix m itself has
             // lost its digits.
             let exact = 4.0 * spec_math::cephes64::ellpk((0.5 * amplitude).cos().powi(2));
-            assert!(
-                (period / exact - 1.0).abs() < 1e-13,
-                "A = {amplitude}: {period} {exact}"
-            );
+            assert!((period / exact - 1.0).abs() < 1e-13, "A = {amplitude}: {period} {exact}");
         }
         for s in [-0.9, 0.1, 1.0, 10.0, 1000.0] {
             let period = period_of(&|x: f64| x + s * x * x * x, 0.0, 1.0).unwrap();
             let exact = 4.0 * ellip::ellipk(s / (2.0 * (1.0 + s))).unwrap() / f64::sqrt(1.0 + s);
-            assert!(
-                (period / exact - 1.0).abs() < 1e-13,
-                "s = {s}: {period} {exact}"
-            );
+            assert!((period / exact - 1.0).abs() < 1e-13, "s = {s}: {period} {exact}");
         }
     }
 
@@ -321,10 +284,7 @@ mod tests {
     #[test]
     fn what_does_not_swing_is_refused() {
         let cubic = |x: f64| x - x * x * x / 6.0;
-        assert!(matches!(
-            period_of(&cubic, 0.0, 2.5),
-            Err(PeriodError::PushedAway { .. })
-        ));
+        assert!(matches!(period_of(&cubic, 0.0, 2.5), Err(PeriodError::PushedAway { .. })));
         assert!(matches!(
             period_of(&|x: f64| x + x * x, 0.0, 0.75),
             Err(PeriodError::Escapes { .. })

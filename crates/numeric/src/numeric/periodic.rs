@@ -56,9 +56,7 @@ impl PeriodicMotion {
 
     /// Whether neighbouring motions come closer.
     pub fn attracts(&self) -> bool {
-        self.multipliers
-            .iter()
-            .all(|value| value.0.hypot(value.1) < 1.0)
+        self.multipliers.iter().all(|value| value.0.hypot(value.1) < 1.0)
     }
 
     /// The amplitude of a harmonic of the period, `sqrt(c^2 + s^2)` of its cosine and sine.
@@ -70,9 +68,7 @@ impl PeriodicMotion {
             let angle = TAU * f64::from(number) * part;
             (x * angle.cos(), x * angle.sin())
         };
-        let sum = (0..SAMPLES)
-            .map(sample)
-            .fold((0.0, 0.0), |sum, (c, s)| (sum.0 + c, sum.1 + s));
+        let sum = (0..SAMPLES).map(sample).fold((0.0, 0.0), |sum, (c, s)| (sum.0 + c, sum.1 + s));
         2.0 * sum.0.hypot(sum.1) / SAMPLES as f64
     }
 }

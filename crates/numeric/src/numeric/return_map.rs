@@ -182,9 +182,7 @@ pub fn nearest_limit_cycle(
         return Err(NoLimitCycle::TooStiff);
     }
     if escapes {
-        return Err(NoLimitCycle::Escapes {
-            from: equation.equilibrium + equation.amplitude,
-        });
+        return Err(NoLimitCycle::Escapes { from: equation.equilibrium + equation.amplitude });
     }
     Err(NoLimitCycle::NoneBetween {
         from: equation.equilibrium + equation.amplitude * RATIO.powi(-RINGS),
@@ -234,10 +232,8 @@ fn by_rings(equation: &Equation, directions: &[bool]) -> Option<LimitCycle> {
     };
     // The growth at the inner and at the outer end of what was looked at, for each direction of
     // time.
-    let mut ends: Vec<[f64; 2]> = directions
-        .iter()
-        .map(|&attracts| [growth(attracts, 1.0); 2])
-        .collect();
+    let mut ends: Vec<[f64; 2]> =
+        directions.iter().map(|&attracts| [growth(attracts, 1.0); 2]).collect();
     let mut lost = vec![[0; 2]; directions.len()];
     for ring in 1..=RINGS {
         for ((&attracts, ends), lost) in directions.iter().zip(&mut ends).zip(&mut lost) {
@@ -251,11 +247,7 @@ fn by_rings(equation: &Equation, directions: &[bool]) -> Option<LimitCycle> {
                 let (before, after) = (ends[side], growth(attracts, place));
                 ends[side] = after;
                 lost[side] = if after.is_nan() { lost[side] + 1 } else { 0 };
-                let (inner, outer) = if side == 0 {
-                    (after, before)
-                } else {
-                    (before, after)
-                };
+                let (inner, outer) = if side == 0 { (after, before) } else { (before, after) };
                 if !(inner > 0.0 && outer <= 0.0) {
                     continue;
                 }
@@ -296,10 +288,7 @@ fn swing(
     start: f64,
     maximum_steps: usize,
 ) -> Result<Trajectory, NoReturn> {
-    let options = Options {
-        maximum_steps,
-        ..Options::with_tolerance(STEP_TOLERANCE)
-    };
+    let options = Options { maximum_steps, ..Options::with_tolerance(STEP_TOLERANCE) };
     follow(equation, forward, start, LONGEST, &options)
 }
 
@@ -323,21 +312,12 @@ fn follow(
     longest: f64,
     options: &Options,
 ) -> Result<Trajectory, NoReturn> {
-    let Equation {
-        acceleration,
-        equilibrium,
-        amplitude,
-        frequency,
-    } = equation;
+    let Equation { acceleration, equilibrium, amplitude, frequency } = equation;
     let speed = amplitude * frequency * if forward { 1.0 } else { -1.0 };
     let unit = amplitude * frequency * frequency;
     let scaled =
         |_: f64, x: f64, v: f64| acceleration(equilibrium + amplitude * x, speed * v) / unit;
-    let state = State {
-        t: 0.0,
-        x: start,
-        v: 0.0,
-    };
+    let state = State { t: 0.0, x: start, v: 0.0 };
     let turning = Event::stop(|_, _, v| v).falling();
     let path =
         integrate(scaled, state, longest, &[turning], options).map_err(|_| NoReturn::Away)?;
@@ -368,12 +348,8 @@ mod tests {
 
     /// The cycle of x'' = acceleration about zero, found from a guess.
     fn found(acceleration: &dyn Fn(f64, f64) -> f64, guess: f64) -> LimitCycle {
-        let equation = Equation {
-            acceleration,
-            equilibrium: 0.0,
-            amplitude: guess,
-            frequency: 1.0,
-        };
+        let equation =
+            Equation { acceleration, equilibrium: 0.0, amplitude: guess, frequency: 1.0 };
         nearest_limit_cycle(&equation, None).expect("a limit cycle")
     }
 
@@ -406,9 +382,7 @@ mod tests {
             let step = |coefficients: &[f64], k: usize| {
                 (tolerance / coefficients[k].abs()).powf(1.0 / k as f64)
             };
-            let h = [ORDER - 1, ORDER]
-                .into_iter()
-                .flat_map(|k| [step(&x, k), step(&v, k)]);
+            let h = [ORDER - 1, ORDER].into_iter().flat_map(|k| [step(&x, k), step(&v, k)]);
             let h = 0.5 * h.fold(1.0, f64::min);
             let next = (at(&x, h), at(&v, h));
             if state.0 < 0.0 && next.0 >= 0.0 {
@@ -424,14 +398,8 @@ mod tests {
         for mu in [0.5, 1.0, 3.0, 10.0, 20.0] {
             let [coarse, fine] = [1e-12, 1e-16].map(|tolerance| period_by_taylor(mu, tolerance));
             let period = van_der_pol(mu).period();
-            assert!(
-                (coarse / fine - 1.0).abs() < 1e-10,
-                "mu = {mu}: {coarse} {fine}"
-            );
-            assert!(
-                (period / fine - 1.0).abs() < 1e-10,
-                "mu = {mu}: {period} {fine}"
-            );
+            assert!((coarse / fine - 1.0).abs() < 1e-10, "mu = {mu}: {coarse} {fine}");
+            assert!((period / fine - 1.0).abs() < 1e-10, "mu = {mu}: {period} {fine}");
         }
     }
 
@@ -470,19 +438,12 @@ mod tests {
             assert_eq!(cycle.attracts(), mu > 0.0);
             // Turning points: 2 + alpha mu^(-4/3)/3 + ...
             let turning = 2.0 + 2.338_107 * next / 3.0;
-            assert!(
-                (cycle.at(0.0).0 - turning).abs() < next,
-                "{}",
-                cycle.at(0.0).0
-            );
+            assert!((cycle.at(0.0).0 - turning).abs() < next, "{}", cycle.at(0.0).0);
             // Half a period later the mirror image.
             for k in 0..50 {
                 let t = period * f64::from(k) / 50.0;
                 let (there, opposite) = (cycle.at(t).0, cycle.at(t + 0.5 * period).0);
-                assert!(
-                    (there + opposite).abs() < 1e-5,
-                    "{mu} {t}: {there} {opposite}"
-                );
+                assert!((there + opposite).abs() < 1e-5, "{mu} {t}: {there} {opposite}");
             }
         }
     }
@@ -609,18 +570,11 @@ mod tests {
     fn where_there_is_none_the_search_ends() {
         let damped = |x: f64, v: f64| -0.1 * v - x;
         let search = |acceleration: &dyn Fn(f64, f64) -> f64| {
-            let equation = Equation {
-                acceleration,
-                equilibrium: 0.0,
-                amplitude: 2.0,
-                frequency: 1.0,
-            };
+            let equation =
+                Equation { acceleration, equilibrium: 0.0, amplitude: 2.0, frequency: 1.0 };
             nearest_limit_cycle(&equation, None).err()
         };
-        assert!(matches!(
-            search(&damped),
-            Some(NoLimitCycle::NoneBetween { .. })
-        ));
+        assert!(matches!(search(&damped), Some(NoLimitCycle::NoneBetween { .. })));
         // Beyond its separatrix at 0.45 a soft spring throws the motion out, damped or not: x' = 50
         // x far away.
         for (mu, cubic) in [(0.1, -5.0), (0.1, -0.3), (1.0, -20.0), (1e-3, -1.0)] {

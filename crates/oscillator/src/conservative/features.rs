@@ -113,9 +113,7 @@ impl Features {
 
     /// Whether some part of it goes up and down again and again, as a sine does.
     pub fn waves(&self) -> bool {
-        self.parts
-            .iter()
-            .any(|part| part.kind == Kind::Scale { waves: true })
+        self.parts.iter().any(|part| part.kind == Kind::Scale { waves: true })
     }
 
     /// The places between `from` and `to`, and a little beyond, in order.
@@ -130,9 +128,8 @@ impl Features {
         let mut found: Vec<Feature> = Vec::new();
         let mut points = GRID;
         for part in &self.parts {
-            let mut grid: Vec<f64> = (0..=points)
-                .map(|k| low + (high - low) * k as f64 / points as f64)
-                .collect();
+            let mut grid: Vec<f64> =
+                (0..=points).map(|k| low + (high - low) * k as f64 / points as f64).collect();
             grid.extend(graded(&found, low, high));
             grid.sort_by(f64::total_cmp);
             let features = part.features(&grid);
@@ -173,11 +170,7 @@ fn graded(features: &[Feature], low: f64, high: f64) -> Vec<f64> {
     for feature in features {
         // Beside a singular place the force is as narrow as that is far.
         let outside = f64::max(low - feature.place, feature.place - high).max(0.0);
-        let width = if feature.singular {
-            0.5 * outside
-        } else {
-            feature.width
-        };
+        let width = if feature.singular { 0.5 * outside } else { feature.width };
         // What is as wide as the interval is no feature of it.
         if width > length / 16.0 {
             continue;
@@ -274,11 +267,7 @@ fn variation(argument: &CompiledFunction, grid: &[f64]) -> f64 {
 
 impl Part {
     fn features(&self, grid: &[f64]) -> Vec<Feature> {
-        let levels: &[f64] = if self.kind == Kind::Inverse {
-            &[-1.0, 1.0]
-        } else {
-            &[0.0]
-        };
+        let levels: &[f64] = if self.kind == Kind::Inverse { &[-1.0, 1.0] } else { &[0.0] };
         let (low, high) = (grid[0], grid[grid.len() - 1]);
         let mut places = match &self.polynomial {
             Some(coefficients) => {
@@ -299,17 +288,9 @@ impl Part {
         }
         let feature = |place: f64| {
             let width = self.width(place);
-            Feature {
-                place,
-                width,
-                singular: width == 0.0 && self.kind != Kind::Corner,
-            }
+            Feature { place, width, singular: width == 0.0 && self.kind != Kind::Corner }
         };
-        places
-            .into_iter()
-            .map(feature)
-            .filter(|feature| !feature.width.is_nan())
-            .collect()
+        places.into_iter().map(feature).filter(|feature| !feature.width.is_nan()).collect()
     }
 
     fn width(&self, place: f64) -> f64 {
@@ -358,12 +339,7 @@ fn zeros(function: &dyn Fn(f64) -> f64, grid: &[f64]) -> Vec<f64> {
 }
 
 fn derivative(coefficients: &[f64]) -> Vec<f64> {
-    coefficients
-        .iter()
-        .enumerate()
-        .skip(1)
-        .map(|(k, c)| k as f64 * c)
-        .collect()
+    coefficients.iter().enumerate().skip(1).map(|(k, c)| k as f64 * c).collect()
 }
 
 #[cfg(test)]
@@ -372,11 +348,7 @@ mod tests {
     use crate::expr::parse_expression;
 
     fn features(text: &str) -> Features {
-        Features::new(
-            &parse_expression(text).unwrap(),
-            "x".into(),
-            &BTreeMap::new(),
-        )
+        Features::new(&parse_expression(text).unwrap(), "x".into(), &BTreeMap::new())
     }
 
     fn has(found: &[Feature], place: f64, width: f64) -> bool {
@@ -398,22 +370,10 @@ mod tests {
             ("x + (1 - x^2)^10000", 0.0, 1e-2),
             ("x + asin(sin(x))", 0.5 * std::f64::consts::PI, 0.0),
             // Two levels deep: the bump is where the sine is 0.6, and only there.
-            (
-                "x + exp(-1e12*(sin(x) - 0.6)^2)",
-                0.6_f64.asin(),
-                1e-6 / 0.8,
-            ),
+            ("x + exp(-1e12*(sin(x) - 0.6)^2)", 0.6_f64.asin(), 1e-6 / 0.8),
             ("x + abs(sin(500*x))", std::f64::consts::PI / 5.0, 0.0),
-            (
-                "x + H(exp(-1e6*(x - 0.2)^2) - 1/2)",
-                0.2 + 2.0_f64.ln().sqrt() * 1e-3,
-                0.0,
-            ),
-            (
-                "x + abs((x - 0.1)*(x - 0.1000001)*(x + 3))",
-                0.100_000_1,
-                0.0,
-            ),
+            ("x + H(exp(-1e6*(x - 0.2)^2) - 1/2)", 0.2 + 2.0_f64.ln().sqrt() * 1e-3, 0.0),
+            ("x + abs((x - 0.1)*(x - 0.1000001)*(x + 3))", 0.100_000_1, 0.0),
         ];
         for (text, place, width) in cases {
             let found = features(text).between(-2.0, 2.0);
@@ -423,14 +383,7 @@ mod tests {
 
     #[test]
     fn what_is_smooth_is_not_cut() {
-        for text in [
-            "x + x^3",
-            "sin(x)",
-            "x/(1 + x^2)",
-            "exp(x) - 1",
-            "x*exp(-x^2)",
-            "x^7 - x",
-        ] {
+        for text in ["x + x^3", "sin(x)", "x/(1 + x^2)", "exp(x) - 1", "x*exp(-x^2)", "x^7 - x"] {
             assert_eq!(features(text).cuts(-1.0, 1.0), Vec::<f64>::new(), "{text}");
         }
         let cuts = features("x - 1e5*(x + 1)*exp(-1e4*(x + 1)^2)").cuts(-1.5, 2.0);
@@ -454,10 +407,9 @@ mod tests {
 
     #[test]
     fn of_two_features_in_one_place_the_narrower_counts() {
-        for text in [
-            "abs(x - 1) + exp(-10000*(x - 1)^2)",
-            "exp(-10000*(x - 1)^2) - exp(-1e8*(x - 1)^2)",
-        ] {
+        for text in
+            ["abs(x - 1) + exp(-10000*(x - 1)^2)", "exp(-10000*(x - 1)^2) - exp(-1e8*(x - 1)^2)"]
+        {
             let found = features(text).between(-2.0, 3.0);
             assert_eq!(found.len(), 1, "{found:?}");
             assert!(found[0].width < 2e-4, "{text}: {found:?}");

@@ -66,12 +66,7 @@ impl NearRest {
     /// The force at the distance `y` from the equilibrium; `None` farther out than the polynomial
     /// reaches.
     pub fn value(&self, y: f64) -> Option<f64> {
-        let sum = || {
-            self.coefficients
-                .iter()
-                .rev()
-                .fold(0.0, |sum, c| sum * y + c)
-        };
+        let sum = || self.coefficients.iter().rev().fold(0.0, |sum, c| sum * y + c);
         (y.abs() <= self.radius).then(sum)
     }
 
@@ -92,9 +87,8 @@ impl Force {
         numbers: &BTreeMap<Symbol, f64>,
         amplitude: f64,
     ) -> Option<Self> {
-        let names: Vec<Symbol> = std::iter::once(coordinate)
-            .chain(numbers.keys().copied())
-            .collect();
+        let names: Vec<Symbol> =
+            std::iter::once(coordinate).chain(numbers.keys().copied()).collect();
         let place = equilibrium.evaluate(numbers).ok()?;
         let slope = force.differentiate(coordinate).ok();
         let of = AtNumbers {
@@ -102,9 +96,7 @@ impl Force {
             slope: slope.and_then(|slope| CompiledFunction::new(&slope, &names).ok()),
             // One row of arguments for all calls: only its first entry, the position, changes.
             arguments: RefCell::new(
-                std::iter::once(0.0)
-                    .chain(numbers.values().copied())
-                    .collect(),
+                std::iter::once(0.0).chain(numbers.values().copied()).collect(),
             ),
             coefficients: OnceCell::new(),
             equilibrium: (equilibrium.clone(), place),
@@ -125,11 +117,7 @@ impl Force {
     }
 
     fn of_amplitude(of: Rc<AtNumbers>, amplitude: f64) -> Self {
-        let mut found = Self {
-            of,
-            near: None,
-            evaluations: Cell::new(0),
-        };
+        let mut found = Self { of, near: None, evaluations: Cell::new(0) };
         found.near = found.near_rest(amplitude);
         found
     }
@@ -158,10 +146,7 @@ impl Force {
 
     /// Its derivative there, jumps left out; NaN where it has none.
     pub fn slope(&self, y: f64) -> f64 {
-        match (
-            self.near.as_ref().and_then(|near| near.slope(y)),
-            &self.of.slope,
-        ) {
+        match (self.near.as_ref().and_then(|near| near.slope(y)), &self.of.slope) {
             (Some(slope), _) => slope,
             (None, Some(slope)) => self.call(slope, y),
             (None, None) => f64::NAN,
@@ -190,11 +175,11 @@ impl Force {
         for pair in ends.windows(2) {
             let piece = match integrate_smooth(|y| self.at(y), pair[0], pair[1], TOLERANCE) {
                 Ok(piece) => piece,
-                Err(QuadratureError::NotConverged {
-                    value,
-                    error_estimate,
-                    ..
-                }) if error_estimate < 1e-9 * value.abs() => (value, error_estimate),
+                Err(QuadratureError::NotConverged { value, error_estimate, .. })
+                    if error_estimate < 1e-9 * value.abs() =>
+                {
+                    (value, error_estimate)
+                }
                 Err(_) => return None,
             };
             sum += piece.0;
@@ -253,21 +238,13 @@ impl Force {
         if !cancels && at_rest.is_some() {
             return None;
         }
-        let coefficients = self
-            .of
-            .coefficients
-            .get_or_init(|| self.of.expanded())
-            .as_ref()?;
+        let coefficients = self.of.coefficients.get_or_init(|| self.of.expanded()).as_ref()?;
         let size = |k: usize, radius: f64| {
-            coefficients
-                .get(k)
-                .map_or(0.0, |c| c.abs() * radius.powi(k as i32))
+            coefficients.get(k).map_or(0.0, |c| c.abs() * radius.powi(k as i32))
         };
         let first = coefficients.iter().position(|c| *c != 0.0)?;
         let good = |radius: f64| {
-            let leading = (first..first + 3)
-                .map(|k| size(k, radius))
-                .fold(0.0, f64::max);
+            let leading = (first..first + 3).map(|k| size(k, radius)).fold(0.0, f64::max);
             let last = coefficients.len() - 1;
             leading.is_finite() && (last - 2..=last).all(|k| size(k, radius) <= 1e-17 * leading)
         };
@@ -283,27 +260,20 @@ impl Force {
         };
         let mut radii = radii(FARTHEST * amplitude.abs(), 0.5).take(240);
         let radius = radii.find(|&radius| good(radius) && clear(radius))?;
-        Some(NearRest {
-            coefficients: coefficients.clone(),
-            radius,
-        })
+        Some(NearRest { coefficients: coefficients.clone(), radius })
     }
 
     /// Whether no corner lies as close to the equilibrium as this (one at rest itself apart), and
     /// within four times the distance nothing that turns within less than that: of what happens
     /// there, as of a bump beyond its tail, the Taylor coefficients at rest may know nothing.
     fn is_clear(&self, radius: f64, at_rest: f64) -> bool {
-        let narrow = self.of.features().between(
-            self.equilibrium() - 4.0 * radius,
-            self.equilibrium() + 4.0 * radius,
-        );
+        let narrow = self
+            .of
+            .features()
+            .between(self.equilibrium() - 4.0 * radius, self.equilibrium() + 4.0 * radius);
         narrow.into_iter().all(|feature| {
             let distance = (feature.place - self.equilibrium()).abs();
-            let reach = if feature.width == 0.0 {
-                radius
-            } else {
-                4.0 * radius
-            };
+            let reach = if feature.width == 0.0 { radius } else { 4.0 * radius };
             let rounding = f64::max(at_rest, 4.0 * f64::EPSILON * self.equilibrium().abs());
             distance <= rounding || distance > reach || feature.width >= 4.0 * radius
         })
@@ -318,9 +288,7 @@ impl Force {
         let size = from.abs().max(to.abs());
         let defined = |y: f64| {
             self.at(y).is_finite()
-                || [-1e-9, 1e-9]
-                    .iter()
-                    .all(|d| self.at(y + d * size).is_finite())
+                || [-1e-9, 1e-9].iter().all(|d| self.at(y + d * size).is_finite())
         };
         let sample = |k: usize| {
             let half = 0.5 - 0.5 * (std::f64::consts::PI * (k as f64 + 0.5) / SAMPLES as f64).cos();
@@ -333,21 +301,14 @@ impl Force {
         if let Some(outside) = samples.iter().copied().find(|&y| !defined(y)) {
             let inside = samples.iter().copied().filter(|&y| defined(y));
             let nearest = inside.min_by(|a, b| (a - outside).abs().total_cmp(&(b - outside).abs()));
-            let [_, outside] = bisect(
-                defined,
-                nearest.unwrap_or(outside),
-                outside,
-                Until::Halvings(60),
-            );
+            let [_, outside] =
+                bisect(defined, nearest.unwrap_or(outside), outside, Until::Halvings(60));
             return Some(self.equilibrium() + outside);
         }
         if self.of.features().is_empty() {
             return None;
         }
-        let places = self
-            .of
-            .features()
-            .between(self.equilibrium() + from, self.equilibrium() + to);
+        let places = self.of.features().between(self.equilibrium() + from, self.equilibrium() + to);
         places
             .into_iter()
             .map(|feature| feature.place)
@@ -403,9 +364,7 @@ impl Force {
         let pair =
             near.filter_map(|distance| Some((strength(distance)?, strength(100.0 * distance)?)));
         let mut pairs = pair.take(1);
-        pairs
-            .next()
-            .is_some_and(|(close, far)| close > far * 100.0_f64.powf(FASTER_THAN))
+        pairs.next().is_some_and(|(close, far)| close > far * 100.0_f64.powf(FASTER_THAN))
     }
 }
 
@@ -414,13 +373,12 @@ impl AtNumbers {
         self.features.get_or_init(|| {
             // The poles of the tangent are the zeros of the cosine.
             let quotients =
-                self.force
-                    .fold(|expr, children: &[Expr]| match (expr.node(), children) {
-                        (Node::Function(Function::Tan, _), [argument]) => {
-                            Expr::divide(&argument.sin()?, &argument.cos()?)
-                        }
-                        _ => expr.with_children(children),
-                    });
+                self.force.fold(|expr, children: &[Expr]| match (expr.node(), children) {
+                    (Node::Function(Function::Tan, _), [argument]) => {
+                        Expr::divide(&argument.sin()?, &argument.cos()?)
+                    }
+                    _ => expr.with_children(children),
+                });
             let force = quotients.as_ref().unwrap_or(&self.force);
             Features::new(force, self.coordinate, &self.numbers)
         })
@@ -434,10 +392,8 @@ impl AtNumbers {
         at_one.insert(self.coordinate, 1.0);
         let up_to = |degree: u32| -> Option<Vec<f64>> {
             let parts = taylor(&about, &[(self.coordinate, Rational::zero())], degree).ok()?;
-            let mut coefficients: Vec<f64> = parts
-                .iter()
-                .map(|part| part.evaluate(&at_one).ok())
-                .collect::<Option<_>>()?;
+            let mut coefficients: Vec<f64> =
+                parts.iter().map(|part| part.evaluate(&at_one).ok()).collect::<Option<_>>()?;
             // At the equilibrium the force is zero, whatever rounding says.
             *coefficients.first_mut()? = 0.0;
             Some(coefficients)
@@ -468,14 +424,7 @@ mod tests {
 
     fn force(text: &str, equilibrium: &str, amplitude: f64) -> Force {
         let [force, equilibrium]: [Expr; 2] = [text, equilibrium].map(|text| text.parse().unwrap());
-        Force::new(
-            &force,
-            "x".into(),
-            &equilibrium,
-            &BTreeMap::new(),
-            amplitude,
-        )
-        .unwrap()
+        Force::new(&force, "x".into(), &equilibrium, &BTreeMap::new(), amplitude).unwrap()
     }
 
     #[test]
@@ -483,13 +432,9 @@ mod tests {
         type Truth = fn(f64) -> f64;
         let cases: [(&str, &str, Truth); 4] = [
             ("exp(x) - 1", "0", |y| y.exp_m1()),
-            ("exp(-x) - exp(-2*x)", "0", |y| {
-                (-2.0 * y).exp() * y.exp_m1()
-            }),
+            ("exp(-x) - exp(-2*x)", "0", |y| (-2.0 * y).exp() * y.exp_m1()),
             ("x^2 - 2", "sqrt(2)", |y| y * (y + 8.0_f64.sqrt())),
-            ("1/(1 - x)^2 - 4", "1/2", |y| {
-                4.0 * (4.0 * y - 4.0 * y * y) / (1.0 - 2.0 * y).powi(2)
-            }),
+            ("1/(1 - x)^2 - 4", "1/2", |y| 4.0 * (4.0 * y - 4.0 * y * y) / (1.0 - 2.0 * y).powi(2)),
         ];
         for (text, equilibrium, truth) in cases {
             for power in 1..20 {
@@ -516,12 +461,7 @@ mod tests {
             let found = force("(1 - cos(x))/x", "0", amplitude);
             assert_eq!(found.at(0.0), 0.0);
             assert!((found.slope(0.0) - 0.5).abs() < 1e-15);
-            for y in [
-                amplitude,
-                -0.37 * amplitude,
-                1e-3 * amplitude,
-                1e-7 * amplitude,
-            ] {
+            for y in [amplitude, -0.37 * amplitude, 1e-3 * amplitude, 1e-7 * amplitude] {
                 let error = (found.at(y) - cosine(y)).abs() / cosine(amplitude);
                 assert!(error < 1e-13, "{y}: {error:e}");
             }
@@ -542,18 +482,12 @@ mod tests {
         assert!(near(gap("x/(1 - x)^2", -2.0, 2.0), 1.0));
         assert!(near(gap("x/(1 - 2*x + x^2)", -2.0, 2.0), 1.0));
         assert!(near(gap("x - 1/4/(1 - x)^2", -2.0, 2.0), 1.0));
-        assert!(near(
-            gap("tan(x)", -1.6, 1.6).map(f64::abs),
-            std::f64::consts::FRAC_PI_2
-        ));
+        assert!(near(gap("tan(x)", -1.6, 1.6).map(f64::abs), std::f64::consts::FRAC_PI_2));
         assert!(near(gap("x + log(1 + x)", -1.5, 1.5), -1.0));
         assert!(near(gap("x/sqrt(1 - x^2)", -1.5, 1.5).map(f64::abs), 1.0));
         assert!(near(gap("asin(x)", -1.5, 1.5).map(f64::abs), 1.0));
         // Seen from another equilibrium the place is still a place, not a distance.
-        assert!(near(
-            force("(x - 2)/(5 - x)^2", "2", 1.0).gap(-4.0, 4.0),
-            5.0
-        ));
+        assert!(near(force("(x - 2)/(5 - x)^2", "2", 1.0).gap(-4.0, 4.0), 5.0));
         assert!(near(force("log(x/2)", "2", 1.0).gap(-3.0, 3.0), 0.0));
         assert_eq!(force("(x - 2)/(5 - x)^2", "2", 1.0).gap(-2.9, 2.9), None);
         for (text, reach) in [

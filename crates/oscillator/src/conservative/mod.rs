@@ -49,18 +49,13 @@ pub fn is_smooth(force: &Expr, coordinate: Symbol) -> bool {
     use crate::expr::Function::{Absolute, Maximum, Minimum, Sign, Step};
     use crate::expr::Node;
     let corners = [Absolute, Maximum, Minimum, Sign, Step];
-    if corners
-        .into_iter()
-        .any(|function| force.contains_function(function))
-    {
+    if corners.into_iter().any(|function| force.contains_function(function)) {
         return false;
     }
     let has_root = force.fold(|expr, children: &[bool]| {
         let root = match expr.node() {
             Node::Power(base, exponent) => {
-                exponent
-                    .as_number()
-                    .is_some_and(|number| !number.is_integer())
+                exponent.as_number().is_some_and(|number| !number.is_integer())
                     && linear_in(base, coordinate).is_some()
             }
             _ => false,
@@ -77,9 +72,7 @@ pub(crate) fn linear_in(argument: &Expr, coordinate: Symbol) -> Option<(Expr, Ex
     if slope.is_zero() || slope.contains(coordinate) {
         return None;
     }
-    let constant = (argument - &(&slope * &Expr::from(coordinate)))
-        .expand()
-        .ok()?;
+    let constant = (argument - &(&slope * &Expr::from(coordinate))).expand().ok()?;
     (!constant.contains(coordinate)).then_some((slope, constant))
 }
 
@@ -161,9 +154,7 @@ fn steps_at_zeros(u: &Expr, coordinate: Symbol) -> Option<Expr> {
             return None;
         }
         let root = Expr::number(power.exponent.recip());
-        let ratio = (-&Expr::divide(&constant, coefficient).ok()?)
-            .expand()
-            .ok()?;
+        let ratio = (-&Expr::divide(&constant, coefficient).ok()?).expand().ok()?;
         if power.odd {
             // Monotonic: of a negative number the root is that of its size.
             let (negative, size) = match ratio.has_leading_minus() {
@@ -252,10 +243,7 @@ pub(crate) fn take_powers(
     use crate::expr::{Function, Node};
     use num_integer::Integer as _;
     use num_traits::Zero;
-    let mut power = SignedPower {
-        exponent: Zero::zero(),
-        odd: false,
-    };
+    let mut power = SignedPower { exponent: Zero::zero(), odd: false };
     let mut rest = Vec::new();
     for factor in factors.drain(..) {
         let (base, exponent) = factor.base_and_exponent();
@@ -303,10 +291,8 @@ pub(crate) fn take_powers(
 /// The factors of a term that contain the coordinate, and the product of the others.
 pub(crate) fn split(term: &Expr, coordinate: Symbol) -> (Expr, Vec<Expr>) {
     let (number, factors) = term.factors();
-    let (inside, outside): (Vec<Expr>, Vec<Expr>) = factors
-        .iter()
-        .cloned()
-        .partition(|factor| factor.contains(coordinate));
+    let (inside, outside): (Vec<Expr>, Vec<Expr>) =
+        factors.iter().cloned().partition(|factor| factor.contains(coordinate));
     let outside = Expr::product(std::iter::once(Expr::number(number)).chain(outside));
     (outside, inside)
 }

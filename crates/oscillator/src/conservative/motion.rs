@@ -32,16 +32,11 @@ impl Force {
         let (value, cuts) = (|y| self.at(y), |from, to| self.cuts(from, to));
         let force = energy::Force::with_cuts(&value, &cuts);
         let no_value = |distance: f64| match self.overflow(distance) {
-            Some(term) => PeriodError::Overflow {
-                place: distance,
-                term,
-            },
+            Some(term) => PeriodError::Overflow { place: distance, term },
             None => PeriodError::Pole { place: distance },
         };
-        let pole = |end: f64| {
-            self.gap(start, end)
-                .map(|place| no_value(place - self.equilibrium()))
-        };
+        let pole =
+            |end: f64| self.gap(start, end).map(|place| no_value(place - self.equilibrium()));
         if self.overflow(start).is_some() {
             return Err(no_value(start).moved(self.equilibrium()));
         }
@@ -85,14 +80,10 @@ impl Force {
         if let Some(inner) = well.and_then(|well| well.inner) {
             let (place, position) = (inner.place, self.equilibrium() + start);
             return match start.abs() / inner.amplitude - 1.0 {
-                short if short.abs() <= ON => PeriodError::Separatrix {
-                    start: position,
-                    place,
-                },
-                short if short.abs() <= NEAR && lost => PeriodError::NearSeparatrix {
-                    start: position,
-                    place,
-                },
+                short if short.abs() <= ON => PeriodError::Separatrix { start: position, place },
+                short if short.abs() <= NEAR && lost => {
+                    PeriodError::NearSeparatrix { start: position, place }
+                }
                 short if short < 0.0 => PeriodError::OneWell {
                     start: position,
                     equilibrium: self.equilibrium(),
@@ -107,14 +98,12 @@ impl Force {
         let beyond = start / end.amplitude - 1.0;
         let (place, position) = (end.rim.place, self.equilibrium() + start);
         match beyond.abs() {
-            short if end.rim.separatrix && short <= ON => PeriodError::Separatrix {
-                start: position,
-                place,
-            },
-            short if end.rim.separatrix && short <= NEAR && lost => PeriodError::NearSeparatrix {
-                start: position,
-                place,
-            },
+            short if end.rim.separatrix && short <= ON => {
+                PeriodError::Separatrix { start: position, place }
+            }
+            short if end.rim.separatrix && short <= NEAR && lost => {
+                PeriodError::NearSeparatrix { start: position, place }
+            }
             _ if gone && beyond >= 0.0 => error.with_range(
                 well.in_words(AmplitudeConvention::Initial.symbol(), self.coordinate()),
             ),

@@ -73,13 +73,7 @@ fn in_steps(expr: &Expr, coordinate: Symbol) -> Result<Expr, ExprError> {
         }
     })?;
     let written_out = stepwise.expand()?;
-    Expr::sum(
-        written_out
-            .terms()
-            .iter()
-            .map(|term| merged(term, coordinate)),
-    )
-    .expand()
+    Expr::sum(written_out.terms().iter().map(|term| merged(term, coordinate))).expand()
 }
 
 /// `H(u)`, a `u` with steps of its own taken apart first:
@@ -132,11 +126,7 @@ fn oriented_step(argument: &Expr, coordinate: Symbol) -> Result<Expr, ExprError>
     };
     let scaled = Expr::divide(&argument, &Expr::number(unit.clone()))?.expand()?;
     let step = Expr::function(Function::Step, vec![scaled])?;
-    Ok(if unit.is_negative() {
-        Expr::one() - step
-    } else {
-        step
-    })
+    Ok(if unit.is_negative() { Expr::one() - step } else { step })
 }
 
 /// A product with its steps merged: powers are left out, and of steps at numbers only the last

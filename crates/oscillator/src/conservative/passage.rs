@@ -42,9 +42,8 @@ pub fn pushes_away(force: &Force, unit: f64) -> bool {
     let unit = unit.abs();
     let distances = (-DECADES..-2).map(|k| unit * 10.0_f64.powi(k));
     let felt = distances.map(|distance| [force.at(distance), -force.at(-distance)]);
-    let first = felt
-        .into_iter()
-        .find(|sides| sides.iter().all(|side| side.is_finite() && *side != 0.0));
+    let first =
+        felt.into_iter().find(|sides| sides.iter().all(|side| side.is_finite() && *side != 0.0));
     first.is_some_and(|sides| sides.iter().all(|side| *side < 0.0))
 }
 
@@ -65,23 +64,12 @@ pub fn passages(force: &Force, unit: f64) -> Vec<Passage> {
             break;
         }
         let rim = match place {
-            Some(place) => Some(Rim {
-                place,
-                separatrix: true,
-            }),
+            Some(place) => Some(Rim { place, separatrix: true }),
             None => side.end,
         };
-        let begin = if number == 0 {
-            0.0
-        } else {
-            side.places[number - 1]
-        };
+        let begin = if number == 0 { 0.0 } else { side.places[number - 1] };
         if let Some(from) = beginning(force, begin, rim.map(|rim| rim.place), height) {
-            found.push(Passage {
-                from,
-                over: top,
-                to: rim,
-            });
+            found.push(Passage { from, over: top, to: rim });
         }
         if let Some(distance) = place {
             match rise(force, distance) {
@@ -97,11 +85,8 @@ pub fn passages(force: &Force, unit: f64) -> Vec<Passage> {
 /// The range in which an amplitude lies, or the next one outwards, or the last.
 pub fn passage_at(passages: &[Passage], amplitude: f64) -> Option<&Passage> {
     let size = amplitude.abs();
-    let within = |passage: &&Passage| {
-        passage
-            .to
-            .is_none_or(|rim| size < rim.place || passage.from >= size)
-    };
+    let within =
+        |passage: &&Passage| passage.to.is_none_or(|rim| size < rim.place || passage.from >= size);
     passages.iter().find(within).or(passages.last())
 }
 
@@ -155,20 +140,12 @@ impl Side {
     fn new(force: &Force, unit: f64) -> Option<Self> {
         let equilibrium = force.equilibrium();
         let value = |distance: f64| force.at(distance);
-        let ends_at = |place: f64| Rim {
-            place,
-            separatrix: false,
-        };
+        let ends_at = |place: f64| Rim { place, separatrix: false };
         let first = unit * 10.0_f64.powi(-DECADES);
         let farthest = unit * 10.0_f64.powi(DECADES);
         // The last place at which the force has a value other than zero.
         let mut last: Option<(f64, f64)> = None;
-        let mut side = Self {
-            places: vec![],
-            pulls: vec![],
-            end: None,
-            is_whole: true,
-        };
+        let mut side = Self { places: vec![], pulls: vec![], end: None, is_whole: true };
         let (mut distance, mut window, mut strongest) = (first, first, 0.0_f64);
         let mut corners: Vec<f64> = Vec::new();
         while distance < farthest {
@@ -242,9 +219,7 @@ mod tests {
         let force = Force::new(&force, "x".into(), &Expr::zero(), &BTreeMap::new(), unit).unwrap();
         let found = passages(&force, unit).into_iter();
         let end = |rim: Rim| rim.place;
-        found
-            .map(|range| (range.from, range.over, range.to.map(end)))
-            .collect()
+        found.map(|range| (range.from, range.over, range.to.map(end))).collect()
     }
 
     #[test]
@@ -257,10 +232,7 @@ mod tests {
                     (Some(one), Some(other)) => close(one, other),
                     (one, other) => one == other,
                 };
-                assert!(
-                    close(a.0, b.0) && close(a.1, b.1) && ends,
-                    "{found:?} for {expected:?}"
-                );
+                assert!(close(a.0, b.0) && close(a.1, b.1) && ends, "{found:?} for {expected:?}");
             }
         };
         let pi = std::f64::consts::PI;
@@ -282,10 +254,7 @@ mod tests {
         }
         // V = -x^2 - log(1 - x^2) has a wall at 1, and is zero at x^2 = 0.7968...
         let walled = ranges("2*x/(1 - x^2) - 4*x", 1.0);
-        assert!(
-            walled.len() == 1 && (walled[0].2.unwrap() - 1.0).abs() < 1e-9,
-            "{walled:?}"
-        );
+        assert!(walled.len() == 1 && (walled[0].2.unwrap() - 1.0).abs() < 1e-9, "{walled:?}");
         let edge = walled[0].0.powi(2);
         assert!((-2.0 * edge - (1.0 - edge).ln()).abs() < 1e-7, "{walled:?}");
     }

@@ -50,21 +50,16 @@ fn by_substitution(term: &Expr, coordinate: Symbol) -> Option<Expr> {
     let (outside, inside) = split(term, coordinate);
     let integrand = Expr::product(inside);
     let square = Expr::from(coordinate).integer_power(2).ok()?;
-    let parts = integrand
-        .unique_nodes()
-        .filter_map(|node| match node.node() {
-            // A whole power of one is tried by its base.
-            Node::Sum(_) => Some(node.clone()),
-            Node::Function(function, _)
-                if !matches!(
-                    function,
-                    Function::Absolute | Function::Sign | Function::Step
-                ) =>
-            {
-                Some(node.clone())
-            }
-            _ => None,
-        });
+    let parts = integrand.unique_nodes().filter_map(|node| match node.node() {
+        // A whole power of one is tried by its base.
+        Node::Sum(_) => Some(node.clone()),
+        Node::Function(function, _)
+            if !matches!(function, Function::Absolute | Function::Sign | Function::Step) =>
+        {
+            Some(node.clone())
+        }
+        _ => None,
+    });
     let parts = parts.filter(|part| *part != integrand && part.contains(coordinate));
     let names: Vec<Symbol> = term.symbols().into_iter().collect();
     let variable = fresh("y", &names);
@@ -73,12 +68,8 @@ fn by_substitution(term: &Expr, coordinate: Symbol) -> Option<Expr> {
         if slope.is_zero() {
             return None;
         }
-        let by_part = in_terms_of(
-            &part,
-            variable,
-            &Expr::divide(&integrand, &slope).ok()?,
-            coordinate,
-        )?;
+        let by_part =
+            in_terms_of(&part, variable, &Expr::divide(&integrand, &slope).ok()?, coordinate)?;
         let terms = by_part.expand().ok()?;
         let terms = terms
             .terms()
@@ -87,10 +78,7 @@ fn by_substitution(term: &Expr, coordinate: Symbol) -> Option<Expr> {
         let value = Expr::sum(terms.collect::<Option<Vec<_>>>()?);
         value.substitute(variable, &part).ok()
     };
-    let found = std::iter::once(square)
-        .chain(parts)
-        .take(CANDIDATES)
-        .find_map(value)?;
+    let found = std::iter::once(square).chain(parts).take(CANDIDATES).find_map(value)?;
     has_logarithms_at_rest(&found, coordinate).then(|| outside * found)
 }
 
@@ -227,9 +215,7 @@ fn shifted_power(factors: &[Expr], coordinate: Symbol) -> Option<Expr> {
             _ => Expr::function(Function::Absolute, vec![base]).ok()?,
         };
         let logarithm = Expr::function(Function::Log, vec![size]).ok()?;
-        return step
-            .is_none()
-            .then(|| Expr::divide(&logarithm, &base_slope).ok())?;
+        return step.is_none().then(|| Expr::divide(&logarithm, &base_slope).ok())?;
     }
     let value = Expr::divide(
         &Expr::power(&base, &Expr::number(next.clone())).ok()?,
@@ -281,11 +267,8 @@ fn with_power(factor: &Expr, exponent: u32, coordinate: Symbol) -> Option<Expr> 
                             let product = divided(
                                 call(Function::Sin, argument)? * call(Function::Cos, argument)?,
                             )?;
-                            let sum = if *function == Function::Sin {
-                                x - product
-                            } else {
-                                x + product
-                            };
+                            let sum =
+                                if *function == Function::Sin { x - product } else { x + product };
                             return Some(sum * Expr::number(ratio(1, 2)));
                         }
                         _ => return None,
@@ -318,11 +301,7 @@ fn exponential_by_parts(value: &Expr, slope: &Expr, exponent: u32, x: &Expr) -> 
     let mut terms = Vec::new();
     let mut factor = Expr::divide(value, slope).ok()?;
     for power in (0..=i64::from(exponent)).rev() {
-        let x_power = if power == 0 {
-            Expr::one()
-        } else {
-            x.integer_power(power).ok()?
-        };
+        let x_power = if power == 0 { Expr::one() } else { x.integer_power(power).ok()? };
         terms.push(&factor * &x_power);
         factor = -Expr::divide(&(factor * Expr::from(power)), slope).ok()?;
     }
@@ -348,11 +327,7 @@ fn wave_by_parts(
             _ => return None,
         };
         factor = Expr::divide(&(factor * Expr::from(sign)), slope).ok()?;
-        let x_power = if power == 0 {
-            Expr::one()
-        } else {
-            x.integer_power(power).ok()?
-        };
+        let x_power = if power == 0 { Expr::one() } else { x.integer_power(power).ok()? };
         terms.push(&factor * &x_power * Expr::function(next, vec![argument.clone()]).ok()?);
         factor = -(factor * Expr::from(power));
         function = next;
@@ -372,10 +347,7 @@ fn quadratic_power(
     }
     let square = Expr::from(coordinate).integer_power(2).ok()?;
     let a = base.substitute(coordinate, &Expr::zero()).ok()?;
-    let b = Expr::divide(&(base - &a).expand().ok()?, &square)
-        .ok()?
-        .expand()
-        .ok()?;
+    let b = Expr::divide(&(base - &a).expand().ok()?, &square).ok()?.expand().ok()?;
     if b.is_zero() || b.contains(coordinate) {
         return None;
     }
@@ -388,11 +360,8 @@ fn quadratic_power(
         let grown = if next.is_zero() {
             Expr::function(Function::Log, vec![base.clone()]).ok()?
         } else {
-            Expr::divide(
-                &Expr::power(base, &Expr::number(next.clone())).ok()?,
-                &Expr::number(next),
-            )
-            .ok()?
+            Expr::divide(&Expr::power(base, &Expr::number(next.clone())).ok()?, &Expr::number(next))
+                .ok()?
         };
         let rest = match m - i {
             0 => Expr::one(),
@@ -448,9 +417,7 @@ mod tests {
             let [force, potential] =
                 [&force, &potential].map(|e| CompiledFunction::new(e, &["x".into()]).unwrap());
             for (from, to) in [(0.6, 1.3), (0.05, 0.3), (-1.2, -0.4)] {
-                let work = integrate_smooth(|x| force.call(&[x]), from, to, 1e-13)
-                    .unwrap()
-                    .0;
+                let work = integrate_smooth(|x| force.call(&[x]), from, to, 1e-13).unwrap().0;
                 let rise = potential.call(&[to]) - potential.call(&[from]);
                 assert!(
                     (work - rise).abs() < 1e-12 * (1.0 + work.abs()),
@@ -471,11 +438,7 @@ mod tests {
             "x*sqrt(1 + x^2 + x^4)",
             "(x - 1/2)^(3/2)*H(x - 1/3)",
         ] {
-            assert_eq!(
-                potential(&text.parse().unwrap(), "x".into()),
-                None,
-                "{text}"
-            );
+            assert_eq!(potential(&text.parse().unwrap(), "x".into()), None, "{text}");
         }
     }
 }

@@ -20,10 +20,7 @@ pub(crate) struct Power {
 impl Power {
     /// The power zero.
     pub(crate) fn one() -> Self {
-        Self {
-            exponent: Expr::zero(),
-            odd: false,
-        }
+        Self { exponent: Expr::zero(), odd: false }
     }
 
     /// Takes a factor in, where it is a power of the variable, its size or its sign.

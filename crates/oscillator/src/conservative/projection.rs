@@ -72,10 +72,7 @@ fn linearised(factors: Vec<Expr>, coordinate: Symbol) -> Option<Vec<(Expr, Vec<E
                     if !exponent.as_number()?.is_integer() {
                         return None;
                     }
-                    waves.extend(std::iter::repeat_n(
-                        (*function, arguments[0].clone()),
-                        times,
-                    ));
+                    waves.extend(std::iter::repeat_n((*function, arguments[0].clone()), times));
                 }
             }
             _ => rest.push(factor),
@@ -163,11 +160,8 @@ fn of_term(mut factors: Vec<Expr>, coordinate: Symbol, amplitude: &Expr, k: usiz
     }
     // Beside anything else only whole powers of x itself.
     let whole = power.exponent.is_integer() && power.odd == power.exponent.numer().is_odd();
-    let exponent = power
-        .exponent
-        .to_integer()
-        .to_usize()
-        .filter(|&n| whole && n <= HIGHEST_POWER)?;
+    let exponent =
+        power.exponent.to_integer().to_usize().filter(|&n| whole && n <= HIGHEST_POWER)?;
     let [factor] = factors.as_slice() else {
         return steps_coefficient(&factors, exponent, coordinate, amplitude, k)
             .map(|value| coefficient * value);
@@ -205,19 +199,13 @@ fn power_coefficient(exponent: &Rational, odd: bool, k: usize) -> Option<Expr> {
     let gamma = |argument: Expr| Expr::function(Function::Gamma, vec![argument]).ok();
     let one = Rational::one();
     let (above, below, start) = if odd {
-        (
-            half(exponent + ratio(2, 1)),
-            half(exponent + ratio(3, 1)),
-            1,
-        )
+        (half(exponent + ratio(2, 1)), half(exponent + ratio(3, 1)), 1)
     } else {
         (half(exponent + &one), half(exponent + ratio(2, 1)), 0)
     };
-    let mut value = Expr::divide(
-        &(Expr::from(2) * gamma(above)?),
-        &(Expr::pi().sqrt().ok()? * gamma(below)?),
-    )
-    .ok()?;
+    let mut value =
+        Expr::divide(&(Expr::from(2) * gamma(above)?), &(Expr::pi().sqrt().ok()? * gamma(below)?))
+            .ok()?;
     for j in (start..k).step_by(2) {
         let j = Rational::from_integer(j.into());
         value = value * Expr::number((exponent - &j) / (exponent + &j + ratio(2, 1)));
@@ -275,11 +263,7 @@ fn bessel_function(circular: bool, n: usize, z: &Expr) -> Option<Expr> {
     ];
     for order in 1..n.max(1) {
         let scaled = Expr::divide(&(Expr::from(2 * order as i64) * &pair[1]), z).ok()?;
-        let next = if circular {
-            scaled - &pair[0]
-        } else {
-            &pair[0] - &scaled
-        };
+        let next = if circular { scaled - &pair[0] } else { &pair[0] - &scaled };
         let [_, last] = pair;
         pair = [last, next.expand().ok()?];
     }
@@ -307,17 +291,11 @@ fn steps_coefficient(
     // int cos(i theta) over the arc, times 2/pi: 0 <= theta < angle, or the rest up to pi.
     let arc = |i: usize| {
         let value = if i == 0 {
-            if above {
-                angle.clone()
-            } else {
-                Expr::pi() - &angle
-            }
+            if above { angle.clone() } else { Expr::pi() - &angle }
         } else {
-            let value = Expr::divide(
-                &(chebyshev_second(i - 1, &cosine)? * &sine),
-                &Expr::from(i as i64),
-            )
-            .ok()?;
+            let value =
+                Expr::divide(&(chebyshev_second(i - 1, &cosine)? * &sine), &Expr::from(i as i64))
+                    .ok()?;
             if above { value } else { -value }
         };
         Expr::divide(&(Expr::from(2) * value), &Expr::pi()).ok()
@@ -370,10 +348,7 @@ fn quotient_coefficient(
     }
     let square = Expr::from(coordinate).integer_power(2).ok()?;
     let alpha = below.substitute(coordinate, &Expr::zero()).ok()?;
-    let beta = Expr::divide(&(below - &alpha).expand().ok()?, &square)
-        .ok()?
-        .expand()
-        .ok()?;
+    let beta = Expr::divide(&(below - &alpha).expand().ok()?, &square).ok()?.expand().ok()?;
     if beta.is_zero() || beta.contains(coordinate) {
         return None;
     }
@@ -384,19 +359,13 @@ fn quotient_coefficient(
     // (1/pi) int g^n/(alpha + beta g^2) = ((1/pi) int g^(n-2) - alpha (1/pi) int
     // g^(n-2)/(...))/beta, g = A cos theta.
     let square = amplitude.integer_power(2).ok()?;
-    let root = (&alpha * &(&alpha + &(&beta * &square)).expand().ok()?)
-        .sqrt()
-        .ok()?;
+    let root = (&alpha * &(&alpha + &(&beta * &square)).expand().ok()?).sqrt().ok()?;
     let even = if k == 1 { exponent + 1 } else { exponent };
     let mut value = Expr::divide(&Expr::from(2), &root).ok()?;
     let mut power = 0;
     while power < even {
         let mean = &power_coefficient(&Rational::from_integer(power.into()), false, 0)?
-            * &if power == 0 {
-                Expr::one()
-            } else {
-                amplitude.integer_power(power as i64).ok()?
-            };
+            * &if power == 0 { Expr::one() } else { amplitude.integer_power(power as i64).ok()? };
         value = Expr::divide(&(mean - &alpha * &value), &beta).ok()?;
         power += 2;
     }
@@ -487,9 +456,8 @@ mod tests {
                 // At small amplitudes the recurrence of the Bessel functions loses digits with
                 // every order.
                 for amplitude in if k < 2 { [0.3, 1.7] } else { [1.7, 2.6] } {
-                    let value = formula
-                        .evaluate(&BTreeMap::from([("A".into(), amplitude)]))
-                        .unwrap();
+                    let value =
+                        formula.evaluate(&BTreeMap::from([("A".into(), amplitude)])).unwrap();
                     let expected = by_quadrature(text, amplitude, k, corners);
                     assert!(
                         (value - expected).abs() < 2e-11,
@@ -505,18 +473,11 @@ mod tests {
         let force: Expr = "(x - c + d)*H(x - c + d)".parse().unwrap();
         let first = cosine_coefficient(&force, "x".into(), &Expr::symbol("A"), 1).unwrap();
         for edge in [-2.5, -0.7, 0.2, 3.0] {
-            let numbers = [
-                ("A".into(), 1.3),
-                ("c".into(), edge + 1.0),
-                ("d".into(), 1.0),
-            ];
+            let numbers = [("A".into(), 1.3), ("c".into(), edge + 1.0), ("d".into(), 1.0)];
             let value = first.evaluate(&numbers.into()).unwrap();
             let expected =
                 by_quadrature(&format!("(x - ({edge}))*H(x - ({edge}))"), 1.3, 1, &[edge]);
-            assert!(
-                (value - expected).abs() < 1e-11,
-                "{edge}: {value} {expected}"
-            );
+            assert!((value - expected).abs() < 1e-11, "{edge}: {value} {expected}");
         }
     }
 
@@ -524,9 +485,7 @@ mod tests {
     fn printed_the_way_people_write_them() {
         let first = |text: &str| {
             let force: Expr = text.parse().unwrap();
-            cosine_coefficient(&force, "x".into(), &Expr::symbol("A"), 1)
-                .unwrap()
-                .to_string()
+            cosine_coefficient(&force, "x".into(), &Expr::symbol("A"), 1).unwrap().to_string()
         };
         assert_eq!(first("k*sin(x)"), "2*k*J1(A)");
         assert_eq!(first("x + eps*x*abs(x)"), "A + 8*eps*A^2/(3*pi)");

@@ -41,10 +41,7 @@ struct Wall {
 
 impl Wall {
     fn new(place: f64, separatrix: bool) -> Self {
-        Self {
-            rim: Rim { place, separatrix },
-            height: None,
-        }
+        Self { rim: Rim { place, separatrix }, height: None }
     }
 }
 
@@ -131,27 +128,21 @@ impl Well {
         let end = |side: f64, own: Option<Wall>, other: Option<Wall>| {
             let own_end = own
                 .filter(|wall| wall.rim.place.is_finite())
-                .map(|wall| End {
-                    amplitude: wall.rim.place - equilibrium,
-                    rim: wall.rim,
-                });
+                .map(|wall| End { amplitude: wall.rim.place - equilibrium, rim: wall.rim });
             // Released on this side, the motion may also leave over the other rim.
             let Some((rim, height)) = other.and_then(|wall| Some((wall.rim, wall.height?))) else {
                 return own_end;
             };
-            let lower = own
-                .and_then(|wall| wall.height)
-                .is_some_and(|own| own <= height * (1.0 + EVEN));
+            let lower =
+                own.and_then(|wall| wall.height).is_some_and(|own| own <= height * (1.0 + EVEN));
             if own_end.is_none() && lower {
                 return None;
             }
             let excess = |size: f64| {
                 rise(force, side * size).map_or(f64::NAN, |energy| energy / height - 1.0)
             };
-            let (mut low, mut high) = (
-                0.0,
-                own_end.map_or(unit, |end| end.amplitude.abs() * (1.0 - 1e-12)),
-            );
+            let (mut low, mut high) =
+                (0.0, own_end.map_or(unit, |end| end.amplitude.abs() * (1.0 - 1e-12)));
             while own_end.is_none() && excess(high) <= 1e-9 && high < FARTHEST * unit {
                 // An amplitude whose energy is the height to the last digit brackets nothing.
                 if excess(high) < -1e-9 {
@@ -160,24 +151,14 @@ impl Well {
                 high *= 2.0;
             }
             if excess(high) > 1e-9
-                && let Ok(size) = find_root(
-                    |size| if size == 0.0 { -1.0 } else { excess(size) },
-                    low,
-                    high,
-                )
+                && let Ok(size) =
+                    find_root(|size| if size == 0.0 { -1.0 } else { excess(size) }, low, high)
             {
-                return Some(End {
-                    amplitude: side * size,
-                    rim,
-                });
+                return Some(End { amplitude: side * size, rim });
             }
             own_end
         };
-        let well = Self {
-            low: end(-1.0, left, right),
-            high: end(1.0, right, left),
-            inner: None,
-        };
+        let well = Self { low: end(-1.0, left, right), high: end(1.0, right, left), inner: None };
         (well.low.is_some() || well.high.is_some()).then_some(well)
     }
 
@@ -189,19 +170,13 @@ impl Well {
         let end = |side: f64| {
             passage.to.map(|rim| End {
                 amplitude: side * rim.place,
-                rim: Rim {
-                    place: equilibrium + side * rim.place,
-                    ..rim
-                },
+                rim: Rim { place: equilibrium + side * rim.place, ..rim },
             })
         };
         Some(Self {
             low: end(-1.0),
             high: end(1.0),
-            inner: Some(Inner {
-                amplitude: passage.from,
-                place: equilibrium + passage.over,
-            }),
+            inner: Some(Inner { amplitude: passage.from, place: equilibrium + passage.over }),
         })
     }
 
@@ -260,22 +235,14 @@ impl Well {
                 if even || low.rim == high.rim {
                     return format!("periodic for {range}: {}", because(high.rim));
                 }
-                format!(
-                    "periodic for {range}: {}, {}",
-                    because(low.rim),
-                    because(high.rim)
-                )
+                format!("periodic for {range}: {}, {}", because(low.rim), because(high.rim))
             }
-            (Some(low), None) => format!(
-                "periodic for {name} > {}: {}",
-                number(low),
-                because(low.rim)
-            ),
-            (None, Some(high)) => format!(
-                "periodic for {name} < {}: {}",
-                number(high),
-                because(high.rim)
-            ),
+            (Some(low), None) => {
+                format!("periodic for {name} > {}: {}", number(low), because(low.rim))
+            }
+            (None, Some(high)) => {
+                format!("periodic for {name} < {}: {}", number(high), because(high.rim))
+            }
             (None, None) => String::new(),
         }
     }
@@ -303,11 +270,11 @@ fn rise_between(force: &Force, from: f64, to: f64) -> Option<f64> {
     for pair in knots.windows(2) {
         sum += match integrate_smooth(|y| force.at(y), pair[0], pair[1], 1e-10) {
             Ok((value, _)) => value,
-            Err(QuadratureError::NotConverged {
-                value,
-                error_estimate,
-                ..
-            }) if error_estimate < 1e-6 * value.abs() => value,
+            Err(QuadratureError::NotConverged { value, error_estimate, .. })
+                if error_estimate < 1e-6 * value.abs() =>
+            {
+                value
+            }
             Err(_) if pair[0] == to => towards_the_end(force, pair[1], to)?,
             Err(_) if pair[1] == to => towards_the_end(force, pair[0], to)?,
             Err(_) => return None,
@@ -381,11 +348,11 @@ fn towards_the_end(force: &Force, from: f64, to: f64) -> Option<f64> {
     };
     let work = match integrate_smooth(integrand, 0.0, 1.0, 1e-10) {
         Ok((value, _)) => value,
-        Err(QuadratureError::NotConverged {
-            value,
-            error_estimate,
-            ..
-        }) if error_estimate < 1e-6 * value.abs() => value,
+        Err(QuadratureError::NotConverged { value, error_estimate, .. })
+            if error_estimate < 1e-6 * value.abs() =>
+        {
+            value
+        }
         Err(_) => return None,
     };
     Some(work * (from - to).abs())
@@ -444,9 +411,8 @@ fn rim(force: &Force, side: f64, unit: f64) -> Option<Wall> {
         }
         if there <= 0.0 {
             // Below its rounding a force that dies away turns its sign without a zero.
-            let is_rounding = [distance, next]
-                .into_iter()
-                .all(|size| !force.has_digits(side * size));
+            let is_rounding =
+                [distance, next].into_iter().all(|size| !force.has_digits(side * size));
             let Some((size, separatrix)) =
                 sign_change(&pull, distance, next, strongest).filter(|_| !is_rounding)
             else {
@@ -473,21 +439,13 @@ fn levels_off(force: &Force, side: f64, unit: f64, weakened: f64) -> Option<Wall
         return None;
     }
     let height = rise_to_infinity(force, side, unit)?;
-    Some(Wall {
-        height: Some(height),
-        ..Wall::new(side * f64::INFINITY, false)
-    })
+    Some(Wall { height: Some(height), ..Wall::new(side * f64::INFINITY, false) })
 }
 
 /// Where a force ends between a distance at which it has a value and one at which it has none, from
 /// outside.
 pub(super) fn end_of_force(pull: &dyn Fn(f64) -> f64, inside: f64, outside: f64) -> f64 {
-    let [_, end] = bisect(
-        |size| pull(size).is_finite(),
-        inside,
-        outside,
-        Until::Halvings(60),
-    );
+    let [_, end] = bisect(|size| pull(size).is_finite(), inside, outside, Until::Halvings(60));
     end
 }
 
@@ -504,16 +462,10 @@ pub(super) fn sign_change(
     if there == 0.0 && before.abs() < 1e-100 * strongest {
         return None;
     }
-    let size = if there == 0.0 {
-        to
-    } else {
-        find_root(pull, from, to).ok()?
-    };
+    let size = if there == 0.0 { to } else { find_root(pull, from, to).ok()? };
     // A change of sign by way of infinity is an end, not an equilibrium: next to it the force is
     // far stronger than at the ends of the step.
-    let near = pull(size)
-        .abs()
-        .max(pull(size * (1.0 - 4.0 * f64::EPSILON)).abs());
+    let near = pull(size).abs().max(pull(size * (1.0 - 4.0 * f64::EPSILON)).abs());
     let through_zero = near <= 1e3 * before.abs().max(there.abs()).max(1e-300 * strongest);
     Some((size, through_zero))
 }
@@ -526,24 +478,14 @@ mod tests {
 
     fn ends(text: &str, amplitude: f64) -> (Option<f64>, Option<f64>, String) {
         let expression = parse_expression(text).unwrap();
-        let force = Force::new(
-            &expression,
-            "x".into(),
-            &Expr::zero(),
-            &BTreeMap::new(),
-            amplitude,
-        )
-        .unwrap();
+        let force = Force::new(&expression, "x".into(), &Expr::zero(), &BTreeMap::new(), amplitude)
+            .unwrap();
         let well = Well::new(&force, amplitude);
         let Some(well) = well else {
             return (None, None, String::new());
         };
         let amplitude = |end: Option<End>| end.map(|end| end.amplitude);
-        (
-            amplitude(well.low),
-            amplitude(well.high),
-            well.in_words("A".into(), "x".into()),
-        )
+        (amplitude(well.low), amplitude(well.high), well.in_words("A".into(), "x".into()))
     }
 
     #[test]
@@ -568,14 +510,8 @@ mod tests {
             "periodic for |A| < 1: the separatrix passes the unstable equilibrium x = 1"
         );
         let (low, high, words) = ends("x/(1 - x)^2", 0.1);
-        assert!(
-            low.is_none() && (high.unwrap() - 1.0).abs() < 1e-9,
-            "{words}"
-        );
-        assert!(
-            words.contains("periodic for A < 1: the force ends at x = 1"),
-            "{words}"
-        );
+        assert!(low.is_none() && (high.unwrap() - 1.0).abs() < 1e-9, "{words}");
+        assert!(words.contains("periodic for A < 1: the force ends at x = 1"), "{words}");
         assert_eq!(ends("x + x^3", 1.0), (None, None, String::new()));
         assert_eq!(ends("x*exp(-x^2)", 1.0).2, "");
     }
@@ -583,32 +519,16 @@ mod tests {
     #[test]
     fn both_ends_are_in_the_words() {
         for (text, amplitude, words) in [
-            (
-                "x/(1 - x^2)^2",
-                0.5,
-                "periodic for |A| < 1: the force ends at x = 1",
-            ),
+            ("x/(1 - x^2)^2", 0.5, "periodic for |A| < 1: the force ends at x = 1"),
             (
                 "sin(3*x)",
                 -0.1,
                 "periodic for |A| < 1.0472: the separatrix passes the unstable equilibrium x = 1.0472",
             ),
-            (
-                "x/(1 + x)^2",
-                0.1,
-                "periodic for A > -1: the force ends at x = -1",
-            ),
+            ("x/(1 + x)^2", 0.1, "periodic for A > -1: the force ends at x = -1"),
             // V = 4/3 - 2 u + 2 u^3/3 with u^2 = 1 - x: the end at 1 is reached from u^2 = 3.
-            (
-                "x/(1 - x)^(1/2)",
-                0.5,
-                "periodic for -2 < A < 1: the force ends at x = 1",
-            ),
-            (
-                "x/(1 + x)^(1/2)",
-                -0.5,
-                "periodic for -1 < A < 2: the force ends at x = -1",
-            ),
+            ("x/(1 - x)^(1/2)", 0.5, "periodic for -2 < A < 1: the force ends at x = 1"),
+            ("x/(1 + x)^(1/2)", -0.5, "periodic for -1 < A < 2: the force ends at x = -1"),
         ] {
             assert!(
                 ends(text, amplitude).2.starts_with(words),
@@ -622,12 +542,9 @@ mod tests {
     /// precision gives out.
     #[test]
     fn an_overflow_is_no_end() {
-        for (text, amplitude) in [
-            ("exp(x) - 1", -1e5),
-            ("exp(x) - 1", -2.5e11),
-            ("x + x^99", 1e30),
-            ("sinh(x)", 1e4),
-        ] {
+        for (text, amplitude) in
+            [("exp(x) - 1", -1e5), ("exp(x) - 1", -2.5e11), ("x + x^99", 1e30), ("sinh(x)", 1e4)]
+        {
             assert_eq!(ends(text, amplitude), (None, None, String::new()), "{text}");
         }
     }

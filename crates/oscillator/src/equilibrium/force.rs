@@ -51,11 +51,7 @@ pub(super) struct Force<'a> {
 
 impl<'a> Force<'a> {
     pub(super) fn new(force: &'a Expr, coordinate: Symbol) -> Self {
-        Self {
-            force,
-            coordinate,
-            value: CompiledFunction::new(force, &[coordinate]).ok(),
-        }
+        Self { force, coordinate, value: CompiledFunction::new(force, &[coordinate]).ok() }
     }
 
     /// Whether it has no letters beside the coordinate.
@@ -73,9 +69,7 @@ impl<'a> Force<'a> {
     /// Numbers in place of the parameters to choose between closed forms: all about equal, small
     /// first; and one of them much smaller or larger than the others, as the load may be.
     fn samples(&self) -> Vec<BTreeMap<Symbol, f64>> {
-        let mut samples = [0.1, 0.01, 1.0, 0.001, 10.0]
-            .map(|scale| self.sample(scale))
-            .to_vec();
+        let mut samples = [0.1, 0.01, 1.0, 0.001, 10.0].map(|scale| self.sample(scale)).to_vec();
         let alike = self.sample(1.0);
         for factor in [0.03, 30.0] {
             let unlike = |name: &Symbol| {
@@ -90,20 +84,15 @@ impl<'a> Force<'a> {
 
     /// Numbers for the parameters, all about equal to `scale`.
     fn sample(&self, scale: f64) -> BTreeMap<Symbol, f64> {
-        let parameters = self
-            .force
-            .symbols()
-            .into_iter()
-            .filter(|name| *name != self.coordinate);
+        let parameters = self.force.symbols().into_iter().filter(|name| *name != self.coordinate);
         let values = (1..).map(|k| scale * (1.0 + 0.03 * f64::from(k)));
         parameters.zip(values).collect()
     }
 
     /// The force as a function with these numbers for its parameters.
     fn at_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<impl Fn(f64) -> f64 + use<>> {
-        let names: Vec<Symbol> = std::iter::once(self.coordinate)
-            .chain(numbers.keys().copied())
-            .collect();
+        let names: Vec<Symbol> =
+            std::iter::once(self.coordinate).chain(numbers.keys().copied()).collect();
         let function = CompiledFunction::new(self.force, &names).ok()?;
         let numbers: Vec<f64> = numbers.values().copied().collect();
         Some(move |x: f64| function.call(&[&[x], numbers.as_slice()].concat()))
@@ -165,9 +154,8 @@ impl<'a> Force<'a> {
                 Some((power, coefficient))
             });
             if let Some((power, coefficient)) = lowest {
-                let negative = coefficient
-                    .evaluate(&BTreeMap::new())
-                    .is_ok_and(|value| value < 0.0);
+                let negative =
+                    coefficient.evaluate(&BTreeMap::new()).is_ok_and(|value| value < 0.0);
                 return power % 2 == 1 && !negative;
             }
         }
@@ -177,9 +165,7 @@ impl<'a> Force<'a> {
         };
         let felt = |side: f64| {
             let places = (-1200..1200).map(|k| side * 10_f64.powf(f64::from(k) / 40.0));
-            let mut forces = places
-                .map(|x| value.call(&[x]))
-                .take_while(|force| force.is_finite());
+            let mut forces = places.map(|x| value.call(&[x])).take_while(|force| force.is_finite());
             forces.find(|force| *force != 0.0).unwrap_or(0.0)
         };
         felt(1.0) > 0.0 && felt(-1.0) < 0.0
@@ -194,47 +180,37 @@ impl<'a> Force<'a> {
         };
         let coefficients = coefficients(self.force, self.coordinate);
         let numbers = coefficients.and_then(|coefficients| {
-            let exact: Option<Vec<Rational>> = coefficients
-                .iter()
-                .map(|each| each.as_number().cloned())
-                .collect();
+            let exact: Option<Vec<Rational>> =
+                coefficients.iter().map(|each| each.as_number().cloned()).collect();
             // A multiple zero of rounded coefficients would be many zeros near it.
             if let Some(exact) = exact.filter(|exact| exact.len() <= LONGEST_EXACT) {
                 return Some(sign_changing_part(&exact).iter().map(to_f64).collect());
             }
-            let values = coefficients
-                .iter()
-                .map(|coefficient| coefficient.evaluate(&BTreeMap::new()).ok());
+            let values =
+                coefficients.iter().map(|coefficient| coefficient.evaluate(&BTreeMap::new()).ok());
             values.collect::<Option<Vec<f64>>>()
         });
         if let Some(numbers) = numbers {
             return polynomial_zeros(&numbers);
         }
         let centres = linear_zeros(self.force, self.coordinate);
-        let centres: Vec<f64> = centres
-            .iter()
-            .filter_map(|zero| zero.evaluate(&BTreeMap::new()).ok())
-            .collect();
+        let centres: Vec<f64> =
+            centres.iter().filter_map(|zero| zero.evaluate(&BTreeMap::new()).ok()).collect();
         zeros(&|x| function.call(&[x]), &centres)
     }
 
     /// The stable equilibria, the nearest first; those that a pole hides only where there are no
     /// others.
     pub(super) fn stable(&self) -> Vec<SignChange> {
-        let mut found: Vec<SignChange> = self
-            .signs()
-            .into_iter()
-            .filter(|found| found.stable)
-            .collect();
+        let mut found: Vec<SignChange> =
+            self.signs().into_iter().filter(|found| found.stable).collect();
         if found.iter().any(|found| found.reachable) {
             found.retain(|found| found.reachable);
         }
         // Of two mirror images the positive one, though rounding may put it farther away.
         found.sort_by(|a, b| {
             let size = |found: &SignChange| found.position.abs() as f32;
-            size(a)
-                .total_cmp(&size(b))
-                .then(b.position.total_cmp(&a.position))
+            size(a).total_cmp(&size(b)).then(b.position.total_cmp(&a.position))
         });
         found
     }
@@ -286,9 +262,7 @@ impl<'a> Force<'a> {
             return false;
         };
         let places = linear_zeros(self.force, self.coordinate);
-        let mut places = places
-            .iter()
-            .filter_map(|place| place.evaluate(sample).ok());
+        let mut places = places.iter().filter_map(|place| place.evaluate(sample).ok());
         places.any(|place| {
             place / position > 0.0 && place / position < 1.0 && !value(place).is_finite()
         })
@@ -323,16 +297,10 @@ impl<'a> Force<'a> {
             });
             let pairs: Vec<(f64, f64)> = pairs.collect();
             !pairs.is_empty()
-                && pairs
-                    .iter()
-                    .all(|(one, other)| (one - other).abs() <= 1e-12 * one.abs())
+                && pairs.iter().all(|(one, other)| (one - other).abs() <= 1e-12 * one.abs())
         };
         let form = forms.iter().find(same)?;
-        let is_stable = |sample| {
-            !self
-                .stable_at(std::slice::from_ref(form), sample)
-                .is_empty()
-        };
+        let is_stable = |sample| !self.stable_at(std::slice::from_ref(form), sample).is_empty();
         samples.iter().any(is_stable).then(|| form.clone())
     }
 
@@ -357,11 +325,8 @@ impl<'a> Force<'a> {
             Some(_) => vec![BTreeMap::new()],
             None => self.samples(),
         };
-        let unit = self
-            .stable()
-            .iter()
-            .map(|found| found.position.abs())
-            .fold(f64::INFINITY, f64::min);
+        let unit =
+            self.stable().iter().map(|found| found.position.abs()).fold(f64::INFINITY, f64::min);
         let unit = if unit.is_finite() { unit } else { 1.0 };
         // Most forces pull back: one value on either side tells.
         let value = self.at_numbers(samples.first()?)?;
@@ -384,10 +349,8 @@ impl<'a> Force<'a> {
             several.set(several.get() || ranges.len() > 1);
             ranges.first().copied()
         };
-        let found: Vec<(&BTreeMap<Symbol, f64>, Passage)> = samples
-            .iter()
-            .filter_map(|sample| Some((sample, ranges(sample)?)))
-            .collect();
+        let found: Vec<(&BTreeMap<Symbol, f64>, Passage)> =
+            samples.iter().filter_map(|sample| Some((sample, ranges(sample)?))).collect();
         let first = found.first()?.1;
         let fits = |form: &Expr| {
             found.iter().all(|(sample, range)| {
@@ -395,11 +358,7 @@ impl<'a> Force<'a> {
                 value.is_ok_and(|value| (value - range.from).abs() <= AGREEMENT * range.from)
             })
         };
-        let from = self
-            .edges(first.from)
-            .into_iter()
-            .find(fits)
-            .map(Position::Exact);
+        let from = self.edges(first.from).into_iter().find(fits).map(Position::Exact);
         let from = from.or_else(|| self.value.is_some().then_some(Position::Number(first.from)));
         let to = match (first.to, self.value.is_some()) {
             (Some(rim), true) => {
@@ -438,9 +397,8 @@ impl<'a> Force<'a> {
             Some(_) => exact_zero(&risen, x, near).into_iter().collect(),
             None => vec![],
         };
-        let squared = Expr::from(x)
-            .integer_power(2)
-            .and_then(|squared| Expr::divide(&risen, &squared));
+        let squared =
+            Expr::from(x).integer_power(2).and_then(|squared| Expr::divide(&risen, &squared));
         if let Ok(quotient) = squared.and_then(|quotient| quotient.expand()) {
             forms.extend(closed_forms(&quotient, x));
         }
@@ -458,17 +416,12 @@ impl<'a> Force<'a> {
             };
         }
         let period = self.period();
-        let half = period
-            .as_ref()
-            .and_then(|period| period.evaluate(&BTreeMap::new()).ok());
+        let half = period.as_ref().and_then(|period| period.evaluate(&BTreeMap::new()).ok());
         let near = |position: &f64| {
             half.is_none_or(|period| position.abs() <= 0.5 * period * (1.0 + 1e-9))
         };
-        let mut positions: Vec<f64> = self
-            .stable()
-            .into_iter()
-            .map(|found| found.position)
-            .collect();
+        let mut positions: Vec<f64> =
+            self.stable().into_iter().map(|found| found.position).collect();
         positions.retain(near);
         let more = positions.len() > MOST;
         positions.truncate(MOST);
@@ -493,9 +446,8 @@ impl<'a> Force<'a> {
         let collected = self.force.fold(|expr, _: &[()]| {
             if let Node::Function(Function::Sin | Function::Cos | Function::Tan, arguments) =
                 expr.node()
-                && let Some(slope) = arguments
-                    .first()
-                    .and_then(|angle| angle.differentiate(self.coordinate).ok())
+                && let Some(slope) =
+                    arguments.first().and_then(|angle| angle.differentiate(self.coordinate).ok())
                 && let Some(slope) = slope.as_number().filter(|slope| !slope.is_zero())
             {
                 slopes.push(num_traits::Signed::abs(slope));
@@ -504,9 +456,8 @@ impl<'a> Force<'a> {
         });
         collected.ok()?;
         slopes.sort();
-        let periods = slopes
-            .iter()
-            .map(|slope| Expr::from(2) * Expr::pi() * Expr::number(slope.recip()));
+        let periods =
+            slopes.iter().map(|slope| Expr::from(2) * Expr::pi() * Expr::number(slope.recip()));
         periods.into_iter().find(|period| {
             let moved = moved(self.force, self.coordinate, period);
             let difference = moved.and_then(|moved| (&moved - self.force).expand());
@@ -520,15 +471,11 @@ fn is_nothing(coefficient: &Expr) -> bool {
     let Ok(expanded) = coefficient.expand() else {
         return false;
     };
-    let values = expanded
-        .terms()
-        .iter()
-        .map(|term| term.evaluate(&BTreeMap::new()));
+    let values = expanded.terms().iter().map(|term| term.evaluate(&BTreeMap::new()));
     let Ok(values) = values.collect::<Result<Vec<f64>, _>>() else {
         return expanded.is_zero();
     };
-    let (sum, size) = values.iter().fold((0.0, 0.0), |(sum, size), value| {
-        (sum + value, size + value.abs())
-    });
+    let (sum, size) =
+        values.iter().fold((0.0, 0.0), |(sum, size), value| (sum + value, size + value.abs()));
     f64::abs(sum) <= 1e-14 * size
 }

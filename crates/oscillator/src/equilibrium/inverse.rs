@@ -39,24 +39,15 @@ fn zeros(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     if let Some((slope, constant)) = linear_in(expression, x) {
         return Ok(vec![Expr::divide(&-constant, &slope)?]);
     }
-    let (moving, still): (Vec<Expr>, Vec<Expr>) = expression
-        .terms()
-        .iter()
-        .cloned()
-        .partition(|term| term.contains(x));
+    let (moving, still): (Vec<Expr>, Vec<Expr>) =
+        expression.terms().iter().cloned().partition(|term| term.contains(x));
     let other_side = -Expr::sum(still);
     if let ([product], true) = (moving.as_slice(), other_side.is_zero()) {
-        let factors = product
-            .factors()
-            .1
-            .iter()
-            .filter(|factor| factor.contains(x));
+        let factors = product.factors().1.iter().filter(|factor| factor.contains(x));
         let factors: Vec<&Expr> = factors.collect();
         if factors.len() > 1 {
             // A factor such as 1/x is never zero.
-            let found = factors
-                .into_iter()
-                .map(|factor| zeros(factor, x).unwrap_or_default());
+            let found = factors.into_iter().map(|factor| zeros(factor, x).unwrap_or_default());
             return Ok(found.flatten().collect());
         }
     }
@@ -85,10 +76,7 @@ fn split(term: &Expr, x: Symbol) -> Option<(Expr, Expr)> {
         return None;
     };
     let still = still.into_iter().cloned();
-    Some((
-        Expr::product(still.chain([Expr::number(number)])),
-        (*moving).clone(),
-    ))
+    Some((Expr::product(still.chain([Expr::number(number)])), (*moving).clone()))
 }
 
 /// Where `function` has the value `y`.
@@ -99,9 +87,7 @@ fn before(function: &Expr, y: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> 
     let (inner, values) = match function.node() {
         Node::Power(base, exponent) if !exponent.contains(x) => {
             let root = Expr::power(y, &Expr::divide(&Expr::one(), exponent)?)?;
-            let even = exponent
-                .as_number()
-                .is_some_and(|exponent| !exponent.numer().is_odd());
+            let even = exponent.as_number().is_some_and(|exponent| !exponent.numer().is_odd());
             (base, if even { both(root) } else { vec![root] })
         }
         Node::Function(name, arguments) => {
@@ -140,10 +126,8 @@ fn before(function: &Expr, y: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> 
 
 /// Where `inner` has one of these values.
 fn through(inner: &Expr, values: Vec<Expr>, x: Symbol) -> Result<Vec<Expr>, ExprError> {
-    let found: Result<Vec<Vec<Expr>>, ExprError> = values
-        .iter()
-        .map(|value| zeros(&(inner - value), x))
-        .collect();
+    let found: Result<Vec<Vec<Expr>>, ExprError> =
+        values.iter().map(|value| zeros(&(inner - value), x)).collect();
     Ok(found?.into_iter().flatten().collect())
 }
 
@@ -158,11 +142,7 @@ fn angles(terms: [&(Expr, Expr); 2], r: &Expr) -> Result<Option<(Expr, Vec<Expr>
     let [Some(one), Some(other)] = terms.map(named) else {
         return Ok(None);
     };
-    let (sine, cosine) = if one.0 == Function::Sin {
-        (one, other)
-    } else {
-        (other, one)
-    };
+    let (sine, cosine) = if one.0 == Function::Sin { (one, other) } else { (other, one) };
     if (sine.0, cosine.0) != (Function::Sin, Function::Cos) || sine.1 != cosine.1 {
         return Ok(None);
     }
@@ -188,11 +168,7 @@ fn of_polynomial(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
         Some([d, c, b, a]) => cubic_roots(a, b, c, d),
         Some([d, between @ .., a]) if !between.is_empty() && between.iter().all(Expr::is_zero) => {
             let degree = Expr::from(between.len() as i64 + 1);
-            before(
-                &Expr::power(&Expr::from(x), &degree)?,
-                &Expr::divide(&-d, a)?,
-                x,
-            )
+            before(&Expr::power(&Expr::from(x), &degree)?, &Expr::divide(&-d, a)?, x)
         }
         _ => Ok(vec![]),
     }
@@ -211,13 +187,9 @@ fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, E
     }
     // Every exponent by how many steps it is away from the first.
     let constant = (!r.is_zero()).then(|| (Expr::zero(), -r));
-    let terms = others
-        .iter()
-        .map(|power| (power.exponent.clone(), power.factor.clone()));
+    let terms = others.iter().map(|power| (power.exponent.clone(), power.factor.clone()));
     let terms: Vec<(Expr, Expr)> = terms.chain(constant).collect();
-    let steps = terms
-        .iter()
-        .map(|(exponent, _)| (exponent - &first.exponent).expand());
+    let steps = terms.iter().map(|(exponent, _)| (exponent - &first.exponent).expand());
     let steps = steps.collect::<Result<Vec<Expr>, ExprError>>()?;
     let Some(step) = steps.iter().find(|step| !step.is_zero()) else {
         return Ok(vec![]);
@@ -248,10 +220,8 @@ fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, E
         Some(base) => Expr::power(base, &exponent)?,
         None => Expr::function(Function::Exp, vec![exponent])?,
     };
-    let found: Result<Vec<Vec<Expr>>, ExprError> = roots
-        .iter()
-        .map(|root| before(&function, root, x))
-        .collect();
+    let found: Result<Vec<Vec<Expr>>, ExprError> =
+        roots.iter().map(|root| before(&function, root, x)).collect();
     Ok(found?.into_iter().flatten().collect())
 }
 
@@ -265,11 +235,7 @@ struct Power {
 
 /// What moves, times its factor, as powers: one, or the two exponentials of a hyperbolic function.
 fn powers((factor, function): &(Expr, Expr), x: Symbol) -> Option<Vec<Power>> {
-    let exponential = |factor: Expr, exponent: Expr| Power {
-        factor,
-        base: None,
-        exponent,
-    };
+    let exponential = |factor: Expr, exponent: Expr| Power { factor, base: None, exponent };
     let (base, exponent) = function.base_and_exponent();
     if exponent.contains(x) {
         return None;
@@ -284,11 +250,7 @@ fn powers((factor, function): &(Expr, Expr), x: Symbol) -> Option<Vec<Power>> {
                 return Some(vec![exponential(factor.clone(), exponent)]);
             }
             Function::Sinh | Function::Cosh if exponent.is_one() => {
-                let other = if *name == Function::Sinh {
-                    -half()
-                } else {
-                    half()
-                };
+                let other = if *name == Function::Sinh { -half() } else { half() };
                 return Some(vec![
                     exponential(half(), argument.clone()),
                     exponential(other, -argument),
@@ -297,11 +259,7 @@ fn powers((factor, function): &(Expr, Expr), x: Symbol) -> Option<Vec<Power>> {
             _ => {}
         }
     }
-    Some(vec![Power {
-        factor: factor.clone(),
-        base: Some(base),
-        exponent,
-    }])
+    Some(vec![Power { factor: factor.clone(), base: Some(base), exponent }])
 }
 
 /// Coefficients at places that are no whole numbers as those of a polynomial: its unit, and all
@@ -327,10 +285,7 @@ fn polynomial_of(places: &[(Rational, Expr)]) -> Option<(Rational, Vec<Expr>)> {
         let coefficient = coefficients.get_mut(degree)?;
         *coefficient = &*coefficient + factor;
     }
-    let length = coefficients
-        .iter()
-        .rposition(|coefficient| !coefficient.is_zero())?
-        + 1;
+    let length = coefficients.iter().rposition(|coefficient| !coefficient.is_zero())? + 1;
     coefficients.truncate(length);
     Some((unit, coefficients))
 }
@@ -373,10 +328,7 @@ fn cubic_roots(a: &Expr, b: &Expr, c: &Expr, d: &Expr) -> Result<Vec<Expr>, Expr
         }
     }
     let signed = |root: Expr| if negative { -root } else { root };
-    Ok(roots
-        .into_iter()
-        .map(|root| signed(root) - shift.clone())
-        .collect())
+    Ok(roots.into_iter().map(|root| signed(root) - shift.clone()).collect())
 }
 
 #[cfg(test)]
@@ -408,11 +360,7 @@ mod tests {
             ("x^n - g", vec![("n", 2.5), ("g", 5.0)], 1),
             ("x^5 + g", vec![("g", 5.0)], 1),
             ("a*sin(x) - b*cos(x)", vec![("a", 1.0), ("b", 5.0)], 2),
-            (
-                "a*sin(3*x) + b*cos(3*x) - c",
-                vec![("a", 1.0), ("b", 5.0), ("c", 2.0)],
-                2,
-            ),
+            ("a*sin(3*x) + b*cos(3*x) - c", vec![("a", 1.0), ("b", 5.0), ("c", 2.0)], 2),
             ("x - k/x^2", vec![("k", 0.2)], 1),
             ("x + b*x^3 - k", vec![("k", 0.2), ("b", 3.0)], 1),
             ("x + b*x^3 - k", vec![("k", -1e-9), ("b", 3.0)], 1),
@@ -421,42 +369,24 @@ mod tests {
             ("x - k/(1 - x)^2", vec![("k", 0.2)], 1),
             ("b*x^3 - x + k", vec![("k", 0.1), ("b", 0.7)], 3),
             ("log(k*exp(x^3 + x - c))", vec![("k", 0.1), ("c", 0.7)], 1),
-            (
-                "24*e*(s^6/x^7 - 2*s^12/x^13)",
-                vec![("e", 0.1), ("s", 0.7)],
-                2,
-            ),
+            ("24*e*(s^6/x^7 - 2*s^12/x^13)", vec![("e", 0.1), ("s", 0.7)], 2),
             ("-p*(x^(-3*k) - 1)/x", vec![("p", 2.0), ("k", 1.4)], 1),
             ("p*x^(-3*k) - p*x^(-k)", vec![("p", 2.0), ("k", 1.4)], 1),
-            (
-                "b/x^m - c/x^n",
-                vec![("b", 2.0), ("c", 3.0), ("m", 4.0), ("n", 9.0)],
-                1,
-            ),
+            ("b/x^m - c/x^n", vec![("b", 2.0), ("c", 3.0), ("m", 4.0), ("n", 9.0)], 1),
             ("x^(1/3) + b*x^(2/3) - k", vec![("b", 2.0), ("k", 3.0)], 2),
             ("exp(x) - k*exp(-x)", vec![("k", 2.0)], 1),
-            (
-                "exp(2*b*x) - k*exp(b*x) + 1",
-                vec![("k", 3.0), ("b", 2.0)],
-                2,
-            ),
+            ("exp(2*b*x) - k*exp(b*x) + 1", vec![("k", 3.0), ("b", 2.0)], 2),
             ("exp(x)^2 - k*exp(-x/3)", vec![("k", 2.0)], 1),
             ("sinh(x) - k*cosh(x)", vec![("k", -0.7)], 1),
-            (
-                "a*sinh(b*x) + 5*cosh(b*x) - c",
-                vec![("a", 2.0), ("b", 3.0), ("c", 7.0)],
-                2,
-            ),
+            ("a*sinh(b*x) + 5*cosh(b*x) - c", vec![("a", 2.0), ("b", 3.0), ("c", 7.0)], 2),
             ("sinh(x) + k*exp(x) - 1", vec![("k", 0.7)], 1),
             ("x^5 + b*x^3 - k*x", vec![("b", 1.0), ("k", 3.0)], 2),
             ("(1 + x)^(-6) - k*(1 + x)^(-2)", vec![("k", 3.0)], 2),
         ];
         for (text, numbers, count) in table {
             let force: Expr = text.parse().unwrap();
-            let numbers: BTreeMap<Symbol, f64> = numbers
-                .into_iter()
-                .map(|(name, value)| (name.into(), value))
-                .collect();
+            let numbers: BTreeMap<Symbol, f64> =
+                numbers.into_iter().map(|(name, value)| (name.into(), value)).collect();
             let mut real: Vec<f64> = Vec::new();
             for form in inverted(&force, "x".into()) {
                 let Ok(place) = form.evaluate(&numbers) else {
@@ -472,10 +402,7 @@ mod tests {
                 if value.abs() < 1e-13 * size {
                     real.push(place);
                 } else {
-                    assert!(
-                        text.starts_with("a*sin(3*x)"),
-                        "{text} at {form} = {place}: {value}"
-                    );
+                    assert!(text.starts_with("a*sin(3*x)"), "{text} at {form} = {place}: {value}");
                 }
             }
             real.sort_by(f64::total_cmp);
@@ -495,12 +422,7 @@ mod tests {
 
     #[test]
     fn what_stands_in_two_places_is_not_inverted() {
-        for text in [
-            "x - k*exp(-x)",
-            "x^5 + x - k",
-            "sin(x) + cos(2*x) - k",
-            "x + sgn(x) - k",
-        ] {
+        for text in ["x - k*exp(-x)", "x^5 + x - k", "sin(x) + cos(2*x) - k", "x + sgn(x) - k"] {
             let force: Expr = text.parse().unwrap();
             assert_eq!(inverted(&force, "x".into()), vec![], "{text}");
         }

@@ -24,11 +24,7 @@ pub(super) fn refusal(oscillator: &Oscillator, force: &Expr) -> Option<Oscillato
         Ok::<(), std::convert::Infallible>(())
     });
     let root = found?;
-    let side = if begins_at_zero(&root, coordinate)? {
-        '<'
-    } else {
-        '>'
-    };
+    let side = if begins_at_zero(&root, coordinate)? { '<' } else { '>' };
     let (base, exponent) = root.base_and_exponent();
     let exponent = exponent.as_number()?.clone();
     let contains = |expr: &Expr| {
@@ -47,10 +43,7 @@ pub(super) fn refusal(oscillator: &Oscillator, force: &Expr) -> Option<Oscillato
         false if exponent == ratio(1, 2) => format!("sqrt({base})"),
         false => format!("{base}^({exponent})"),
     };
-    let others = force
-        .terms()
-        .iter()
-        .any(|term| term.contains(coordinate) && !contains(term));
+    let others = force.terms().iter().any(|term| term.contains(coordinate) && !contains(term));
     Some(OscillatorError::OneSided {
         coordinate,
         side,
@@ -76,11 +69,7 @@ fn begins_at_zero(expr: &Expr, coordinate: Symbol) -> Option<bool> {
     let parts = taylor(base, &[(coordinate, Rational::zero())], DEGREE).ok()?;
     let (power, lowest) = parts.iter().enumerate().find(|(_, part)| !part.is_zero())?;
     let coefficient = lowest.substitute(coordinate, &Expr::one()).ok()?;
-    let letters = coefficient
-        .symbols()
-        .into_iter()
-        .map(|name| (name, 1.0))
-        .collect();
+    let letters = coefficient.symbols().into_iter().map(|name| (name, 1.0)).collect();
     let positive = coefficient.evaluate(&letters).ok()? > 0.0;
     (power % 2 == 1).then_some(positive)
 }

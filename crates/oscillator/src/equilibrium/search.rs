@@ -41,10 +41,8 @@ pub(super) fn zeros(value: &dyn Fn(f64) -> f64, centres: &[f64]) -> Vec<Zero> {
     // first force that is felt on either side tells its sign.
     let at_zero = value(0.0) == 0.0;
     let felt = |side: f64| {
-        let mut forces = places(side, &[])
-            .into_iter()
-            .map(value)
-            .take_while(|force| force.is_finite());
+        let mut forces =
+            places(side, &[]).into_iter().map(value).take_while(|force| force.is_finite());
         forces.find(|force| *force != 0.0).unwrap_or(0.0)
     };
     let (left, right) = match at_zero {
@@ -59,11 +57,7 @@ pub(super) fn zeros(value: &dyn Fn(f64) -> f64, centres: &[f64]) -> Vec<Zero> {
         && left.signum() != right.signum()
         && let Some(position) = position
     {
-        found.push(Zero {
-            position,
-            stable: right > 0.0,
-            reachable: true,
-        });
+        found.push(Zero { position, stable: right > 0.0, reachable: true });
     }
     for side in [1.0, -1.0] {
         Walk::outwards(value, &places(side, centres), &mut found);
@@ -80,16 +74,11 @@ fn places(side: f64, centres: &[f64]) -> Vec<f64> {
         |k: i32, per_decade: i32| 10_f64.powf((f64::from(k) + 0.37) / f64::from(per_decade));
     let steps = -DECADES * PER_DECADE..DECADES * PER_DECADE;
     let mut sizes: Vec<f64> = steps.map(|k| power(k, PER_DECADE)).collect();
-    for centre in centres
-        .iter()
-        .map(|centre| centre * side)
-        .filter(|centre| *centre > 0.0)
-    {
+    for centre in centres.iter().map(|centre| centre * side).filter(|centre| *centre > 0.0) {
         let steps = -DECADES_OF_A_CENTRE * PER_DECADE_OF_A_CENTRE..0;
         let near = steps.map(|k| centre * power(k, PER_DECADE_OF_A_CENTRE));
         sizes.extend(
-            near.flat_map(|step| [centre - step, centre + step])
-                .filter(|size| *size > 0.0),
+            near.flat_map(|step| [centre - step, centre + step]).filter(|size| *size > 0.0),
         );
     }
     sizes.sort_by(f64::total_cmp);
@@ -108,11 +97,7 @@ struct Walk<'a> {
 
 impl Walk<'_> {
     fn outwards(value: &dyn Fn(f64) -> f64, places: &[f64], found: &mut Vec<Zero>) {
-        let mut walk = Walk {
-            value,
-            reachable: true,
-            found: vec![],
-        };
+        let mut walk = Walk { value, reachable: true, found: vec![] };
         // The last two places at which the force has a value other than zero, and the zeros since.
         let (mut before, mut last): (Option<Sample>, Option<Sample>) = (None, None);
         let mut flat = 0;
@@ -194,10 +179,8 @@ impl Walk<'_> {
         let far = 0.1 * width;
         let near = f64::max(1e-7 * width, 64.0 * f64::EPSILON * place.abs());
         let grows = |side: f64| {
-            let (outer, inner) = (
-                (self.value)(place + side * far),
-                (self.value)(place + side * near),
-            );
+            let (outer, inner) =
+                ((self.value)(place + side * far), (self.value)(place + side * near));
             !inner.is_finite() || inner.abs() > GROWTH * outer.abs()
         };
         grows(1.0) && grows(-1.0)
@@ -212,15 +195,10 @@ fn crossing(value: &dyn Fn(f64) -> f64, from: f64, to: f64) -> Option<f64> {
 /// The zeros at which a polynomial changes its sign, from its coefficients, lowest first.
 pub(super) fn polynomial_zeros(coefficients: &[f64]) -> Vec<Zero> {
     let found = real_zeros(coefficients, [f64::NEG_INFINITY, f64::INFINITY]);
-    let places: Vec<f64> = found
-        .iter()
-        .filter(|zero| zero.crosses)
-        .map(|zero| zero.place)
-        .collect();
+    let places: Vec<f64> =
+        found.iter().filter(|zero| zero.crosses).map(|zero| zero.place).collect();
     // Beyond the last zero the sign is that of the leading coefficient, and it alternates inwards.
-    let leading = coefficients
-        .iter()
-        .rfind(|coefficient| **coefficient != 0.0);
+    let leading = coefficients.iter().rfind(|coefficient| **coefficient != 0.0);
     let outermost = leading.is_some_and(|leading| *leading > 0.0);
     let count = places.len();
     let zero = |(index, &position): (usize, &f64)| Zero {
@@ -238,23 +216,14 @@ mod tests {
     use super::*;
 
     fn positions(value: &dyn Fn(f64) -> f64, stable: bool) -> Vec<f64> {
-        let found = zeros(value, &[])
-            .into_iter()
-            .filter(|zero| zero.stable == stable);
+        let found = zeros(value, &[]).into_iter().filter(|zero| zero.stable == stable);
         found.map(|zero| zero.position).collect()
     }
 
     fn assert_near(found: &[f64], expected: &[f64]) {
-        assert_eq!(
-            found.len(),
-            expected.len(),
-            "{found:?} against {expected:?}"
-        );
+        assert_eq!(found.len(), expected.len(), "{found:?} against {expected:?}");
         for (a, b) in found.iter().zip(expected) {
-            assert!(
-                (a - b).abs() <= 1e-13 * b.abs(),
-                "{found:?} against {expected:?}"
-            );
+            assert!((a - b).abs() <= 1e-13 * b.abs(), "{found:?} against {expected:?}");
         }
     }
 
@@ -276,31 +245,21 @@ mod tests {
     fn poles_underflow_and_plateaus_are_no_zeros() {
         assert_near(&positions(&|x| 1.0 / (x - 1.0), true), &[]);
         assert_near(&positions(&|x| 1.0 / (x - 1.0), false), &[]);
-        assert_near(
-            &positions(&|x| (x - 1.0) * (-(x - 1.0) * (x - 1.0)).exp(), true),
-            &[1.0],
-        );
-        assert_near(
-            &positions(&|x: f64| (x - 3.0).max(0.0) + (x - 1.0).min(0.0), true),
-            &[],
-        );
+        assert_near(&positions(&|x| (x - 1.0) * (-(x - 1.0) * (x - 1.0)).exp(), true), &[1.0]);
+        assert_near(&positions(&|x: f64| (x - 3.0).max(0.0) + (x - 1.0).min(0.0), true), &[]);
     }
 
     #[test]
     fn what_lies_beyond_a_pole_is_marked() {
-        for force in [
-            (|x| x - 0.25 / ((1.0 - x) * (1.0 - x)) + 0.2) as fn(f64) -> f64,
-            |x| x + 0.2 / (1.0 - x),
-        ] {
+        for force in [(|x| x - 0.25 / ((1.0 - x) * (1.0 - x)) + 0.2) as fn(f64) -> f64, |x| {
+            x + 0.2 / (1.0 - x)
+        }] {
             for zero in zeros(&force, &[]) {
                 assert_eq!(zero.reachable, zero.position < 1.0, "{zero:?}");
             }
         }
         let beyond = zeros(&|x| x - 0.25 / ((1.0 - x) * (1.0 - x)), &[]);
-        assert!(
-            beyond.iter().all(|zero| !zero.reachable) && !beyond.is_empty(),
-            "{beyond:?}"
-        );
+        assert!(beyond.iter().all(|zero| !zero.reachable) && !beyond.is_empty(), "{beyond:?}");
     }
 
     #[test]
@@ -315,16 +274,10 @@ mod tests {
         // (x - 1)(x - 2)(x - 3)(x + 1e-6)
         let coefficients = [-6e-6, -6.0 + 11e-6, 11.0 - 6e-6, -6.0 + 1e-6, 1.0];
         let found = polynomial_zeros(&coefficients);
-        let stable: Vec<f64> = found
-            .iter()
-            .filter(|zero| zero.stable)
-            .map(|zero| zero.position)
-            .collect();
+        let stable: Vec<f64> =
+            found.iter().filter(|zero| zero.stable).map(|zero| zero.position).collect();
         assert_eq!(stable.len(), 2, "{found:?}");
-        assert!(
-            (stable[0] - 1.0).abs() < 1e-12 && (stable[1] - 3.0).abs() < 1e-12,
-            "{found:?}"
-        );
+        assert!((stable[0] - 1.0).abs() < 1e-12 && (stable[1] - 3.0).abs() < 1e-12, "{found:?}");
         // (x - 1/10)^2 (x + 1): a double zero is no change of sign; x^2 + 1 has none.
         let once = polynomial_zeros(&[0.01, -0.19, 0.8, 1.0]);
         assert!(

@@ -50,11 +50,8 @@ fn with_known_angles(force: &Expr) -> Result<Expr, ExprError> {
             return rebuilt();
         };
         let angle = angle.expand()?;
-        let (turning, rest): (Vec<Expr>, Vec<Expr>) = angle
-            .terms()
-            .iter()
-            .cloned()
-            .partition(|term| half_turns(term).is_some());
+        let (turning, rest): (Vec<Expr>, Vec<Expr>) =
+            angle.terms().iter().cloned().partition(|term| half_turns(term).is_some());
         let turn: Rational = turning.iter().filter_map(half_turns).sum();
         let rest = Expr::sum(rest);
         let (Some(sine), Some(cosine)) = (sine_of(&turn), sine_of(&(&turn + ratio(1, 2)))) else {
@@ -85,19 +82,11 @@ fn half_turns(term: &Expr) -> Option<Rational> {
 fn sine_of(half_turns: &Rational) -> Option<Expr> {
     let whole = half_turns.floor();
     let part = half_turns - &whole;
-    let part = if part > ratio(1, 2) {
-        ratio(1, 1) - part
-    } else {
-        part
-    };
+    let part = if part > ratio(1, 2) { ratio(1, 1) - part } else { part };
     let squared = [(0, 1, 0), (1, 6, 1), (1, 4, 2), (1, 3, 3), (1, 2, 4)];
     let (.., quarters) = squared.into_iter().find(|&(p, q, _)| part == ratio(p, q))?;
     let size = Expr::number(ratio(quarters, 4)).sqrt().ok()?;
-    Some(if whole.to_integer().is_odd() {
-        -size
-    } else {
-        size
-    })
+    Some(if whole.to_integer().is_odd() { -size } else { size })
 }
 
 /// The exact form of the zero of a force near a number, the simplest first; `None` where none is
@@ -110,10 +99,7 @@ pub(super) fn exact_zero(force: &Expr, coordinate: Symbol, near: f64) -> Option<
     let angles = force.contains_function(Function::Sin)
         || force.contains_function(Function::Cos)
         || force.contains_function(Function::Tan);
-    let multiples = multiples
-        .into_iter()
-        .filter(|_| angles && turns.abs() < 1e6)
-        .map(pi);
+    let multiples = multiples.into_iter().filter(|_| angles && turns.abs() < 1e6).map(pi);
     let candidates = fractions_near(near)
         .into_iter()
         .map(Expr::number)
@@ -189,10 +175,8 @@ pub(super) fn coefficients(expression: &Expr, coordinate: Symbol) -> Option<Vec<
         for factor in factors {
             let (base, exponent) = factor.base_and_exponent();
             if base.as_symbol() == Some(coordinate) {
-                let exponent = exponent
-                    .as_number()
-                    .filter(|exponent| exponent.is_integer())?
-                    .to_integer();
+                let exponent =
+                    exponent.as_number().filter(|exponent| exponent.is_integer())?.to_integer();
                 power = exponent.to_usize().filter(|power| *power <= 1000)?;
             } else if factor.contains(coordinate) {
                 return None;
@@ -218,16 +202,11 @@ pub(super) fn closed_forms(force: &Expr, coordinate: Symbol) -> Vec<Expr> {
     let zero = |candidate: &Expr| {
         value_at(force, coordinate, candidate).is_ok_and(|value| value.is_zero())
     };
-    let mut forms: Vec<Expr> = linear_zeros(force, coordinate)
-        .into_iter()
-        .filter(zero)
-        .collect();
+    let mut forms: Vec<Expr> = linear_zeros(force, coordinate).into_iter().filter(zero).collect();
     let numerator =
         numerator(force, coordinate).and_then(|numerator| coefficients(&numerator, coordinate));
     if let Some(numerator) = numerator {
-        let lowest = numerator
-            .iter()
-            .position(|coefficient| !coefficient.is_zero());
+        let lowest = numerator.iter().position(|coefficient| !coefficient.is_zero());
         let numerator = &numerator[lowest.unwrap_or(numerator.len())..];
         let roots = match numerator {
             [c, b] => linear_root(b, c),
@@ -236,20 +215,12 @@ pub(super) fn closed_forms(force: &Expr, coordinate: Symbol) -> Vec<Expr> {
                 quadratic_roots(a, b, c).and_then(|squares| {
                     let roots: Result<Vec<Expr>, ExprError> =
                         squares.iter().map(Expr::sqrt).collect();
-                    Ok(roots?
-                        .into_iter()
-                        .flat_map(|root| [root.clone(), -root])
-                        .collect())
+                    Ok(roots?.into_iter().flat_map(|root| [root.clone(), -root]).collect())
                 })
             }
             _ => Ok(vec![]),
         };
-        forms.extend(
-            roots
-                .unwrap_or_default()
-                .into_iter()
-                .filter(|root| !root.is_zero()),
-        );
+        forms.extend(roots.unwrap_or_default().into_iter().filter(|root| !root.is_zero()));
     }
     forms.dedup();
     forms
@@ -262,13 +233,10 @@ pub(super) fn numerator(force: &Expr, coordinate: Symbol) -> Option<Expr> {
     for term in expanded.terms() {
         for factor in term.factors().1 {
             let (base, exponent) = factor.base_and_exponent();
-            let exponent = exponent
-                .as_number()
-                .filter(|exponent| exponent.is_negative());
+            let exponent = exponent.as_number().filter(|exponent| exponent.is_negative());
             if let Some(exponent) = exponent.filter(|_| base.contains(coordinate)) {
-                let power = (-exponent.to_integer())
-                    .to_i64()
-                    .filter(|power| (1..=4).contains(power))?;
+                let power =
+                    (-exponent.to_integer()).to_i64().filter(|power| (1..=4).contains(power))?;
                 if !exponent.is_integer() {
                     return None;
                 }
@@ -277,10 +245,8 @@ pub(super) fn numerator(force: &Expr, coordinate: Symbol) -> Option<Expr> {
             }
         }
     }
-    let powers: Result<Vec<Expr>, ExprError> = below
-        .into_values()
-        .map(|(base, power)| base.integer_power(power))
-        .collect();
+    let powers: Result<Vec<Expr>, ExprError> =
+        below.into_values().map(|(base, power)| base.integer_power(power)).collect();
     let below = powers.ok()?;
     let times =
         |term: &Expr| Expr::product(std::iter::once(term.clone()).chain(below.iter().cloned()));
@@ -303,8 +269,5 @@ pub(super) fn quadratic_roots(a: &Expr, b: &Expr, c: &Expr) -> Result<Vec<Expr>,
     }
     let discriminant = (b.integer_power(2)? - Expr::from(4) * a * c).expand()?;
     let sum = b + &discriminant.sqrt()?;
-    Ok(vec![
-        Expr::divide(&(Expr::from(-2) * c), &sum)?,
-        Expr::divide(&-sum, &(Expr::from(2) * a))?,
-    ])
+    Ok(vec![Expr::divide(&(Expr::from(-2) * c), &sum)?, Expr::divide(&-sum, &(Expr::from(2) * a))?])
 }

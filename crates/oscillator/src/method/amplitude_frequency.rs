@@ -60,19 +60,15 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let mixed = Expr::divide(&(&first_trial * &r2 - &second_trial * &r1), &(&r2 - &r1))?;
     let [one, two] = &trials;
     solution.derivation = vec![
-        Line::equation(first_trial, one).because(format!(
-            "first trial motion {AMPLITUDE}*cos({first_name}*t)"
-        )),
-        Line::equation(second_trial, two).because(format!(
-            "second trial motion {AMPLITUDE}*cos({second_name}*t)"
-        )),
+        Line::equation(first_trial, one)
+            .because(format!("first trial motion {AMPLITUDE}*cos({first_name}*t)")),
+        Line::equation(second_trial, two)
+            .because(format!("second trial motion {AMPLITUDE}*cos({second_name}*t)")),
         Line::equation(r1, first).because("residuals where the square of the cosine is 3/4"),
         Line::equation(r2, second),
         Line::equal([omega?.into(), mixed.into(), law.into()]).because("weighted by the residuals"),
     ];
-    solution
-        .validity
-        .push(Note::Collocated(Instant::CosineSquared));
+    solution.validity.push(Note::Collocated(Instant::CosineSquared));
     Ok(solution)
 }
 

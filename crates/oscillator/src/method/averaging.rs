@@ -93,9 +93,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         order => order,
     };
     let conserves = parts.damping.is_zero();
-    let convention = options
-        .amplitude
-        .unwrap_or(AmplitudeConvention::FirstHarmonic);
+    let convention = options.amplitude.unwrap_or(AmplitudeConvention::FirstHarmonic);
     if convention == AmplitudeConvention::Initial && !conserves {
         return refuse(Unsuited::SlowAmplitude);
     }
@@ -123,10 +121,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         ) => {
             // That it restores is said first.
             small.linear_part()?;
-            return refuse(not_polynomial(
-                &small.without_linear()?,
-                oscillator.coordinate,
-            ));
+            return refuse(not_polynomial(&small.without_linear()?, oscillator.coordinate));
         }
         Err(error) => return Err(error.into()),
     };
@@ -152,10 +147,7 @@ struct Letters {
 
 impl Letters {
     fn beside(taken: &[Symbol]) -> Self {
-        Self {
-            taken: taken.to_vec(),
-            phase: fresh("psi", taken),
-        }
+        Self { taken: taken.to_vec(), phase: fresh("psi", taken) }
     }
 
     /// `g1`, `u1`, `A2`, `B2`.
@@ -192,19 +184,11 @@ impl Averaged {
         let [first, all] = &self.phase_rates;
         let moved = &first.differentiate(a)? * &shift;
         self.phase_rates = [renamed(first)?, renamed(&(all + &moved).expand()?)?];
-        let cosine = self
-            .correction
-            .at_zero()
-            .product(&Series::cos(POLYNOMIALS, 1));
+        let cosine = self.correction.at_zero().product(&Series::cos(POLYNOMIALS, 1));
         let renamed = Polynomial::symbol(start);
-        self.correction = self
-            .correction
-            .difference(&cosine)
-            .map(POLYNOMIALS, |value, _| {
-                value
-                    .substitute(a, &renamed)
-                    .unwrap_or_else(|| value.clone())
-            });
+        self.correction = self.correction.difference(&cosine).map(POLYNOMIALS, |value, _| {
+            value.substitute(a, &renamed).unwrap_or_else(|| value.clone())
+        });
         self.amplitude = start;
         Ok(())
     }
@@ -221,10 +205,7 @@ impl Averaged {
         let [_, phase_rate] = self.phase_rates;
         let law = match phase_rate.to_polynomial(&mut |_| None)? {
             Some(frequency) => Law::Frequency(frequency),
-            None => Law::Closed(ClosedForm {
-                squared: false,
-                value: phase_rate.clone(),
-            }),
+            None => Law::Closed(ClosedForm { squared: false, value: phase_rate.clone() }),
         };
         let taken: Vec<Symbol> = oscillator.names();
         let leading = Series::cos(POLYNOMIALS, 1)
@@ -289,9 +270,7 @@ fn small_in_words(small: &SmallTerms, order: u32) -> (Symbol, Vec<Symbol>, Note)
     let first = names.next().unwrap_or(small.delta());
     let small_with: Vec<Symbol> = names.collect();
     let cut = Note::Cut(Cut::Truncated {
-        small: std::iter::once(first)
-            .chain(small_with.iter().copied())
-            .collect(),
+        small: std::iter::once(first).chain(small_with.iter().copied()).collect(),
         order,
         marks: small.letters().is_empty().then(Expr::one),
     });
@@ -305,23 +284,13 @@ fn of_polynomial(
     force: &PerturbedForce,
     order: u32,
 ) -> Result<Averaged, Refusal> {
-    let sizes = force
-        .terms
-        .iter()
-        .map(|term| (term.order, term.position + term.velocity));
+    let sizes = force.terms.iter().map(|term| (term.order, term.position + term.velocity));
     bounded(sizes, order as usize + 1)?;
     let mut taken = oscillator.names();
     let (omega0, root) = force.linear_frequency(&taken);
-    let used = force
-        .terms
-        .iter()
-        .map(|term| &term.coefficient)
-        .chain([&omega0]);
+    let used = force.terms.iter().map(|term| &term.coefficient).chain([&omega0]);
     let used: std::collections::BTreeSet<Symbol> = used.flat_map(Polynomial::symbols).collect();
-    let constants = force
-        .definitions
-        .iter()
-        .filter(|entry| used.contains(&entry.symbol));
+    let constants = force.definitions.iter().filter(|entry| used.contains(&entry.symbol));
     let definitions: Vec<Definition> = root.iter().chain(constants).cloned().collect();
     taken.extend(definitions.iter().map(|definition| definition.symbol));
     let a = AmplitudeConvention::FirstHarmonic.symbol();
@@ -334,18 +303,13 @@ fn of_polynomial(
         Line::equation(letters.of("g", 1), slow.force[0].clone()).because("the small terms are"),
     ];
     let twice = Expr::from(2) * Expr::from(&omega0);
-    let (rate, phase) = (
-        Expr::from(a.derivative()),
-        Expr::from(letters.phase.derivative()),
-    );
+    let (rate, phase) = (Expr::from(a.derivative()), Expr::from(letters.phase.derivative()));
     derivation
         .push(Line::equation(&twice * &rate, &slow.secular_sine).because("what sin(θ) asks for"));
     let cosine = &twice * &Expr::from(a) * (&phase - &Expr::from(&omega0));
     derivation.push(Line::equation(cosine, &slow.secular_cosine).because("what cos(θ) asks for"));
-    let [mut amplitude_rate, mut phase_rate] = [
-        slow.first[0].clone(),
-        omega0.clone() + slow.first[1].clone(),
-    ];
+    let [mut amplitude_rate, mut phase_rate] =
+        [slow.first[0].clone(), omega0.clone() + slow.first[1].clone()];
     let leading = [Expr::from(&amplitude_rate), Expr::from(&phase_rate)];
     let mut correction = Series::zero(POLYNOMIALS);
     let mut release = Release::at_start();
@@ -408,11 +372,7 @@ fn steady(
         }
         Err(reason) => (
             vec![],
-            vec![Note::SteadyAmplitudes {
-                square: z,
-                polynomial: equation.in_square(z),
-                reason,
-            }],
+            vec![Note::SteadyAmplitudes { square: z, polynomial: equation.in_square(z), reason }],
         ),
     }
 }
@@ -444,10 +404,7 @@ fn differentiated(polynomial: &Polynomial, by: Symbol) -> Polynomial {
     for (monomial, number) in polynomial.terms() {
         let exponent = monomial.exponent(by);
         let lower = monomial.product(&Monomial::power_of(by, -1));
-        slope.add_term(
-            lower,
-            number * Rational::from_integer(Integer::from(exponent)),
-        );
+        slope.add_term(lower, number * Rational::from_integer(Integer::from(exponent)));
     }
     slope
 }
@@ -456,15 +413,12 @@ impl Slow {
     fn new(force: &PerturbedForce, omega0: &Polynomial, a: Symbol) -> Self {
         let amplitude = constant(&Polynomial::symbol(a));
         let position = amplitude.product(&Series::cos(POLYNOMIALS, 1));
-        let velocity = amplitude
-            .product(&constant(omega0))
-            .product(&Series::sin(POLYNOMIALS, 1).times(-1));
+        let velocity =
+            amplitude.product(&constant(omega0)).product(&Series::sin(POLYNOMIALS, 1).times(-1));
         let along = |order: usize| {
             let terms = force.terms.iter().filter(|term| term.order == order);
             terms.fold(Series::zero(POLYNOMIALS), |sum, term| {
-                let wave = position
-                    .power(term.position)
-                    .product(&velocity.power(term.velocity));
+                let wave = position.power(term.position).product(&velocity.power(term.velocity));
                 sum.sum(&wave.product(&constant(&term.coefficient)))
             })
         };
@@ -478,10 +432,8 @@ impl Slow {
         });
         let half = Polynomial::constant(Rational::new(1.into(), 2.into())).product(&inverse);
         let over_a = Monomial::power_of(a, -1);
-        let first = [
-            secular_sine.product(&half),
-            secular_cosine.product(&half).times_monomial(&over_a),
-        ];
+        let first =
+            [secular_sine.product(&half), secular_cosine.product(&half).times_monomial(&over_a)];
         Self {
             a,
             correction: driven.product(&constant(&inverse.product(&inverse))),
@@ -520,9 +472,7 @@ impl Slow {
         let by_amplitude = slope.map(POLYNOMIALS, |value, _| differentiated(value, self.a));
         let omega0 = constant(&self.omega0);
         let (cos, sin) = (Series::cos(POLYNOMIALS, 1), Series::sin(POLYNOMIALS, 1));
-        let drift = constant(a1)
-            .product(&by_amplitude)
-            .sum(&constant(b1).product(&bend));
+        let drift = constant(a1).product(&by_amplitude).sum(&constant(b1).product(&bend));
         let drift = omega0.product(&drift).times(2);
         let amplitude = Polynomial::symbol(self.a);
         let speed = constant(a1)
@@ -535,21 +485,12 @@ impl Slow {
             let mut sum = sum;
             let coefficient = constant(&term.coefficient);
             if p > 0 {
-                let wave = self
-                    .position
-                    .power(p - 1)
-                    .product(&self.velocity.power(q))
-                    .product(u);
+                let wave = self.position.power(p - 1).product(&self.velocity.power(q)).product(u);
                 sum = sum.sum(&wave.product(&coefficient).times(i64::from(p)));
             }
             if q > 0 {
                 let wave = self.position.power(p).product(&self.velocity.power(q - 1));
-                sum = sum.sum(
-                    &wave
-                        .product(&speed)
-                        .product(&coefficient)
-                        .times(i64::from(q)),
-                );
+                sum = sum.sum(&wave.product(&speed).product(&coefficient).times(i64::from(q)));
             }
             sum
         });
@@ -565,9 +506,7 @@ impl Slow {
             + amplitude.product(b1).product(b1).product(&number(-1));
         [
             of_amplitude.product(&half),
-            of_phase
-                .product(&half)
-                .times_monomial(&Monomial::power_of(self.a, -1)),
+            of_phase.product(&half).times_monomial(&Monomial::power_of(self.a, -1)),
         ]
     }
 }
@@ -662,14 +601,7 @@ fn by_projections(oscillator: &Oscillator, small: &SmallTerms) -> Result<Average
     let found = Projected::of(oscillator, small, &amplitude)?;
     let letters = Letters::beside(&oscillator.names());
     let mut derivation = found.along(oscillator, &amplitude, &letters)?;
-    let Projected {
-        omega0,
-        root,
-        definitions,
-        sine,
-        cosine,
-        ..
-    } = found;
+    let Projected { omega0, root, definitions, sine, cosine, .. } = found;
     let twice = Expr::from(2) * &omega0;
     let amplitude_rate = Expr::divide(&sine, &twice)?.expand()?;
     let phase_rate = (&omega0 + &Expr::divide(&cosine, &(&twice * &amplitude))?).expand()?;

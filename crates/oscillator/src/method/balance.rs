@@ -112,12 +112,8 @@ impl Continuation {
         let goal = amplitude.abs().ln();
         let known = self.states.borrow();
         let distance = |state: &State| (state.logarithm() - goal).abs();
-        let reached = known
-            .iter()
-            .filter(|state| state.side() == amplitude.signum());
-        reached
-            .min_by(|one, other| distance(one).total_cmp(&distance(other)))
-            .cloned()
+        let reached = known.iter().filter(|state| state.side() == amplitude.signum());
+        reached.min_by(|one, other| distance(one).total_cmp(&distance(other))).cloned()
     }
 
     /// The motion of the largest amplitude known that is no larger than this one, which is on this
@@ -128,9 +124,7 @@ impl Continuation {
         let reached = known
             .iter()
             .filter(|state| state.logarithm() <= goal && state.side() == amplitude.signum());
-        reached
-            .max_by(|one, other| one.logarithm().total_cmp(&other.logarithm()))
-            .cloned()
+        reached.max_by(|one, other| one.logarithm().total_cmp(&other.logarithm())).cloned()
     }
 }
 
@@ -181,9 +175,7 @@ pub fn balance(
 /// The last of these motions up to which, from the first on, nothing changes.
 fn settled<'s>(motions: &[&'s (State, f64)]) -> Option<&'s (State, f64)> {
     let first = motions.first()?.1;
-    let same = motions
-        .iter()
-        .take_while(|entry| (entry.1 - first).abs() <= 1e-6);
+    let same = motions.iter().take_while(|entry| (entry.1 - first).abs() <= 1e-6);
     same.last().copied()
 }
 
@@ -258,9 +250,8 @@ impl<'a> Problem<'a> {
             harmonics,
             count: harmonics.len(),
             first: harmonics.iter().position(|&k| k == 1)?,
-            points: degree.map_or(8 * highest + 32, |degree| {
-                (degree as usize + 1) * highest / 2 + 2
-            }),
+            points: degree
+                .map_or(8 * highest + 32, |degree| (degree as usize + 1) * highest / 2 + 2),
             polynomial: degree.is_some(),
             fineness: 1,
             equal_steps: OnceCell::new(),
@@ -279,9 +270,7 @@ impl<'a> Problem<'a> {
         let value = |i: usize| alpha * self.displacement(state, PI * i as f64 / SAMPLES as f64);
         (0..=SAMPLES)
             .map(value)
-            .fold((f64::MAX, f64::MIN), |(low, high), x| {
-                (low.min(x), high.max(x))
-            })
+            .fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(x), high.max(x)))
     }
 
     /// `sum b_k cos(k theta)`.
@@ -314,9 +303,8 @@ impl<'a> Problem<'a> {
         if cuts.is_empty() {
             let points = self.points * finer;
             let equal_steps = || {
-                let angles: Vec<f64> = (0..points)
-                    .map(|i| PI * (i as f64 + 0.5) / points as f64)
-                    .collect();
+                let angles: Vec<f64> =
+                    (0..points).map(|i| PI * (i as f64 + 0.5) / points as f64).collect();
                 Rc::new(self.with_cosines(
                     &angles,
                     vec![PI / points as f64; points],
@@ -354,15 +342,11 @@ impl<'a> Problem<'a> {
         let highest = self.harmonics.last().copied().unwrap_or(1);
         let steps = 8 * highest + 64;
         let place = |i: usize| PI * i as f64 / steps as f64;
-        let positions: Vec<f64> = (0..=steps)
-            .map(|i| alpha * self.displacement(state, place(i)))
-            .collect();
+        let positions: Vec<f64> =
+            (0..=steps).map(|i| alpha * self.displacement(state, place(i))).collect();
         let mut crossings: Vec<(f64, f64)> = Vec::new();
         for (i, pair) in positions.windows(2).enumerate() {
-            for &cut in cuts
-                .iter()
-                .filter(|&&cut| (pair[0] - cut) * (pair[1] - cut) <= 0.0)
-            {
+            for &cut in cuts.iter().filter(|&&cut| (pair[0] - cut) * (pair[1] - cut) <= 0.0) {
                 let excess = |theta: f64| alpha * self.displacement(state, theta) - cut;
                 if let Ok(theta) = find_root(excess, place(i), place(i + 1)) {
                     crossings.push((theta, cut));
@@ -396,11 +380,7 @@ impl<'a> Problem<'a> {
             let step = 1e-9 * alpha;
             let jump = self.force.at(cut + step) - self.force.at(cut - step);
             let speed = alpha * self.velocity(state, theta).abs();
-            let size = self
-                .force
-                .at(cut + step)
-                .abs()
-                .max(self.force.at(cut - step).abs());
+            let size = self.force.at(cut + step).abs().max(self.force.at(cut - step).abs());
             if jump.abs() > 1e-5 * size && speed > 0.0 {
                 angles.push(theta);
                 weights.push(0.0);
@@ -427,11 +407,7 @@ impl<'a> Problem<'a> {
                 }
             }
         }
-        if forces
-            .iter()
-            .chain(slopes.iter())
-            .any(|value| !value.is_finite())
-        {
+        if forces.iter().chain(slopes.iter()).any(|value| !value.is_finite()) {
             return None;
         }
         let mut weighted = nodes.cosines.clone();
@@ -558,18 +534,14 @@ impl<'a> Problem<'a> {
             .collect();
         // Far out the force may overflow.
         let felt = tried.iter().rposition(Option::is_some)?;
-        let downwards: Vec<&(State, f64)> = tried[..=felt]
-            .iter()
-            .rev()
-            .map_while(Option::as_ref)
-            .collect();
+        let downwards: Vec<&(State, f64)> =
+            tried[..=felt].iter().rev().map_while(Option::as_ref).collect();
         self.near(&settled(&downwards)?.0, 0.5)
     }
 
     /// A solution close to a guess.
     fn near(&self, guess: &State, distance: f64) -> Option<State> {
-        self.at_amplitude(guess, 1)
-            .filter(|found| (&found.0 - &guess.0).amax() <= distance)
+        self.at_amplitude(guess, 1).filter(|found| (&found.0 - &guess.0).amax() <= distance)
     }
 
     /// The branch from rest to the amplitude, or that from large amplitudes and where the one from
@@ -629,9 +601,7 @@ impl<'a> Problem<'a> {
             known.states.borrow_mut().append(&mut passed);
             found
         };
-        let nearest = known
-            .nearest(self.amplitude)
-            .and_then(|state| self.near(&state, 0.05));
+        let nearest = known.nearest(self.amplitude).and_then(|state| self.near(&state, 0.05));
         if let Some(Ok(found)) = nearest.map(&reached) {
             return Ok(found);
         }
@@ -655,9 +625,7 @@ impl<'a> Problem<'a> {
         for start in starts.take(STARTS) {
             let from = start.logarithm().exp() * self.side();
             let found = reached(start);
-            known
-                .in_vain
-                .set(known.in_vain.get() + usize::from(found.is_err()));
+            known.in_vain.set(known.in_vain.get() + usize::from(found.is_err()));
             match found {
                 Ok(found) => return Ok(found),
                 Err(last) if lost == Lost::NoStart => {
@@ -710,9 +678,7 @@ impl<'a> Problem<'a> {
         // Near the equilibrium and far from it alike.
         let parts =
             (1..SAMPLES).flat_map(|k| [0.97_f64.powi(k), f64::from(k) / f64::from(SAMPLES)]);
-        let mut places = parts
-            .flat_map(|part| [part * low, part * high])
-            .filter(|&x| x != 0.0);
+        let mut places = parts.flat_map(|part| [part * low, part * high]).filter(|&x| x != 0.0);
         places.all(|x| x * self.force.at(x) > 0.0)
     }
 

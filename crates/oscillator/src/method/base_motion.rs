@@ -22,10 +22,7 @@ pub(super) fn is_of_drive(refusal: &Refusal) -> bool {
     let Refusal::Unsuited { reason, .. } = refusal else {
         return false;
     };
-    matches!(
-        reason,
-        Unsuited::NoWave { .. } | Unsuited::SecondDrive { .. }
-    )
+    matches!(reason, Unsuited::NoWave { .. } | Unsuited::SecondDrive { .. })
 }
 
 /// The answer in the coordinate relative to the first base that leaves no such refusal; `None`
@@ -62,10 +59,7 @@ fn relative_to(
     let speed = base.differentiate(t)?;
     let own = [
         (oscillator.coordinate, &Expr::from(relative) + base),
-        (
-            oscillator.velocity(),
-            &Expr::from(relative.derivative()) + &speed,
-        ),
+        (oscillator.velocity(), &Expr::from(relative.derivative()) + &speed),
     ];
     let force = oscillator.force.substitute_all(&BTreeMap::from(own))?;
     let left = (&force + &speed.differentiate(t)?).expand()?;
@@ -114,9 +108,7 @@ fn beside(sum: &Expr, name: Symbol, own: [Symbol; 2]) -> Result<Option<Expr>, Ex
     let t = Symbol::new("t");
     let (moving, still): (Vec<&Expr>, Vec<&Expr>) =
         sum.terms().iter().partition(|term| term.contains(t));
-    let mut with_motion = still
-        .iter()
-        .filter(|term| own.iter().any(|name| term.contains(*name)));
+    let mut with_motion = still.iter().filter(|term| own.iter().any(|name| term.contains(*name)));
     let (Some(only), None) = (with_motion.next(), with_motion.next()) else {
         return Ok(None);
     };
@@ -125,9 +117,7 @@ fn beside(sum: &Expr, name: Symbol, own: [Symbol; 2]) -> Result<Option<Expr>, Ex
     if moving.is_empty() || holds_motion(&factor) || moving.iter().any(|term| holds_motion(term)) {
         return Ok(None);
     }
-    Expr::divide(&Expr::sum(moving.into_iter().cloned()), &factor)?
-        .expand()
-        .map(Some)
+    Expr::divide(&Expr::sum(moving.into_iter().cloned()), &factor)?.expand().map(Some)
 }
 
 /// The motion of which a sum of waves is the velocity.

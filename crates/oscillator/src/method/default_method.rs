@@ -123,10 +123,7 @@ pub(super) fn is_of_damping(refusal: &Refusal, oscillator: &Oscillator) -> bool 
         parts.is_ok_and(|parts| !parts.damping.is_zero() && parts.forcing.is_zero())
     };
     match refusal {
-        Refusal::Unsuited {
-            reason: Unsuited::Damping { .. },
-            ..
-        }
+        Refusal::Unsuited { reason: Unsuited::Damping { .. }, .. }
         | Refusal::AmplitudeNotFree { .. }
         | Refusal::NoLimitCycle { .. } => damped(),
         Refusal::Oscillator(
@@ -152,23 +149,19 @@ fn averaged(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refu
     let asked = options.order.unwrap_or(1);
     let mut given = asked;
     loop {
-        let options = Options {
-            order: Some(given),
-            ..options.clone()
-        };
+        let options = Options { order: Some(given), ..options.clone() };
         let lower = match solve_by(Method::Averaging, oscillator, &options) {
             Ok(mut solution) => {
                 if given < asked {
-                    solution
-                        .validity
-                        .push(Note::HighestOrderHere { asked, given });
+                    solution.validity.push(Note::HighestOrderHere { asked, given });
                 }
                 return Ok(solution);
             }
-            Err(Refusal::Unsuited {
-                reason: Unsuited::HighestOrder { highest },
-                ..
-            }) if highest < given => highest,
+            Err(Refusal::Unsuited { reason: Unsuited::HighestOrder { highest }, .. })
+                if highest < given =>
+            {
+                highest
+            }
             Err(Refusal::Unsuited {
                 reason: Unsuited::PolynomialOnly { .. } | Unsuited::FirstOrderOfPower { .. },
                 ..
@@ -237,19 +230,14 @@ fn in_powers(
     oscillator: &Oscillator,
     options: &Options,
 ) -> Result<Solution, Refusal> {
-    let Refusal::Unsuited {
-        reason: reason @ Unsuited::NoProjection { .. },
-        ..
-    } = &refusal
-    else {
+    let Refusal::Unsuited { reason: reason @ Unsuited::NoProjection { .. }, .. } = &refusal else {
         return Err(refusal);
     };
     match solve_by(Method::MultipleScales, oscillator, options) {
         Ok(mut solution) => {
-            solution.validity.push(Note::InsteadOf {
-                usual: Method::Averaging,
-                reason: format!("it {reason}"),
-            });
+            solution
+                .validity
+                .push(Note::InsteadOf { usual: Method::Averaging, reason: format!("it {reason}") });
             Ok(solution)
         }
         Err(_) => Err(refusal),
@@ -312,9 +300,8 @@ fn without_expansion(
             }
         }
     };
-    solution.validity.push(Note::InsteadOf {
-        usual: Method::LindstedtPoincare,
-        reason: error.to_string(),
-    });
+    solution
+        .validity
+        .push(Note::InsteadOf { usual: Method::LindstedtPoincare, reason: error.to_string() });
     Some(solution)
 }

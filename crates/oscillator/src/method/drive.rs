@@ -121,10 +121,8 @@ impl Drive {
             definitions: vec![],
         };
         let terms = parts.forcing.terms();
-        let waves: Vec<Wave> = terms
-            .iter()
-            .map(|term| Wave::new(term, method))
-            .collect::<Result<_, _>>()?;
+        let waves: Vec<Wave> =
+            terms.iter().map(|term| Wave::new(term, method)).collect::<Result<_, _>>()?;
         let Some(first) = waves.first() else {
             return Ok(drive);
         };
@@ -140,23 +138,16 @@ impl Drive {
             }
         }
         // The largest rate of which all are multiples.
-        let below = multiples
-            .iter()
-            .fold(1.into(), |common: Integer, own| common.lcm(own.denom()));
+        let below = multiples.iter().fold(1.into(), |common: Integer, own| common.lcm(own.denom()));
         let whole: Vec<Integer> = multiples
             .iter()
             .map(|own| (own * Rational::from_integer(below.clone())).to_integer())
             .collect();
-        let common = whole
-            .iter()
-            .fold(0.into(), |common: Integer, own| common.gcd(own));
+        let common = whole.iter().fold(0.into(), |common: Integer, own| common.gcd(own));
         let unit = Rational::new(common.clone(), below);
         drive.frequency = (&Expr::number(unit) * &first.rate).expand()?;
-        let multiple_of = |number: &Integer| {
-            (number / &common)
-                .to_u32()
-                .filter(|own| *own <= HIGHEST_MULTIPLE)
-        };
+        let multiple_of =
+            |number: &Integer| (number / &common).to_u32().filter(|own| *own <= HIGHEST_MULTIPLE);
         for ((wave, number), term) in waves.into_iter().zip(&whole).zip(terms) {
             let Some(multiple) = multiple_of(number) else {
                 let term = term.clone().into();
@@ -205,22 +196,13 @@ impl Drive {
                 (p / common, below / common)
             })
         });
-        let pairs = || {
-            multiples
-                .iter()
-                .flat_map(|one| multiples.iter().map(move |other| (*one, *other)))
-        };
-        let combined = pairs()
-            .filter(|(one, other)| one < other)
-            .flat_map(|(one, other)| {
-                let twice = [
-                    2 * one + other,
-                    (2 * one).abs_diff(other),
-                    one + 2 * other,
-                    2 * other - one,
-                ];
-                [one + other, other - one].into_iter().chain(twice)
-            });
+        let pairs =
+            || multiples.iter().flat_map(|one| multiples.iter().map(move |other| (*one, *other)));
+        let combined = pairs().filter(|(one, other)| one < other).flat_map(|(one, other)| {
+            let twice =
+                [2 * one + other, (2 * one).abs_diff(other), one + 2 * other, 2 * other - one];
+            [one + other, other - one].into_iter().chain(twice)
+        });
         let mut found = vec![];
         for ratio in ratios.chain(combined.map(|sum| (1, sum))) {
             if is_ratio(ratio) && !found.contains(&ratio) {
@@ -296,10 +278,7 @@ fn named(value: Expr, letter: &str, definitions: &mut Vec<Definition>, taken: &[
     }
     let stem = fresh_stem(letter, taken);
     let symbol = Symbol::new(&format!("{stem}{}", definitions.len() / 2 + 1));
-    definitions.push(Definition {
-        symbol,
-        meaning: value,
-    });
+    definitions.push(Definition { symbol, meaning: value });
     Expr::from(symbol)
 }
 
@@ -332,15 +311,10 @@ impl Wave {
             _ => return Err(not_periodic()),
         };
         let argument = argument.expand()?;
-        let (turning, rest): (Vec<Expr>, Vec<Expr>) = argument
-            .terms()
-            .iter()
-            .cloned()
-            .partition(|term| term.contains(t));
-        let (mut rate, mut phase) = (
-            Expr::divide(&Expr::sum(turning), &Expr::from(t))?.expand()?,
-            Expr::sum(rest),
-        );
+        let (turning, rest): (Vec<Expr>, Vec<Expr>) =
+            argument.terms().iter().cloned().partition(|term| term.contains(t));
+        let (mut rate, mut phase) =
+            (Expr::divide(&Expr::sum(turning), &Expr::from(t))?.expand()?, Expr::sum(rest));
         let moves =
             |part: &Expr| part.contains(t) || part.symbols().iter().any(|name| name.primes() > 0);
         if moves(&rate) || moves(&phase) {
@@ -354,12 +328,7 @@ impl Wave {
                 factor = -&factor;
             }
         }
-        Ok(Self {
-            factor,
-            rate,
-            phase,
-            quadrature,
-        })
+        Ok(Self { factor, rate, phase, quadrature })
     }
 
     /// The part of the phase that does not move.

@@ -85,9 +85,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             solution.law = Law::Quadrature(vec![Line::equation(squared, integral)]);
         }
     }
-    solution
-        .validity
-        .push(Note::Collocated(Instant::EighthOfPeriod));
+    solution.validity.push(Note::Collocated(Instant::EighthOfPeriod));
     Ok(solution)
 }
 

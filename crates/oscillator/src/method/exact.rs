@@ -79,10 +79,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     solution.law = match law {
         Some(Frequency::Squared(squared)) => Law::squared(squared),
         Some(Frequency::Plain(frequency)) => Law::Frequency(frequency),
-        Some(Frequency::Form(value)) => Law::Closed(ClosedForm {
-            squared: false,
-            value,
-        }),
+        Some(Frequency::Form(value)) => Law::Closed(ClosedForm { squared: false, value }),
         None => Law::Quadrature(period_by_energy(oscillator, &force)?),
     };
     let is_elliptic = |motion: &Expr| {
@@ -94,16 +91,12 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let by_jacobi = motion.as_ref().is_some_and(is_elliptic);
     solution.closed_motion = motion;
     solution.derivation = period_by_energy(oscillator, &force)?;
-    solution
-        .validity
-        .push(Note::Exact(match solution.law.quadrature() {
-            None if is_free_and_linear(oscillator)? => ExactBy::Linear,
-            None => ExactBy::ClosedForm,
-            Some(_) => ExactBy::Quadrature,
-        }));
-    solution
-        .validity
-        .extend(by_jacobi.then_some(Note::EllipticFunctions));
+    solution.validity.push(Note::Exact(match solution.law.quadrature() {
+        None if is_free_and_linear(oscillator)? => ExactBy::Linear,
+        None => ExactBy::ClosedForm,
+        Some(_) => ExactBy::Quadrature,
+    }));
+    solution.validity.extend(by_jacobi.then_some(Note::EllipticFunctions));
     Ok(solution)
 }
 
@@ -141,11 +134,7 @@ impl Energy<'_> {
         let at = |place: &Expr| -> Option<Expr> {
             let value = self.potential.as_ref()?.substitute(x, place).ok()?;
             // Of both signs where the other turning point is another.
-            let value = if self.is_odd {
-                positive_amplitude(&value)?
-            } else {
-                value
-            };
+            let value = if self.is_odd { positive_amplitude(&value)? } else { value };
             value.expand().ok()
         };
         let gained = at(&amplitude).zip(at(&x.into()));
@@ -163,11 +152,8 @@ impl Energy<'_> {
             },
             |gained| Ok(gained.into()),
         )?;
-        let (factor, from) = if self.is_odd {
-            (4, Expr::zero())
-        } else {
-            (2, Expr::from(turning_back))
-        };
+        let (factor, from) =
+            if self.is_odd { (4, Expr::zero()) } else { (2, Expr::from(turning_back)) };
         let mut lines = Vec::new();
         if !self.is_odd {
             let equal: [Formula; 2] = match at(&from).zip(at(&amplitude)) {
@@ -191,10 +177,7 @@ impl Energy<'_> {
             factor: Expr::from(factor),
             from,
             to: amplitude,
-            integrand: Box::new(Formula::OverRoot(
-                self.root_of_mass.clone(),
-                Box::new(gained),
-            )),
+            integrand: Box::new(Formula::OverRoot(self.root_of_mass.clone(), Box::new(gained))),
             variable: x,
         };
         let words = match self.is_odd {
@@ -225,10 +208,7 @@ enum Frequency {
 
 impl Known {
     fn form(value: Expr, motion: Option<Expr>) -> Self {
-        Self {
-            law: Frequency::Form(value),
-            motion,
-        }
+        Self { law: Frequency::Form(value), motion }
     }
 }
 
@@ -239,11 +219,7 @@ fn time() -> Expr {
 /// `sn`, `cn` and `dn` of an argument and a parameter.
 fn jacobi(argument: &Expr, parameter: &Expr) -> Result<[Expr; 3], ExprError> {
     let of = |function| Expr::function(function, vec![argument.clone(), parameter.clone()]);
-    Ok([
-        of(Function::JacobiSn)?,
-        of(Function::JacobiCn)?,
-        of(Function::JacobiDn)?,
-    ])
+    Ok([of(Function::JacobiSn)?, of(Function::JacobiCn)?, of(Function::JacobiDn)?])
 }
 
 fn half() -> Expr {
@@ -256,34 +232,24 @@ fn elliptic(parameter: Expr) -> Result<Expr, ExprError> {
 
 /// `pi scale/(2 K(parameter))`.
 fn by_elliptic(scale: &Expr, parameter: Expr) -> Result<Expr, ExprError> {
-    Expr::divide(
-        &(Expr::pi() * scale),
-        &(Expr::from(2) * elliptic(parameter)?),
-    )
+    Expr::divide(&(Expr::pi() * scale), &(Expr::from(2) * elliptic(parameter)?))
 }
 
 fn of_polynomial(coefficients: &[Polynomial]) -> Result<Option<Known>, Refusal> {
-    let powers: Vec<usize> = (0..coefficients.len())
-        .filter(|&n| !coefficients[n].is_zero())
-        .collect();
+    let powers: Vec<usize> =
+        (0..coefficients.len()).filter(|&n| !coefficients[n].is_zero()).collect();
     let of = |n: usize| coefficients.get(n).map_or_else(Expr::zero, Expr::from);
     let amplitude = Expr::symbol("A");
     let squared = amplitude.integer_power(2)?;
     match powers.as_slice() {
         [1] => {
-            let squared = coefficients
-                .get(1)
-                .cloned()
-                .unwrap_or_else(Polynomial::zero);
+            let squared = coefficients.get(1).cloned().unwrap_or_else(Polynomial::zero);
             let (rate, law) = match squared.single_term_root() {
                 Some(root) => (Expr::from(&root), Frequency::Plain(root)),
                 None => (of(1).sqrt()?, Frequency::Squared(squared)),
             };
             let motion = &amplitude * &(rate * time()).cos()?;
-            Ok(Some(Known {
-                law,
-                motion: Some(motion),
-            }))
+            Ok(Some(Known { law, motion: Some(motion) }))
         }
         [n] if n % 2 == 1 => {
             let law = of_power(&of(*n), &Expr::number(Rational::from_integer((*n).into())))?;
@@ -373,10 +339,7 @@ pub(super) fn of_power(coefficient: &Expr, n: &Expr) -> Result<Expr, ExprError> 
     let half_of_last = Expr::divide(&(n - &Expr::one()), &Expr::from(2))?;
     let amplitude = Expr::power(&Expr::symbol("A"), &half_of_last)?;
     let inverse = Expr::divide(&Expr::one(), &next)?;
-    Expr::divide(
-        &(scale * amplitude * gamma(half() + &inverse)?),
-        &gamma(inverse)?,
-    )
+    Expr::divide(&(scale * amplitude * gamma(half() + &inverse)?), &gamma(inverse)?)
 }
 
 /// A linear force with a function of letters as its stiffness; a single term: a power with its
@@ -396,9 +359,8 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Known>, R
     if let [factor] = inside.as_slice()
         && let Node::Function(function @ (Function::Sin | Function::Sinh), arguments) =
             factor.node()
-        && let Some((slope, phase)) = arguments
-            .first()
-            .and_then(|argument| linear_in(argument, coordinate))
+        && let Some((slope, phase)) =
+            arguments.first().and_then(|argument| linear_in(argument, coordinate))
         && phase.is_zero()
     {
         let scale = (&outside * &slope).expand()?.sqrt()?;
@@ -410,46 +372,30 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<Known>, R
             // s = S cn.
             let of_angle = |function| Expr::function(function, vec![angle.clone()]);
             let rate = &scale * &of_angle(Function::Cosh)?;
-            let [_, cn, _] = jacobi(
-                &(rate * time()),
-                &of_angle(Function::Tanh)?.integer_power(2)?,
-            )?;
+            let [_, cn, _] =
+                jacobi(&(rate * time()), &of_angle(Function::Tanh)?.integer_power(2)?)?;
             let turned = Expr::function(Function::Asinh, vec![sine * cn])?;
             let motion = Expr::divide(&(Expr::from(2) * turned), &slope)?;
-            return Ok(Some(Known::form(
-                by_elliptic(&scale, -squared)?,
-                Some(motion),
-            )));
+            return Ok(Some(Known::form(by_elliptic(&scale, -squared)?, Some(motion))));
         }
         let quarter = elliptic(squared.clone())?;
         let [sn, ..] = jacobi(&(&scale * &time() + quarter), &squared)?;
         let turned = Expr::function(Function::Asin, vec![sine * sn])?;
         let motion = Expr::divide(&(Expr::from(2) * turned), &slope)?;
-        return Ok(Some(Known::form(
-            by_elliptic(&scale, squared)?,
-            Some(motion),
-        )));
+        return Ok(Some(Known::form(by_elliptic(&scale, squared)?, Some(motion))));
     }
     // A power that is no number.
     let mut power = Power::one();
     if inside.iter().all(|factor| power.takes(factor, coordinate))
         && power.exponent.as_number().is_none()
     {
-        let form = power
-            .odd
-            .then(|| of_power(&outside, &power.exponent))
-            .transpose()?;
+        let form = power.odd.then(|| of_power(&outside, &power.exponent)).transpose()?;
         return Ok(form.map(|form| Known::form(form, None)));
     }
     match take_powers(&mut inside, &mut outside, coordinate) {
         Some(power) if inside.is_empty() && power.odd && power.exponent == -Rational::one() => {
-            let scale = Expr::divide(&(Expr::pi() * &outside), &Expr::from(2))?
-                .expand()?
-                .sqrt()?;
-            Ok(Some(Known::form(
-                Expr::divide(&scale, &Expr::symbol("A"))?,
-                None,
-            )))
+            let scale = Expr::divide(&(Expr::pi() * &outside), &Expr::from(2))?.expand()?.sqrt()?;
+            Ok(Some(Known::form(Expr::divide(&scale, &Expr::symbol("A"))?, None)))
         }
         Some(power) if inside.is_empty() && power.odd && power.exponent > -Rational::one() => {
             let law = of_power(&outside, &Expr::number(power.exponent))?;

@@ -15,9 +15,8 @@ const HARMONICS: usize = 64;
 /// # Errors
 /// See [`PeriodError`].
 pub(super) fn motion_about(force: &RestForce, start: f64) -> Result<(f64, Vec<f64>), PeriodError> {
-    let (period, mut cosine) = force.between_turning_points(start, |force, end| {
-        motion_between(force, &|_| 1.0, start, end)
-    })?;
+    let (period, mut cosine) = force
+        .between_turning_points(start, |force, end| motion_between(force, &|_| 1.0, start, end))?;
     if let Some(mean) = cosine.first_mut() {
         *mean += force.equilibrium();
     }
@@ -30,10 +29,7 @@ pub(super) fn cosines(place: &dyn Fn(f64) -> f64) -> Vec<f64> {
     let angle = |i: usize| std::f64::consts::PI * (i as f64 + 0.5) / POINTS as f64;
     let places: Vec<f64> = (0..POINTS).map(|i| place(angle(i))).collect();
     let coefficient = |k: usize| {
-        let waves = places
-            .iter()
-            .enumerate()
-            .map(|(i, x)| x * (k as f64 * angle(i)).cos());
+        let waves = places.iter().enumerate().map(|(i, x)| x * (k as f64 * angle(i)).cos());
         waves.sum::<f64>() * if k == 0 { 1.0 } else { 2.0 } / POINTS as f64
     };
     (0..HARMONICS).map(coefficient).collect()
@@ -51,12 +47,7 @@ pub(super) fn weighted_motion(
     equilibrium: f64,
     start: f64,
 ) -> Result<(f64, Vec<f64>), PeriodError> {
-    motion_between(
-        force,
-        weight,
-        start,
-        turning_point(force, equilibrium, start)?,
-    )
+    motion_between(force, weight, start, turning_point(force, equilibrium, start)?)
 }
 
 /// The period and the coefficients of `cos(k theta)` of the motion between two turning points, the
@@ -97,14 +88,8 @@ fn motion_between(
         if (mean - last).abs() > 1e-9 * mean {
             return motion_by_pieces(&rates);
         }
-        let times = EqualSteps {
-            rates: values,
-            mean,
-        };
-        return Ok((
-            2.0 * pi * mean,
-            times.harmonics(0.5 * (start + end), 0.5 * (start - end)),
-        ));
+        let times = EqualSteps { rates: values, mean };
+        return Ok((2.0 * pi * mean, times.harmonics(0.5 * (start + end), 0.5 * (start - end))));
     }
 }
 
@@ -124,9 +109,7 @@ impl EqualSteps {
         let points = self.rates.len();
         let coefficient = |j: usize| {
             let terms = self.rates.iter().enumerate();
-            let sum: f64 = terms
-                .map(|(i, rate)| rate * (j as f64 * self.angle(i)).cos())
-                .sum();
+            let sum: f64 = terms.map(|(i, rate)| rate * (j as f64 * self.angle(i)).cos()).sum();
             2.0 * sum / points as f64
         };
         (1..points / 2).map(coefficient).collect()
@@ -194,11 +177,7 @@ fn motion_by_pieces(rates: &Rates) -> Result<(f64, Vec<f64>), PeriodError> {
                     }
                 }
                 phase += frequency
-                    * nodes
-                        .iter()
-                        .zip(&values)
-                        .map(|(node, rate)| node.1 * rate)
-                        .sum::<f64>();
+                    * nodes.iter().zip(&values).map(|(node, rate)| node.1 * rate).sum::<f64>();
             }
         }
         // At the start the phase is zero again.
@@ -225,11 +204,9 @@ fn period_by_pieces(rates: &Rates) -> Result<f64, PeriodError> {
         };
         let (time, error) = match integrate_smooth(rate, ends[0], ends[1], rates.tolerance(piece)) {
             // Below the rounding of the force no panel gets.
-            Err(QuadratureError::NotConverged {
-                value,
-                error_estimate,
-                ..
-            }) => (value, error_estimate),
+            Err(QuadratureError::NotConverged { value, error_estimate, .. }) => {
+                (value, error_estimate)
+            }
             found => found.map_err(|error| lost.unwrap_or(error))?,
         };
         half += time;
@@ -264,9 +241,7 @@ fn running_integral(nodes: &[(f64, f64)], values: &[f64], from: f64, to: f64) ->
     let series: Vec<f64> = (0..nodes.len())
         .map(|l| {
             let terms = nodes.iter().zip(values).zip(&polynomials);
-            let sum: f64 = terms
-                .map(|((node, value), p)| node.1 / half * value * p[l])
-                .sum();
+            let sum: f64 = terms.map(|((node, value), p)| node.1 / half * value * p[l]).sum();
             0.5 * (2.0 * l as f64 + 1.0) * sum
         })
         .collect();

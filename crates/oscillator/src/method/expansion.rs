@@ -80,30 +80,22 @@ pub fn expand_exactly(
     let scales = scales(terms);
     let reduced: Vec<Term> = terms
         .iter()
-        .map(|term| Term {
-            coefficient: without(&term.coefficient, &scales),
-            ..term.clone()
-        })
+        .map(|term| Term { coefficient: without(&term.coefficient, &scales), ..term.clone() })
         .collect();
     let restore = |n: usize| {
-        let powers = scales
-            .iter()
-            .map(|(symbol, rate)| (*symbol, rate * Rational::from_integer(n.into())));
+        let powers =
+            scales.iter().map(|(symbol, rate)| (*symbol, rate * Rational::from_integer(n.into())));
         let start = delta.map_or_else(Monomial::one, |delta| Monomial::power_of(delta, n as i32));
         powers.filter(|(symbol, _)| Some(*symbol) != delta).fold(
             start,
             |monomial, (symbol, power)| {
-                monomial.product(&Monomial::power_of(
-                    symbol,
-                    power.to_integer().to_i32().unwrap_or(0),
-                ))
+                monomial
+                    .product(&Monomial::power_of(symbol, power.to_integer().to_i32().unwrap_or(0)))
             },
         )
     };
-    let numbers: Option<Vec<Rational>> = reduced
-        .iter()
-        .map(|term| term.coefficient.as_number())
-        .collect();
+    let numbers: Option<Vec<Rational>> =
+        reduced.iter().map(|term| term.coefficient.as_number()).collect();
     match numbers {
         Some(numbers) if inverse_slope.is_none() => {
             let constant = |number: Rational| {
@@ -115,10 +107,8 @@ pub fn expand_exactly(
             Ok(collect(&expansion, scheme, over::<Integer>, restore, taken))
         }
         _ => {
-            let force = force_terms(
-                &reduced,
-                reduced.iter().map(|term| over_integers(&term.coefficient)),
-            );
+            let force =
+                force_terms(&reduced, reduced.iter().map(|term| over_integers(&term.coefficient)));
             let expansion = match inverse_slope {
                 None => expand_polynomials_supervised(
                     &force,
@@ -144,13 +134,7 @@ pub fn expand_exactly(
                     expansion
                 }
             };
-            Ok(collect(
-                &expansion,
-                scheme,
-                over::<Polynomial<Integer>>,
-                restore,
-                taken,
-            ))
+            Ok(collect(&expansion, scheme, over::<Polynomial<Integer>>, restore, taken))
         }
     }
 }
@@ -204,9 +188,7 @@ fn force_terms<R: Ring>(
 fn over_integers(polynomial: &Polynomial) -> FourierSeries<Polynomials<Integers>> {
     let common = polynomial
         .terms()
-        .fold(Integer::one(), |lcm, (_, coefficient)| {
-            lcm.lcm(coefficient.denom())
-        });
+        .fold(Integer::one(), |lcm, (_, coefficient)| lcm.lcm(coefficient.denom()));
     let numerators = polynomial.map(|coefficient| (coefficient * &common).to_integer());
     FourierSeries::constant(Polynomials(Integers), numerators).over(&common)
 }
@@ -215,41 +197,27 @@ fn over_integers(polynomial: &Polynomial) -> FourierSeries<Polynomials<Integers>
 /// such a symbol enters the result in step with the small parameter and can be left out while
 /// expanding.
 fn scales(terms: &[Term]) -> Vec<(Symbol, Rational)> {
-    let symbols: BTreeSet<Symbol> = terms
-        .iter()
-        .flat_map(|term| term.coefficient.symbols())
-        .collect();
+    let symbols: BTreeSet<Symbol> =
+        terms.iter().flat_map(|term| term.coefficient.symbols()).collect();
     let rate = |symbol: Symbol| {
         let rates: BTreeSet<Rational> = terms
             .iter()
             .flat_map(|term| {
-                let exponents = term
-                    .coefficient
-                    .terms()
-                    .map(move |(monomial, _)| monomial.exponent(symbol));
+                let exponents =
+                    term.coefficient.terms().map(move |(monomial, _)| monomial.exponent(symbol));
                 exponents.map(|exponent| ratio(exponent.into(), term.order as i64))
             })
             .collect();
-        if rates.len() == 1 {
-            rates.into_iter().next()
-        } else {
-            None
-        }
+        if rates.len() == 1 { rates.into_iter().next() } else { None }
     };
-    symbols
-        .into_iter()
-        .filter_map(|symbol| Some((symbol, rate(symbol)?)))
-        .collect()
+    symbols.into_iter().filter_map(|symbol| Some((symbol, rate(symbol)?))).collect()
 }
 
 fn without(coefficient: &Polynomial, scales: &[(Symbol, Rational)]) -> Polynomial {
     let mut reduced = Polynomial::zero();
     for (monomial, number) in coefficient.terms() {
-        let rest = scales
-            .iter()
-            .fold(monomial.clone(), |monomial, (symbol, _)| {
-                monomial.without(*symbol)
-            });
+        let rest =
+            scales.iter().fold(monomial.clone(), |monomial, (symbol, _)| monomial.without(*symbol));
         reduced.add_term(rest, number.clone());
     }
     reduced
@@ -268,16 +236,10 @@ fn collect<'a, R: Ring, P: Fn(&R::Element) -> Polynomial>(
     let exact = |series: &'a FourierSeries<R>, n: usize| {
         let monomial = restore(n);
         let polynomial = over(series.mean().1);
-        series.map(POLYNOMIALS, |numerator, _| {
-            polynomial(numerator).times_monomial(&monomial)
-        })
+        series.map(POLYNOMIALS, |numerator, _| polynomial(numerator).times_monomial(&monomial))
     };
     let orders = |series: &'a [FourierSeries<R>]| -> Vec<FourierSeries<Polynomials>> {
-        series
-            .iter()
-            .enumerate()
-            .map(|(n, series)| exact(series, n))
-            .collect()
+        series.iter().enumerate().map(|(n, series)| exact(series, n)).collect()
     };
     let sum = |orders: &[FourierSeries<Polynomials>]| {
         let zero = FourierSeries::zero(POLYNOMIALS);
@@ -298,10 +260,8 @@ fn collect<'a, R: Ring, P: Fn(&R::Element) -> Polynomial>(
     };
     let step = |n: usize| {
         let driven = |series: &'a [FourierSeries<R>]| {
-            n.checked_sub(1).map_or_else(
-                || FourierSeries::zero(POLYNOMIALS),
-                |index| exact(&series[index], n),
-            )
+            n.checked_sub(1)
+                .map_or_else(|| FourierSeries::zero(POLYNOMIALS), |index| exact(&series[index], n))
         };
         Step {
             order: n as u32,

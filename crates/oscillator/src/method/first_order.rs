@@ -48,9 +48,7 @@ pub(super) fn solve(
 ) -> Result<Option<Solution>, Refusal> {
     let of_position = parts.of_position_alone();
     // That the rest is linear and restores is for the expansion to say.
-    let linear = oscillator
-        .expand(SmallParameter::Parameter(small), 0)
-        .is_ok();
+    let linear = oscillator.expand(SmallParameter::Parameter(small), 0).is_ok();
     let Some(force) = truncated(oscillator, small).filter(|_| of_position && linear) else {
         return Ok(None);
     };
@@ -72,10 +70,8 @@ pub(super) fn solve(
     let mut solution = unsolved(oscillator, options, Method::LindstedtPoincare, 1);
     solution.small_parameter = small;
     set_law(&mut solution, &law)?;
-    solution.validity = vec![
-        Note::Cut(Cut::FirstOrderOnly { small }),
-        Note::MotionAtLeadingOrder { small },
-    ];
+    solution.validity =
+        vec![Note::Cut(Cut::FirstOrderOnly { small }), Note::MotionAtLeadingOrder { small }];
     note_even_part(&mut solution, oscillator, &force)?;
     solution.derivation = vec![
         Line::equation(oscillator.coordinate, solution.displacement.clone())
@@ -124,13 +120,9 @@ mod tests {
         let cases: [Case; 6] = [
             ("x'' + 4*x + eps*sin(x) = 0", f64::sin),
             ("x'' + 4*x + eps*x*abs(x) = 0", |x| x * x.abs()),
-            ("x'' + 4*x + eps*x^3/(1 + x^2) = 0", |x| {
-                x.powi(3) / (1.0 + x * x)
-            }),
+            ("x'' + 4*x + eps*x^3/(1 + x^2) = 0", |x| x.powi(3) / (1.0 + x * x)),
             ("x'' + 4*x + eps*(exp(x) - 1) = 0", f64::exp_m1),
-            ("x'' + 4*x + eps*sgn(x)*abs(x)^(3/2) = 0", |x| {
-                x.signum() * x.abs().powf(1.5)
-            }),
+            ("x'' + 4*x + eps*sgn(x)*abs(x)^(3/2) = 0", |x| x.signum() * x.abs().powf(1.5)),
             // The second power of eps is beyond this order.
             ("x'' + 4*x + eps*sinh(x) + eps^2*x^3 = 0", f64::sinh),
         ];
@@ -140,9 +132,7 @@ mod tests {
             assert_eq!(solution.small_parameter, Symbol::new("eps"));
             for amplitude in [1e-6, 0.3, 2.5, -2.5] {
                 let numbers = BTreeMap::from([("A".into(), amplitude), ("eps".into(), 0.3)]);
-                let found = evaluate(&oscillator, &solution, &numbers)
-                    .unwrap()
-                    .frequency_squared;
+                let found = evaluate(&oscillator, &solution, &numbers).unwrap().frequency_squared;
                 let expected = 4.0 + 0.3 * projection(force, f64::abs(amplitude));
                 assert!(
                     (found - expected).abs() < 1e-8,
@@ -163,17 +153,12 @@ mod tests {
             let help = refusal.help().expect(text).to_string();
             assert!(help.contains(way), "{text}: {refusal} {help}");
         }
-        let first_harmonic = Options {
-            amplitude: Some(AmplitudeConvention::FirstHarmonic),
-            ..options(1)
-        };
+        let first_harmonic =
+            Options { amplitude: Some(AmplitudeConvention::FirstHarmonic), ..options(1) };
         let oscillator = Oscillator::parse("x'' + x + eps*sin(x) = 0").unwrap();
         assert!(matches!(
             solve(&oscillator, &first_harmonic),
-            Err(Refusal::Unsuited {
-                reason: Unsuited::Convention,
-                ..
-            })
+            Err(Refusal::Unsuited { reason: Unsuited::Convention, .. })
         ));
     }
 }

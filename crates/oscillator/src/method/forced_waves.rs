@@ -42,9 +42,7 @@ struct Forced {
 /// drive acts on more than the place alone, or where the frequencies that are numbers are near
 /// another resonance.
 pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
-    let by_scales = options
-        .method
-        .is_none_or(|method| method == Method::MultipleScales);
+    let by_scales = options.method.is_none_or(|method| method == Method::MultipleScales);
     let first_order = options.order.is_none_or(|order| order == 1);
     if !by_scales || !first_order || options.resonance.is_some_and(|asked| asked != (1, 1)) {
         return None;
@@ -55,35 +53,19 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Soluti
         return None;
     };
     let parts = oscillator.parts().ok()?;
-    let waves: Option<Vec<Wave>> = parts
-        .forcing
-        .terms()
-        .iter()
-        .map(|term| plain(term, oscillator))
-        .collect();
+    let waves: Option<Vec<Wave>> =
+        parts.forcing.terms().iter().map(|term| plain(term, oscillator)).collect();
     let waves = waves?;
     let mut free = oscillator.clone();
     free.force = (&oscillator.force - &parts.forcing).expand().ok()?;
     if has_quadratic_terms(&free) {
         return None;
     }
-    let without_small = parts
-        .restoring
-        .substitute(small, &Expr::zero())
-        .ok()?
-        .expand()
-        .ok()?;
+    let without_small = parts.restoring.substitute(small, &Expr::zero()).ok()?.expand().ok()?;
     let x = Expr::from(oscillator.coordinate);
-    let stiffness = without_small
-        .differentiate(oscillator.coordinate)
-        .ok()?
-        .expand()
-        .ok()?;
-    let is_linear = |force: &Expr| {
-        (force - &(&stiffness * &x))
-            .expand()
-            .is_ok_and(|rest| rest.is_zero())
-    };
+    let stiffness = without_small.differentiate(oscillator.coordinate).ok()?.expand().ok()?;
+    let is_linear =
+        |force: &Expr| (force - &(&stiffness * &x)).expand().is_ok_and(|rest| rest.is_zero());
     if !is_linear(&without_small) || stiffness.is_zero() {
         return None;
     }
@@ -119,11 +101,7 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Soluti
         typed: Typed::default(),
     };
     let seen = Oscillator::from_equation(&equation).ok()?;
-    let asked = Options {
-        order: Some(1),
-        small: Some(small.to_string()),
-        ..options.clone()
-    };
+    let asked = Options { order: Some(1), small: Some(small.to_string()), ..options.clone() };
     let solution = solve_by(Method::MultipleScales, &seen, &asked).ok()?;
     of_the_whole(solution, &forced, near, oscillator)
 }
@@ -136,10 +114,8 @@ fn of_the_whole(
     near: Expr,
     oscillator: &Oscillator,
 ) -> Option<Solution> {
-    let still: BTreeMap<Symbol, Expr> = solution
-        .small_parameters()
-        .map(|name| (name, Expr::zero()))
-        .collect();
+    let still: BTreeMap<Symbol, Expr> =
+        solution.small_parameters().map(|name| (name, Expr::zero())).collect();
     let response = solution.response.as_mut()?;
     let mut motion = vec![response.motion.substitute_all(&still).ok()?];
     for own in forced {
@@ -153,9 +129,7 @@ fn of_the_whole(
     response.motion = Expr::sum(motion);
     solution.equation = oscillator.equation();
     solution.parameters.clone_from(&oscillator.parameters);
-    solution
-        .definitions
-        .extend(forced.iter().map(|own| own.size.clone()));
+    solution.definitions.extend(forced.iter().map(|own| own.size.clone()));
     solution.validity.push(Note::ForcedWaves {
         near,
         far: forced.iter().map(|own| own.wave.rate.clone()).collect(),
@@ -180,14 +154,11 @@ fn nearest(waves: &[Wave], small: Symbol, stiffness: &Expr) -> Expr {
         .collect();
     let by_numbers = distances.and_then(|distances| {
         let all = distances.iter().enumerate();
-        all.min_by(|one, other| one.1.total_cmp(other.1))
-            .map(|(k, _)| k)
+        all.min_by(|one, other| one.1.total_cmp(other.1)).map(|(k, _)| k)
     });
     let weak = || waves.iter().position(|wave| wave.factor.contains(small));
     let chosen = by_numbers.or_else(weak).unwrap_or(0);
-    waves
-        .get(chosen)
-        .map_or_else(Expr::one, |wave| wave.rate.clone())
+    waves.get(chosen).map_or_else(Expr::one, |wave| wave.rate.clone())
 }
 
 /// Whether a frequency is not known to be near one at which a cubic or a quadratic force would be
@@ -231,11 +202,7 @@ fn forced(waves: Vec<Wave>, stiffness: &Expr, oscillator: &Oscillator) -> Option
     let several = waves.len() > 1;
     let mut found = vec![];
     for (k, wave) in waves.into_iter().enumerate() {
-        let number = if several {
-            (k + 1).to_string()
-        } else {
-            String::new()
-        };
+        let number = if several { (k + 1).to_string() } else { String::new() };
         let squared = wave.rate.integer_power(2).ok()?;
         let below = Expr::from(2) * (stiffness - &squared).expand().ok()?;
         // The drive stands on the left side of the equation.
@@ -255,12 +222,7 @@ fn forced(waves: Vec<Wave>, stiffness: &Expr, oscillator: &Oscillator) -> Option
 fn averaged(force: &Expr, forced: &[Forced], oscillator: &Oscillator) -> Option<Expr> {
     let own = [oscillator.coordinate, oscillator.velocity()];
     let mut along = own.map(Expr::from);
-    for Forced {
-        wave,
-        size,
-        letters,
-    } in forced
-    {
+    for Forced { wave, size, letters } in forced {
         let [cosine, sine, rate] = letters.map(Expr::from);
         let (place, turned) = match wave.quadrature {
             Quadrature::Cosine => (cosine, -&sine),
@@ -288,9 +250,7 @@ fn averaged(force: &Expr, forced: &[Forced], oscillator: &Oscillator) -> Option<
             sum.add_term(rest, factor);
         }
     }
-    let rates = forced
-        .iter()
-        .map(|own| (own.letters[2], own.wave.rate.clone()));
+    let rates = forced.iter().map(|own| (own.letters[2], own.wave.rate.clone()));
     Expr::from(&sum).substitute_all(&rates.collect()).ok()
 }
 
@@ -320,28 +280,14 @@ mod tests {
     #[test]
     fn means_of_powers_of_waves() {
         const STEPS: i32 = 64;
-        for (m, n) in [
-            (0, 0),
-            (1, 0),
-            (2, 0),
-            (0, 2),
-            (2, 2),
-            (4, 0),
-            (4, 2),
-            (6, 4),
-            (3, 2),
-            (1, 1),
-        ] {
+        for (m, n) in
+            [(0, 0), (1, 0), (2, 0), (0, 2), (2, 2), (4, 0), (4, 2), (6, 4), (3, 2), (1, 1)]
+        {
             let angles =
                 (0..STEPS).map(|k| std::f64::consts::TAU * f64::from(k) / f64::from(STEPS));
-            let sum: f64 = angles
-                .map(|angle| angle.cos().powi(m) * angle.sin().powi(n))
-                .sum();
+            let sum: f64 = angles.map(|angle| angle.cos().powi(m) * angle.sin().powi(n)).sum();
             let found = crate::exact::rational::to_f64(&mean(m, n));
-            assert!(
-                (found - sum / f64::from(STEPS)).abs() < 1e-14,
-                "cos^{m} sin^{n}: {found}"
-            );
+            assert!((found - sum / f64::from(STEPS)).abs() < 1e-14, "cos^{m} sin^{n}: {found}");
         }
     }
 }

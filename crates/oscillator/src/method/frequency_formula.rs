@@ -42,9 +42,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let law = slope.substitute(oscillator.coordinate, &half)?.expand()?;
     let law = positive_amplitude(&law).unwrap_or(law);
     if law.is_zero() {
-        return Err(Refusal::NoSlope {
-            force: force.to_string(),
-        });
+        return Err(Refusal::NoSlope { force: force.to_string() });
     }
     let mut solution = unsolved(oscillator, options, METHOD, 1);
     set_law(&mut solution, &law)?;

@@ -56,10 +56,7 @@ impl FrequencyResponse {
                 let determinant = rate_cos.product(phase_sin) + minus(&rate_sin.product(phase_cos));
                 let cosine = rate_sin.product(phase) + minus(&rate.product(phase_sin));
                 let sine = phase_cos.product(rate) + minus(&rate_cos.product(phase));
-                (
-                    None,
-                    square(&cosine) + square(&sine) + minus(&square(&determinant)),
-                )
+                (None, square(&cosine) + square(&sine) + minus(&square(&determinant)))
             }
         };
         if rate.is_zero() && phase.is_zero() {
@@ -82,47 +79,30 @@ impl FrequencyResponse {
         {
             let over = Polynomial::term(Monomial::power_of(a, -1), weight.recip());
             let width = (drive.clone() + minus(&square(rate))).product(&square(&over));
-            branches = Some(Branches {
-                centre: minus(&centre.product(&over)),
-                width_squared: width,
-            });
+            branches =
+                Some(Branches { centre: minus(&centre.product(&over)), width_squared: width });
             peak = peak_of(rate, drive, a);
         }
         let (folds, jumps) = folds(&relation, a);
-        Self {
-            relation: Some(relation),
-            branches,
-            peak,
-            folds,
-            jumps,
-        }
+        Self { relation: Some(relation), branches, peak, folds, jumps }
     }
 
     /// With a relation that is cut at the order of the rates, where there is one.
     pub(super) fn cut(self, relation: Option<Polynomial>, a: Symbol) -> Self {
         match relation {
             None => self,
-            found => Self {
-                branches: self.branches,
-                peak: self.peak,
-                ..Self::of_relation(found, a)
-            },
+            found => {
+                Self { branches: self.branches, peak: self.peak, ..Self::of_relation(found, a) }
+            }
         }
     }
 
     /// From a relation alone.
     pub(super) fn of_relation(relation: Option<Polynomial>, a: Symbol) -> Self {
         let relation = relation.map(|relation| without_common_powers(&relation));
-        let (folds, jumps) = relation
-            .as_ref()
-            .map_or((vec![], None), |relation| folds(relation, a));
-        Self {
-            relation,
-            branches: None,
-            peak: None,
-            folds,
-            jumps,
-        }
+        let (folds, jumps) =
+            relation.as_ref().map_or((vec![], None), |relation| folds(relation, a));
+        Self { relation, branches: None, peak: None, folds, jumps }
     }
 }
 
@@ -152,9 +132,7 @@ pub(super) fn eliminated(
     let earliest = |wanted: &dyn Fn(u32) -> bool| {
         let waves = rates.iter().flat_map(|rate| rate.iter());
         let waves = waves.filter(|(multiple, _)| wanted(**multiple));
-        waves
-            .flat_map(|(_, waves)| waves.iter().filter_map(lowest))
-            .min()
+        waves.flat_map(|(_, waves)| waves.iter().filter_map(lowest)).min()
     };
     let leading = earliest(&|multiple| multiple == 1)?;
     let after = |found: Option<i32>, least: i32| found.is_none_or(|found| found >= least);
@@ -185,9 +163,7 @@ pub(super) fn eliminated(
             let mut sum = minus(&(by_cos.product(&cosine) + by_sin.product(&sine)));
             for (multiple, waves) in rate {
                 for (wave, value) in
-                    waves
-                        .iter()
-                        .zip(multiple_of(*multiple, [&cosine, &sine], &cut))
+                    waves.iter().zip(multiple_of(*multiple, [&cosine, &sine], &cut))
                 {
                     sum.accumulate(&cut(&wave.times_monomial(&down).product(&value)));
                 }
@@ -216,12 +192,10 @@ pub(super) fn eliminated(
         whole.accumulate(&term.product(&times));
     }
     // Of one wave of size S the determinant is S^2: once is enough for P^2 + Q^2 = S^2.
-    Some(
-        match determinant.map(|number| number.abs()).power(1 - most) {
-            Some(less) => whole.product(&less),
-            None => whole,
-        },
-    )
+    Some(match determinant.map(|number| number.abs()).power(1 - most) {
+        Some(less) => whole.product(&less),
+        None => whole,
+    })
 }
 
 /// Cosine and sine of a multiple of an angle, from those of the angle.
@@ -234,23 +208,17 @@ fn multiple_of(
     for _ in 0..multiple {
         let [c, s] = &found;
         let across = s.product(sine).map(|number| -number);
-        found = [
-            cut(&(c.product(cosine) + across)),
-            cut(&(s.product(cosine) + c.product(sine))),
-        ];
+        found = [cut(&(c.product(cosine) + across)), cut(&(s.product(cosine) + c.product(sine)))];
     }
     found
 }
 
 /// A relation with the powers that all terms have in common taken out.
 fn without_common_powers(relation: &Polynomial) -> Polynomial {
-    relation
-        .symbols()
-        .into_iter()
-        .fold(relation.clone(), |rest, name| {
-            let lowest = rest.exponent_range(name).map_or(0, |range| range.0);
-            rest.times_monomial(&Monomial::power_of(name, -lowest))
-        })
+    relation.symbols().into_iter().fold(relation.clone(), |rest, name| {
+        let lowest = rest.exponent_range(name).map_or(0, |range| range.0);
+        rest.times_monomial(&Monomial::power_of(name, -lowest))
+    })
 }
 
 /// The largest amplitude, where `P^2 = S^2` with `P` in one power of the amplitude, or in that
@@ -267,16 +235,10 @@ fn peak_of(rate: &Polynomial, drive: &Polynomial, a: Symbol) -> Option<Expr> {
         }
         let pace = Polynomial::term(monomial.without(a), number.abs());
         let quotient = size.product(&pace.power(-1)?);
-        return Expr::power(
-            &Expr::from(&quotient),
-            &Expr::number(ratio(1, power.into())),
-        )
-        .ok();
+        return Expr::power(&Expr::from(&quotient), &Expr::number(ratio(1, power.into()))).ok();
     }
     let [(by, pace), (held, friction)] = [1, 0].map(|power| {
-        let mut terms = rate
-            .terms()
-            .filter(|(monomial, _)| monomial.exponent(a) == power);
+        let mut terms = rate.terms().filter(|(monomial, _)| monomial.exponent(a) == power);
         let found = terms.next().filter(|(_, number)| number.is_negative());
         let only = found.filter(|_| terms.next().is_none());
         only.map_or((None, None), |(monomial, number)| {
@@ -317,17 +279,12 @@ fn folds(relation: &Polynomial, a: Symbol) -> (Vec<Expr>, Option<Polynomial>) {
     };
     let product = |factors: &[&Polynomial], number: i64| {
         let start = Polynomial::constant(ratio(number, 1));
-        factors
-            .iter()
-            .fold(start, |product, factor| product.product(factor))
+        factors.iter().fold(start, |product, factor| product.product(factor))
     };
     match coefficients.as_slice() {
-        [c, b, a] => (
-            vec![],
-            Some(without_common_powers(
-                &(product(&[b, b], 1) + product(&[a, c], -4)),
-            )),
-        ),
+        [c, b, a] => {
+            (vec![], Some(without_common_powers(&(product(&[b, b], 1) + product(&[a, c], -4)))))
+        }
         [d, c, b, a] => {
             let discriminant = product(&[a, b, c, d], 18)
                 + product(&[b, b, b, d], -4)
@@ -344,10 +301,7 @@ fn folds(relation: &Polynomial, a: Symbol) -> (Vec<Expr>, Option<Polynomial>) {
                 let width = &Expr::from(&outside.product(&over)) * &root;
                 Some(vec![&middle - &width, &middle + &width])
             };
-            (
-                places().unwrap_or_default(),
-                Some(without_common_powers(&discriminant)),
-            )
+            (places().unwrap_or_default(), Some(without_common_powers(&discriminant)))
         }
         _ => (vec![], None),
     }

@@ -53,19 +53,15 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     let law = |mean: &Expr| {
         let slope = mean.differentiate("A".into()).ok()?;
-        Expr::divide(&(Expr::from(2) * slope), &amplitude)
-            .ok()?
-            .expand()
-            .ok()
+        Expr::divide(&(Expr::from(2) * slope), &amplitude).ok()?.expand().ok()
     };
     let stationary = |potential: Expr| {
         let mean = mean_of(&potential)?;
         let law = law(&mean)?;
         Some((potential, mean, law))
     };
-    let Some((potential, mean, law)) = potential(&force, oscillator.coordinate)
-        .filter(|_| !has_arcs)
-        .and_then(stationary)
+    let Some((potential, mean, law)) =
+        potential(&force, oscillator.coordinate).filter(|_| !has_arcs).and_then(stationary)
     else {
         return solve_by_integral(oscillator, options, METHOD);
     };
@@ -90,16 +86,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Line::equation(fresh("V", &names), potential).because("potential energy"),
         Line::equal([mean_name.into(), integral, mean.into()])
             .because(format!("its mean over {AMPLITUDE}*cos(θ)")),
-        Line::equal([
-            Expr::symbol("omega").integer_power(2)?.into(),
-            slope,
-            law.into(),
-        ])
-        .because("the mean Hamiltonian is stationary"),
+        Line::equal([Expr::symbol("omega").integer_power(2)?.into(), slope, law.into()])
+            .because("the mean Hamiltonian is stationary"),
     ];
-    solution
-        .validity
-        .push(Note::FirstStep(FirstStep::TermOfForce));
+    solution.validity.push(Note::FirstStep(FirstStep::TermOfForce));
     note_even_part(&mut solution, oscillator, &force)?;
     Ok(solution)
 }

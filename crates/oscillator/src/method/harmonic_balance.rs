@@ -56,10 +56,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let force = conservative_force(oscillator, options, METHOD)?;
     let order = options.order.unwrap_or(2);
     if order == 0 || order > MOST_HARMONICS {
-        return Err(Unsuited::HighestOrder {
-            highest: MOST_HARMONICS,
-        }
-        .to(METHOD));
+        return Err(Unsuited::HighestOrder { highest: MOST_HARMONICS }.to(METHOD));
     }
     let odd = is_odd(&force, oscillator.coordinate)?;
     let mut solution = unsolved(oscillator, options, METHOD, order);
@@ -68,10 +65,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         && let Some(law) = shared_integral(oscillator, &force)
     {
         set_law(&mut solution, &law)?;
-        solution.derivation = vec![Line::equation(
-            oscillator.coordinate,
-            solution.displacement.clone(),
-        )];
+        solution.derivation =
+            vec![Line::equation(oscillator.coordinate, solution.displacement.clone())];
         let law = integral_law(oscillator, &force, &solution)?;
         solution.derivation.extend(law);
         solution.validity.push(Note::FirstStep(FirstStep::Harmonic));
@@ -84,43 +79,23 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         cosine[k] = Polynomial::symbol(name);
     }
     solution.displacement = FourierSeries::from_parts(POLYNOMIALS, cosine, vec![]);
-    solution.derivation = projections(
-        oscillator,
-        &force,
-        &harmonics,
-        &names,
-        &solution.displacement,
-    )?;
-    match equations(
-        oscillator,
-        &force,
-        &harmonics,
-        &names,
-        &solution.displacement,
-    )? {
+    solution.derivation =
+        projections(oscillator, &force, &harmonics, &names, &solution.displacement)?;
+    match equations(oscillator, &force, &harmonics, &names, &solution.displacement)? {
         Some(equations) => {
-            if equations
-                .iter()
-                .any(|equation| equation.contains_function(Function::Acos))
-            {
+            if equations.iter().any(|equation| equation.contains_function(Function::Acos)) {
                 let first = harmonics.iter().zip(&names).find(|(k, _)| **k == 1);
                 let first = first.map_or(Symbol::new("A"), |(_, name)| *name);
                 solution.validity.push(Note::ArcsFor { positive: first });
             }
             let unknowns = std::iter::once(Symbol::new("omega")).chain(names).collect();
-            solution.law = Law::System(System {
-                unknowns,
-                equations,
-            });
+            solution.law = Law::System(System { unknowns, equations });
         }
         None => {
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
-    solution.validity.push(Note::Balanced {
-        harmonics,
-        by_numbers: true,
-    });
+    solution.validity.push(Note::Balanced { harmonics, by_numbers: true });
     Ok(solution)
 }
 
@@ -143,10 +118,7 @@ fn projections(
             integrand: Box::new((force * &(&k * &Expr::from(oscillator.phase())).cos()?).into()),
             variable: oscillator.phase(),
         };
-        Ok(Line::equation(
-            k.integer_power(2)? * &omega * name,
-            integral,
-        ))
+        Ok(Line::equation(k.integer_power(2)? * &omega * name, integral))
     };
     let mut lines = vec![Line::equation(oscillator.coordinate, motion.clone())];
     if harmonics.len() <= MOST_LINES {
@@ -168,10 +140,7 @@ fn projections(
                 .because(format!("harmonics {k} = {}", kept.join(", "))),
         );
     }
-    lines.push(Line::equation(
-        "A",
-        Expr::sum(names.iter().map(|name| Expr::from(*name))),
-    ));
+    lines.push(Line::equation("A", Expr::sum(names.iter().map(|name| Expr::from(*name)))));
     Ok(lines)
 }
 
@@ -187,10 +156,7 @@ pub(super) fn harmonics(order: u32, odd: bool) -> Vec<usize> {
 /// `a1`, `a3`, ...; another stem where the equation uses one of these.
 pub(super) fn coefficient_names(oscillator: &Oscillator, harmonics: &[usize]) -> Vec<Symbol> {
     let stem = fresh_stem("a", &oscillator.names());
-    harmonics
-        .iter()
-        .map(|k| Symbol::new(&format!("{stem}{k}")))
-        .collect()
+    harmonics.iter().map(|k| Symbol::new(&format!("{stem}{k}"))).collect()
 }
 
 /// The balance of every harmonic and the amplitude condition, where the force allows it in closed
@@ -231,30 +197,21 @@ fn equations(
             ([1], [a1]) => (Expr::zero(), Expr::from(*a1)),
             _ => return Ok(None),
         };
-        let moved = force.substitute(
-            oscillator.coordinate,
-            &(Expr::from(oscillator.coordinate) + shift),
-        )?;
+        let moved = force
+            .substitute(oscillator.coordinate, &(Expr::from(oscillator.coordinate) + shift))?;
         for (&k, &name) in harmonics.iter().zip(names) {
             let Some(coefficient) =
                 cosine_coefficient(&moved, oscillator.coordinate, &amplitude, k)
             else {
                 return Ok(None);
             };
-            let half = if k == 0 {
-                crate::exact::rational::ratio(1, 2)
-            } else {
-                Rational::one()
-            };
+            let half = if k == 0 { crate::exact::rational::ratio(1, 2) } else { Rational::one() };
             let balance = coefficient * Expr::number(half) + Expr::from(&inertia(k, name));
             equations.push(balance.expand()?);
         }
     }
     let sum = Expr::sum(names.iter().map(|&name| Expr::from(name)));
     equations.push(sum - Expr::symbol("A"));
-    let length: usize = equations
-        .iter()
-        .map(|equation| equation.terms().len())
-        .sum();
+    let length: usize = equations.iter().map(|equation| equation.terms().len()).sum();
     Ok((length <= MOST_TERMS).then_some(equations))
 }

@@ -60,11 +60,8 @@ const LARGEST_DEGREE: u32 = 40;
 
 /// The degrees to try in turn where none are given: a series whose first power is missing may have
 /// no approximant of the first of them.
-const DEFAULTS: [Degrees; 3] = [
-    Degrees::Quadratic(1, 1, 1),
-    Degrees::Quadratic(2, 2, 2),
-    Degrees::Quadratic(3, 3, 3),
-];
+const DEFAULTS: [Degrees; 3] =
+    [Degrees::Quadratic(1, 1, 1), Degrees::Quadratic(2, 2, 2), Degrees::Quadratic(3, 3, 3)];
 
 /// The approximant of the degrees in the options; by default `[1/1/1]`, or the next that there is.
 ///
@@ -80,9 +77,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Err(refusal @ Refusal::Approximant { .. }) => refusal,
         other => return other,
     };
-    let mut answers = others
-        .into_iter()
-        .map(|degrees| of_degrees(oscillator, options, degrees));
+    let mut answers = others.into_iter().map(|degrees| of_degrees(oscillator, options, degrees));
     answers.find_map(Result::ok).ok_or(refusal)
 }
 
@@ -91,11 +86,7 @@ fn of_degrees(
     options: &Options,
     degrees: Degrees,
 ) -> Result<Solution, Refusal> {
-    let refused = |reason| Refusal::Approximant {
-        method: METHOD,
-        degrees,
-        reason,
-    };
+    let refused = |reason| Refusal::Approximant { method: METHOD, degrees, reason };
     let Degrees::Quadratic(p, q, r) = degrees else {
         return Err(refused("it has three, those of P, Q and R"));
     };
@@ -111,22 +102,16 @@ fn of_degrees(
     if (1..=i64::from(order)).all(|power| series.coefficient(power).is_zero()) {
         return Err(refused(CONSTANT));
     }
-    let (variable, mut numbers) = series
-        .in_one_variable()
-        .ok_or_else(|| Unsuited::SeveralVariables.to(METHOD))?;
+    let (variable, mut numbers) =
+        series.in_one_variable().ok_or_else(|| Unsuited::SeveralVariables.to(METHOD))?;
     // f begins with one; what it is a multiple of stands before the law.
     let first = numbers[0].clone();
-    numbers
-        .iter_mut()
-        .for_each(|number| *number = &*number / &first);
+    numbers.iter_mut().for_each(|number| *number = &*number / &first);
     numbers.resize(order as usize + 1, Rational::zero());
     let quadratic =
         Quadratic::of(&numbers, [p, q, r].map(|degree| degree as usize)).map_err(refused)?;
     // What is squared has one sign.
-    let squared = variable
-        .factors()
-        .iter()
-        .all(|(_, exponent)| exponent % 2 == 0);
+    let squared = variable.factors().iter().all(|(_, exponent)| exponent % 2 == 0);
     let sides: &[i64] = if squared { &[1] } else { &[1, -1] };
     let root = quadratic.followed(sides).ok_or_else(|| {
         refused(
@@ -175,22 +160,17 @@ impl Quadratic {
     fn of(series: &[Rational], degrees: [usize; 3]) -> Result<Self, &'static str> {
         let mut one = vec![Rational::zero(); series.len()];
         one[0] = Rational::one();
-        let square: Vec<Rational> = (0..series.len())
-            .map(|n| (0..=n).map(|k| &series[k] * &series[n - k]).sum())
-            .collect();
+        let square: Vec<Rational> =
+            (0..series.len()).map(|n| (0..=n).map(|k| &series[k] * &series[n - k]).sum()).collect();
         let [p, q, r] = degrees;
         let lists = exact(&[(one, p), (series.to_vec(), q), (square, r)]);
         let lists = lists.and_then(|lists| <[Vec<Integer>; 3]>::try_from(lists).ok());
-        let mut own = Self {
-            lists: lists.ok_or("the equations for P, Q and R are singular")?,
-        };
+        let mut own = Self { lists: lists.ok_or("the equations for P, Q and R are singular")? };
         match own.slope_at_zero().cmp(&Integer::zero()) {
             Ordering::Equal => return Err("both roots of its equation are the same at rest"),
-            Ordering::Less => own
-                .lists
-                .iter_mut()
-                .flatten()
-                .for_each(|number| *number = -std::mem::take(number)),
+            Ordering::Less => {
+                own.lists.iter_mut().flatten().for_each(|number| *number = -std::mem::take(number))
+            }
             Ordering::Greater => {}
         }
         Ok(own)
@@ -269,10 +249,7 @@ impl Quadratic {
         let same_sign = |zero: &&Cluster, is_upper: bool| {
             let nothing = BigFloat::zero(bits);
             let start = nothing.clone();
-            let value = q
-                .iter()
-                .rev()
-                .fold(start, |sum, number| &(&sum * &zero.place) + number);
+            let value = q.iter().rev().fold(start, |sum, number| &(&sum * &zero.place) + number);
             (value > nothing) == is_upper
         };
         for meeting in meetings.iter().map(Some).chain([None]) {
@@ -303,12 +280,8 @@ impl Quadratic {
             let distance = crate::exact::from_f64(meeting.distance.abs())?;
             // D is negative from here on, if nothing follows.
             let says_so = meeting.count == 1
-                && meetings
-                    .last()
-                    .is_some_and(|last| std::ptr::eq(last, meeting));
-            followed
-                .ends
-                .push((&middle - &middle * distance, RootEnd::Meets, says_so));
+                && meetings.last().is_some_and(|last| std::ptr::eq(last, meeting));
+            followed.ends.push((&middle - &middle * distance, RootEnd::Meets, says_so));
             return Some(());
         }
         Some(())
@@ -384,13 +357,7 @@ impl Words {
     fn polynomials(&self, quadratic: &Quadratic) -> [Polynomial; 3] {
         /// Binary digits.
         const LONG: u64 = 400;
-        let longest = quadratic
-            .lists
-            .iter()
-            .flatten()
-            .map(Integer::bits)
-            .max()
-            .unwrap_or(0);
+        let longest = quadratic.lists.iter().flatten().map(Integer::bits).max().unwrap_or(0);
         let unit = match longest > LONG {
             true => quadratic.slope_at_zero(),
             false => Integer::one(),
@@ -421,11 +388,7 @@ impl Words {
         }
         // Where D is kept from being negative it says nothing itself.
         let crosses = !root.crossings.is_empty();
-        for (place, _, _) in root
-            .ends
-            .iter()
-            .filter(|(_, _, says_so)| crosses || !says_so)
-        {
+        for (place, _, _) in root.ends.iter().filter(|(_, _, says_so)| crosses || !says_so) {
             sign = &sign * &before(&short(place))?.sqrt()?;
         }
         Ok(sign)
@@ -435,11 +398,8 @@ impl Words {
     fn note(&self, root: &Followed) -> Option<Note> {
         let mut crossings: Vec<f64> = root.crossings.iter().map(to_f64).collect();
         crossings.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
-        let ends: Vec<(f64, RootEnd)> = root
-            .ends
-            .iter()
-            .map(|(place, end, _)| (to_f64(place), *end))
-            .collect();
+        let ends: Vec<(f64, RootEnd)> =
+            root.ends.iter().map(|(place, end, _)| (to_f64(place), *end)).collect();
         let says = !crossings.is_empty() || !ends.is_empty();
         says.then(|| {
             Note::Followed(FollowedRoot {
@@ -465,9 +425,8 @@ impl Words {
             let terms = terms.map(|(k, number)| Ok(&Expr::number(number.clone()) * &power(k)?));
             Ok(Expr::sum(terms.collect::<Result<Vec<_>, ExprError>>()?))
         };
-        let square: Vec<Rational> = (0..series.len())
-            .map(|n| (0..=n).map(|k| &series[k] * &series[n - k]).sum())
-            .collect();
+        let square: Vec<Rational> =
+            (0..series.len()).map(|n| (0..=n).map(|k| &series[k] * &series[n - k]).sum()).collect();
         let mut one = vec![Rational::zero(); series.len()];
         one[0] = Rational::one();
         let variable = Expr::from(&Polynomial::term(self.variable.clone(), Rational::one()));
@@ -543,27 +502,16 @@ mod tests {
         for equation in ["x'' + 1 - exp(-x) = 0", "x'' + exp(-x) - exp(-2*x) = 0"] {
             let oscillator = Oscillator::parse(equation).unwrap();
             let by = |method, order| {
-                let options = Options {
-                    method: Some(method),
-                    order,
-                    ..Options::default()
-                };
+                let options = Options { method: Some(method), order, ..Options::default() };
                 crate::method::solve(&oscillator, &options)
                     .unwrap_or_else(|refusal| panic!("{equation}: {refusal}"))
             };
             let (found, series) = (by(METHOD, None), by(Method::LindstedtPoincare, Some(12)));
-            assert_eq!(
-                found.degrees,
-                Some(Degrees::Quadratic(2, 2, 2)),
-                "{equation}"
-            );
+            assert_eq!(found.degrees, Some(Degrees::Quadratic(2, 2, 2)), "{equation}");
             for amplitude in [-0.2, 0.1, 0.2] {
                 let [found, series] =
                     [&found, &series].map(|solution| at(solution, &[("A", amplitude)]).unwrap());
-                assert!(
-                    (found / series - 1.0).abs() < 1e-7,
-                    "{equation}: {found} {series}"
-                );
+                assert!((found / series - 1.0).abs() < 1e-7, "{equation}: {found} {series}");
             }
         }
         assert!(derived("x'' + 1 - exp(-x) = 0", [1, 1, 1]).is_err());
@@ -605,11 +553,8 @@ mod tests {
     fn an_algebraic_function_is_its_own_approximant() {
         let lists: [&[i64]; 3] = [&[-3, 2, 5], &[2, 0, -7], &[1, 4, 1]];
         let found = of(&root_series(lists, 8), [2, 2, 2]);
-        let expected = lists.map(|list| {
-            list.iter()
-                .map(|number| Integer::from(*number))
-                .collect::<Vec<_>>()
-        });
+        let expected =
+            lists.map(|list| list.iter().map(|number| Integer::from(*number)).collect::<Vec<_>>());
         assert_eq!(found.lists, expected);
     }
 
@@ -620,11 +565,8 @@ mod tests {
         for gap in [0, 1, -1] {
             // (f - 1 - s)(f - 3 + s) + gap s/10^8: all but crossing.
             let scale = 100_000_000;
-            let lists: [Vec<i64>; 3] = [
-                vec![-3 * scale, -2 * scale + gap, scale],
-                vec![4 * scale],
-                vec![-scale],
-            ];
+            let lists: [Vec<i64>; 3] =
+                [vec![-3 * scale, -2 * scale + gap, scale], vec![4 * scale], vec![-scale]];
             let quadratic = Quadratic {
                 lists: lists.map(|list| list.into_iter().map(Integer::from).collect()),
             };
@@ -642,11 +584,7 @@ mod tests {
                 value.evaluate(&letters.collect()).expect("a root")
             };
             for s in [-3.0, 0.0, 0.5, 1.5, 2.5, 10.0] {
-                assert!(
-                    (value(s) - 1.0 - s).abs() < 1e-6,
-                    "{gap}: {} at {s}",
-                    value(s)
-                );
+                assert!((value(s) - 1.0 - s).abs() < 1e-6, "{gap}: {} at {s}", value(s));
             }
         }
     }
@@ -660,11 +598,8 @@ mod tests {
                 lists: lists.map(|list| list.iter().map(|number| Integer::from(*number)).collect()),
             };
             let followed = quadratic.followed(&[1, -1]).expect("a way");
-            let ends: Vec<(f64, RootEnd)> = followed
-                .ends
-                .iter()
-                .map(|(place, end, _)| (to_f64(place), *end))
-                .collect();
+            let ends: Vec<(f64, RootEnd)> =
+                followed.ends.iter().map(|(place, end, _)| (to_f64(place), *end)).collect();
             let words = Words::new(&[], Monomial::power_of("s".into(), 1));
             let (value, definitions) = words.law(&quadratic, &followed).expect("a law");
             let value = move |s: f64| {
@@ -695,11 +630,7 @@ mod tests {
     fn degrees_without_an_approximant_say_why() {
         for (equation, degrees, reason) in [
             ("x'' + 4*x = 0", [1, 1, 1], "does not depend"),
-            (
-                "x'' + x + b*x^3 + c*x^5 = 0",
-                [1, 1, 1],
-                "several combinations",
-            ),
+            ("x'' + x + b*x^3 + c*x^5 = 0", [1, 1, 1], "several combinations"),
             ("x'' + sin(x) = 0", [41, 1, 1], "[40/40/40]"),
         ] {
             let refusal = derived(equation, degrees).unwrap_err().to_string();
@@ -711,9 +642,7 @@ mod tests {
             ..Options::default()
         };
         let pendulum = Oscillator::parse("x'' + sin(x) = 0").unwrap();
-        let refusal = crate::method::solve(&pendulum, &quotient)
-            .unwrap_err()
-            .to_string();
+        let refusal = crate::method::solve(&pendulum, &quotient).unwrap_err().to_string();
         assert!(refusal.contains("it has three"), "{refusal}");
     }
 
@@ -728,13 +657,8 @@ mod tests {
                 (a, g) = ((a + g) / 2.0, f64::sqrt(a * g));
             }
             let omega = f64::sqrt(1.0 + size) * a;
-            let found = at(&solution, &[("A", 1.0), ("eps", size)])
-                .expect("a value")
-                .sqrt();
-            assert!(
-                (found / omega - 1.0).abs() < error,
-                "{size}: {found} {omega}"
-            );
+            let found = at(&solution, &[("A", 1.0), ("eps", size)]).expect("a value").sqrt();
+            assert!((found / omega - 1.0).abs() < error, "{size}: {found} {omega}");
         }
     }
 }

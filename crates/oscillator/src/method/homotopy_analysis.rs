@@ -100,9 +100,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     solution.law = Law::Frequency(sum(&series.frequency).constant_term());
     solution.displacement = sum(&series.displacement);
     let embedding = fresh("q", &solution.names());
-    solution
-        .validity
-        .push(Note::Cut(Cut::Corrections { order, embedding }));
+    solution.validity.push(Note::Cut(Cut::Corrections { order, embedding }));
     if polynomial.is_none() {
         solution.validity.push(Note::TaylorPolynomial { degree });
     }
@@ -181,12 +179,9 @@ impl<'a> Expansion<'a> {
         let mut products = Convolutions::new(POLYNOMIALS);
         let motion = products.leaf();
         let terms = force.terms.iter();
-        let powers: Vec<convolution::Node> = terms
-            .map(|term| products.power(motion, term.position))
-            .collect();
-        powers
-            .iter()
-            .for_each(|&power| products.require(power, order - 1));
+        let powers: Vec<convolution::Node> =
+            terms.map(|term| products.power(motion, term.position)).collect();
+        powers.iter().for_each(|&power| products.require(power, order - 1));
         let names = solution.names();
         let letters = ["u", "w", "R"].map(|letter| fresh_stem(letter, &names));
         Self {
@@ -200,10 +195,7 @@ impl<'a> Expansion<'a> {
             inverse: FourierSeries::zero(POLYNOMIALS),
             linear: force.linear.clone(),
             lines: vec![Line::equation(numbered(&letters[0], 0), start.clone())],
-            series: Series {
-                frequency: vec![],
-                displacement: vec![start],
-            },
+            series: Series { frequency: vec![], displacement: vec![start] },
             first_frequency_name: numbered(&letters[1], 0),
             letters,
             solution,
@@ -213,39 +205,23 @@ impl<'a> Expansion<'a> {
     /// `R_m` without the frequency that it fixes.
     fn residual(&mut self, m: usize) -> Result<FourierSeries<Polynomials>, Refusal> {
         let force = self.force;
-        let highest_power = force
-            .terms
-            .iter()
-            .map(|term| term.position)
-            .max()
-            .unwrap_or(1);
+        let highest_power = force.terms.iter().map(|term| term.position).max().unwrap_or(1);
         let displacement = &self.series.displacement;
         within_reach(&self.products, displacement, m - 1, highest_power)?;
         self.products.push(self.motion, displacement[m - 1].clone());
         self.products.advance(m - 1);
-        self.accelerations
-            .push(displacement[m - 1].derivative().derivative());
+        self.accelerations.push(displacement[m - 1].derivative().derivative());
         let linear = constant_series(self.linear.clone());
         let mut terms = vec![(1, &linear, &displacement[m - 1])];
-        let coefficients = force
-            .terms
-            .iter()
-            .map(|term| constant_series(term.coefficient.clone()));
+        let coefficients = force.terms.iter().map(|term| constant_series(term.coefficient.clone()));
         let coefficients: Vec<_> = coefficients.collect();
-        let known = self
-            .powers
-            .iter()
-            .map(|&power| self.products.order(power, m - 1));
+        let known = self.powers.iter().map(|&power| self.products.order(power, m - 1));
         let powers = coefficients.iter().zip(known);
         terms.extend(powers.filter_map(|(c, power)| Some((1, c, power?))));
         let residual = sum_of_products(&POLYNOMIALS, &terms);
         Ok(match m {
             1 => residual,
-            _ => residual.sum(
-                &self
-                    .squares
-                    .inertia_without_last(&self.accelerations, m - 1),
-            ),
+            _ => residual.sum(&self.squares.inertia_without_last(&self.accelerations, m - 1)),
         })
     }
 
@@ -255,10 +231,7 @@ impl<'a> Expansion<'a> {
         residual: FourierSeries<Polynomials>,
     ) -> Result<FourierSeries<Polynomials>, Refusal> {
         let by_amplitude = Monomial::power_of(Symbol::new("A"), -1);
-        let squared = residual
-            .cosine(1)
-            .constant_term()
-            .times_monomial(&by_amplitude);
+        let squared = residual.cosine(1).constant_term().times_monomial(&by_amplitude);
         let first = linear_frequency(&squared, self.solution);
         // From here on omega0^2 = w_0^2 - (the rest of w_0^2), so that what cancels does so term by
         // term.
@@ -270,12 +243,8 @@ impl<'a> Expansion<'a> {
             || FourierSeries::zero(POLYNOMIALS),
             |(unit, integer)| constant_series(unit).divided_by(integer.to_i64().unwrap_or(1)),
         );
-        let defined = |name: &Symbol| {
-            self.solution
-                .definitions
-                .iter()
-                .any(|entry| entry.symbol == *name)
-        };
+        let defined =
+            |name: &Symbol| self.solution.definitions.iter().any(|entry| entry.symbol == *name);
         let name = first.single_term().filter(|(_, number)| number.is_one());
         let name = name.and_then(|(monomial, _)| Some(monomial.factors().first()?.0));
         if let Some(name) = name.filter(defined) {
@@ -284,10 +253,7 @@ impl<'a> Expansion<'a> {
         let name = self.first_frequency_name;
         let start = self.series.displacement[0].times(-1);
         let inertia = |square: Polynomial| start.product(&constant_series(square));
-        let unknown = inertia(Polynomial::term(
-            Monomial::power_of(name, 2),
-            Rational::one(),
-        ));
+        let unknown = inertia(Polynomial::term(Monomial::power_of(name, 2), Rational::one()));
         self.lines.extend(secular_lines(
             numbered(&self.letters[2], 1),
             &residual.sum(&unknown),
@@ -338,49 +304,29 @@ impl<'a> Expansion<'a> {
     ) -> Result<(), Refusal> {
         // What is left of the first harmonic has been removed by w_(m-1).
         let (particular, _) = residual.solve_oscillator();
-        let scaled = particular
-            .product(&self.hbar)
-            .product(&self.inverse)
-            .product(&self.inverse);
-        let mut next = scaled.difference(
-            &scaled
-                .at_zero()
-                .product(&FourierSeries::cos(POLYNOMIALS, 1)),
-        );
+        let scaled = particular.product(&self.hbar).product(&self.inverse).product(&self.inverse);
+        let mut next =
+            scaled.difference(&scaled.at_zero().product(&FourierSeries::cos(POLYNOMIALS, 1)));
         if m > 1 {
             next = next.sum(&self.series.displacement[m - 1]);
         }
-        let longest = next
-            .harmonics()
-            .iter()
-            .map(|entry| entry.1.terms().len())
-            .max();
+        let longest = next.harmonics().iter().map(|entry| entry.1.terms().len()).max();
         if longest.is_some_and(|longest| longest > MOST_TERMS) {
             return Err(Refusal::TooLong { terms: MOST_TERMS });
         }
         let [u, _, r] = &self.letters;
         let (name, before, residual) = (numbered(u, m), numbered(u, m - 1), numbered(r, m));
-        let (control, first_frequency) = (
-            convergence_control(self.solution),
-            self.first_frequency_name,
-        );
+        let (control, first_frequency) =
+            (convergence_control(self.solution), self.first_frequency_name);
         let driven = next.sum(&next.derivative().derivative());
-        let left = Formula::Oscillator {
-            of: name,
-            square: Expr::one(),
-        };
+        let left = Formula::Oscillator { of: name, square: Expr::one() };
         let change = format!("{control}*{residual}/{first_frequency}^2");
-        self.lines
-            .push(Line::equal([left, driven.into()]).because(match m {
-                1 => format!("{name}'' + {name} = {change}"),
-                _ => format!("{name}'' + {name} = {before}'' + {before} + {change}"),
-            }));
-        let start = |derivatives| Formula::AtZero {
-            of: name,
-            derivatives,
-        };
-        self.lines
-            .push(Line::equal([start(0), start(1), Expr::zero().into()]));
+        self.lines.push(Line::equal([left, driven.into()]).because(match m {
+            1 => format!("{name}'' + {name} = {change}"),
+            _ => format!("{name}'' + {name} = {before}'' + {before} + {change}"),
+        }));
+        let start = |derivatives| Formula::AtZero { of: name, derivatives };
+        self.lines.push(Line::equal([start(0), start(1), Expr::zero().into()]));
         self.lines.push(Line::equation(name, next.clone()));
         self.series.displacement.push(next);
         Ok(())
@@ -443,11 +389,7 @@ impl Squares {
         let frequency = products.leaf();
         let square = products.product(frequency, frequency);
         products.require(square, highest);
-        Self {
-            products,
-            frequency,
-            square,
-        }
+        Self { products, frequency, square }
     }
 
     /// Supplies the next `w_k`.
@@ -468,11 +410,7 @@ impl Squares {
         let last = sum_of_products(&POLYNOMIALS, &known);
         let mut terms = vec![(1, &last, &accelerations[0])];
         terms.extend((0..k).filter_map(|n| {
-            Some((
-                1,
-                self.products.order(self.square, n)?,
-                &accelerations[k - n],
-            ))
+            Some((1, self.products.order(self.square, n)?, &accelerations[k - n]))
         }));
         sum_of_products(&POLYNOMIALS, &terms)
     }

@@ -109,17 +109,10 @@ fn with_stiffness(
 
     let explicit = explicit_terms(&series.frequency_squared, &force.linear, omega);
     let relation = relation(&explicit, omega);
-    let root = match explicit
-        .exponent_range(omega)
-        .is_none_or(|range| range == (0, 0))
-    {
+    let root = match explicit.exponent_range(omega).is_none_or(|range| range == (0, 0)) {
         true => Some(Root::Polynomial(explicit)),
-        false => root_in_closed_form(&relation, omega)?.map(|value| {
-            Root::Closed(ClosedForm {
-                squared: true,
-                value,
-            })
-        }),
+        false => root_in_closed_form(&relation, omega)?
+            .map(|value| Root::Closed(ClosedForm { squared: true, value })),
     };
     let small = match oscillator.small_parameter(options.small.as_deref()) {
         Ok(SmallParameter::Parameter(name)) => name,
@@ -144,9 +137,9 @@ fn with_stiffness(
         definitions: force.definitions,
         equilibrium: Expr::zero(),
         law: Law::Relation { relation, root },
-        displacement: series.displacement.map(POLYNOMIALS, |coefficient, _| {
-            coefficient.product(&Polynomial::symbol(amplitude))
-        }),
+        displacement: series
+            .displacement
+            .map(POLYNOMIALS, |coefficient, _| coefficient.product(&Polynomial::symbol(amplitude))),
         limit_cycle: None,
         modulation: None,
         response: None,
@@ -169,11 +162,7 @@ fn embedded(terms: &[Term], amplitude: Symbol, omega: Symbol) -> Vec<Term> {
         let (position, velocity) = (term.position as i32, term.velocity as i32);
         let unit = Monomial::power_of(amplitude, position + velocity - 1);
         let unit = unit.product(&Monomial::power_of(omega, velocity - 2));
-        Term {
-            order: 1,
-            coefficient: term.coefficient.times_monomial(&unit),
-            ..term.clone()
-        }
+        Term { order: 1, coefficient: term.coefficient.times_monomial(&unit), ..term.clone() }
     };
     terms.iter().map(term).collect()
 }
@@ -183,10 +172,8 @@ fn embedded(terms: &[Term], amplitude: Symbol, omega: Symbol) -> Vec<Term> {
 fn explicit_terms(series: &Polynomial, linear: &Polynomial, omega: Symbol) -> Polynomial {
     let mut corrections = series.clone();
     corrections.accumulate(&Polynomial::constant(-Rational::one()));
-    let mut explicit = corrections.product(&Polynomial::term(
-        Monomial::power_of(omega, 2),
-        Rational::one(),
-    ));
+    let mut explicit =
+        corrections.product(&Polynomial::term(Monomial::power_of(omega, 2), Rational::one()));
     explicit.accumulate(linear);
     explicit
 }
@@ -196,13 +183,8 @@ fn explicit_terms(series: &Polynomial, linear: &Polynomial, omega: Symbol) -> Po
 fn relation(explicit: &Polynomial, omega: Symbol) -> Polynomial {
     let mut relation = explicit.clone();
     relation.negate();
-    relation.accumulate(&Polynomial::term(
-        Monomial::power_of(omega, 2),
-        Rational::one(),
-    ));
-    let lowest = relation
-        .exponent_range(omega)
-        .map_or(0, |range| range.0.min(0));
+    relation.accumulate(&Polynomial::term(Monomial::power_of(omega, 2), Rational::one()));
+    let lowest = relation.exponent_range(omega).map_or(0, |range| range.0.min(0));
     relation.times_monomial(&Monomial::power_of(omega, -lowest))
 }
 
@@ -211,9 +193,8 @@ fn relation(explicit: &Polynomial, omega: Symbol) -> Polynomial {
 fn root_in_closed_form(relation: &Polynomial, omega: Symbol) -> Result<Option<Expr>, ExprError> {
     let coefficient = |power: i32| {
         let mut result = Polynomial::zero();
-        for (monomial, number) in relation
-            .terms()
-            .filter(|(monomial, _)| monomial.exponent(omega) == power)
+        for (monomial, number) in
+            relation.terms().filter(|(monomial, _)| monomial.exponent(omega) == power)
         {
             result.add_term(monomial.without(omega), number.clone());
         }

@@ -81,11 +81,7 @@ impl VariableMass {
             return Ok(None);
         }
         let mass = integrating_factor(2, &growth, oscillator.coordinate);
-        Ok(Some(Self {
-            growth,
-            force: parts.restoring,
-            mass,
-        }))
+        Ok(Some(Self { growth, force: parts.restoring, mass }))
     }
 
     /// Whether the motion has odd harmonics alone.
@@ -101,12 +97,7 @@ impl VariableMass {
         // Of a quotient such as sin(x)/x the first coefficient of its series.
         let at_rest = |function: &Expr| {
             let value = function.substitute(x, &Expr::zero()).ok();
-            value.or_else(|| {
-                taylor(function, &[(x, Rational::zero())], 0)
-                    .ok()?
-                    .first()
-                    .cloned()
-            })
+            value.or_else(|| taylor(function, &[(x, Rational::zero())], 0).ok()?.first().cloned())
         };
         match &self.mass {
             Some(mass) => at_rest(mass).is_some_and(|mass| !mass.is_zero()),
@@ -115,9 +106,7 @@ impl VariableMass {
                 let leaves_integral =
                     |product: Expr| at_rest(&product).is_some_and(|value| value.is_zero());
                 at_rest(&self.growth).is_some()
-                    || (&self.growth * &Expr::from(x))
-                        .expand()
-                        .is_ok_and(leaves_integral)
+                    || (&self.growth * &Expr::from(x)).expand().is_ok_and(leaves_integral)
             }
         }
     }
@@ -179,9 +168,7 @@ pub fn forces(oscillator: &Oscillator) -> Option<[Expr; 2]> {
 
 /// `exp(n int g dx)`, logarithms in the exponent written as powers.
 fn integrating_factor(n: i64, growth: &Expr, coordinate: Symbol) -> Option<Expr> {
-    let exponent = (Expr::from(n) * potential(growth, coordinate)?)
-        .expand()
-        .ok()?;
+    let exponent = (Expr::from(n) * potential(growth, coordinate)?).expand().ok()?;
     let factor = |term: &Expr| -> Result<Expr, ExprError> {
         let (number, factors) = term.factors();
         match factors {
@@ -192,12 +179,7 @@ fn integrating_factor(n: i64, growth: &Expr, coordinate: Symbol) -> Option<Expr>
             _ => Expr::function(Function::Exp, vec![term.clone()]),
         }
     };
-    let factors = exponent
-        .terms()
-        .iter()
-        .map(factor)
-        .collect::<Result<Vec<_>, _>>()
-        .ok()?;
+    let factors = exponent.terms().iter().map(factor).collect::<Result<Vec<_>, _>>().ok()?;
     Some(Expr::product(factors))
 }
 
@@ -213,28 +195,18 @@ pub struct Approach {
 }
 
 /// The true motion.
-pub(super) const EXACT: Approach = Approach {
-    solve: exact,
-    numbers: exact_at,
-};
+pub(super) const EXACT: Approach = Approach { solve: exact, numbers: exact_at };
 
 /// Energy at an eighth of the period.
-pub(super) const ENERGY_BALANCE: Approach = Approach {
-    solve: energy_balance,
-    numbers: energy_balance_at,
-};
+pub(super) const ENERGY_BALANCE: Approach =
+    Approach { solve: energy_balance, numbers: energy_balance_at };
 
 /// The mean Hamiltonian.
-pub(super) const HAMILTONIAN: Approach = Approach {
-    solve: hamiltonian,
-    numbers: hamiltonian_at,
-};
+pub(super) const HAMILTONIAN: Approach = Approach { solve: hamiltonian, numbers: hamiltonian_at };
 
 /// Harmonics of the equation as typed.
-pub(super) const HARMONIC_BALANCE: Approach = Approach {
-    solve: harmonic_balance,
-    numbers: harmonic_balance_at,
-};
+pub(super) const HARMONIC_BALANCE: Approach =
+    Approach { solve: harmonic_balance, numbers: harmonic_balance_at };
 
 /// The answer of a method that takes such an equation as it is; `None` where it does not, or the
 /// equation is another.
@@ -292,11 +264,7 @@ fn mass_lines(moving: &VariableMass, oscillator: &Oscillator) -> Result<Vec<Line
     };
     let kinetic = Expr::from(name) * velocity.integer_power(2)?;
     let energy = Expr::divide(&kinetic, &Expr::from(2))? + Expr::from(potential);
-    let slope = Formula::Slope {
-        factor: Expr::one(),
-        of: potential,
-        by: x,
-    };
+    let slope = Formula::Slope { factor: Expr::one(), of: potential, by: x };
     let weighted = moving.weighted_force();
     let weighted = weighted.unwrap_or_else(|| Expr::from(name) * &moving.force);
     Ok(vec![
@@ -336,23 +304,13 @@ fn exact(
     };
     let mut lines = match moving.mass {
         Some(_) => vec![],
-        None => mass_lines(moving, oscillator)?
-            .into_iter()
-            .take(1)
-            .collect(),
+        None => mass_lines(moving, oscillator)?.into_iter().take(1).collect(),
     };
     lines.extend(energy.period(oscillator)?);
     solution.derivation = mass_lines(moving, oscillator)?;
-    solution.derivation.extend(
-        lines
-            .iter()
-            .skip(usize::from(moving.mass.is_none()))
-            .cloned(),
-    );
+    solution.derivation.extend(lines.iter().skip(usize::from(moving.mass.is_none())).cloned());
     solution.law = Law::Quadrature(lines);
-    solution
-        .validity
-        .push(Note::Exact(ExactBy::EnergyQuadrature));
+    solution.validity.push(Note::Exact(ExactBy::EnergyQuadrature));
     Ok(solution)
 }
 
@@ -382,16 +340,10 @@ fn energy_balance(
             let value = function.substitute(x, place).ok()?;
             positive_amplitude(&value).unwrap_or(value).expand().ok()
         };
-        let rise = (at(&potential, &amplitude)? - at(&potential, &eighth)?)
-            .expand()
-            .ok()?;
+        let rise = (at(&potential, &amplitude)? - at(&potential, &eighth)?).expand().ok()?;
         let inertia = at(mass, &eighth)?;
         let law = Expr::divide(&rise, &(&quarter * &inertia)).ok()?;
-        let law = law
-            .expand()
-            .ok()
-            .filter(|law| law.terms().len() < 2)
-            .unwrap_or(law);
+        let law = law.expand().ok().filter(|law| law.terms().len() < 2).unwrap_or(law);
         Some((rise, inertia, law))
     };
     match law() {
@@ -430,9 +382,7 @@ fn energy_balance(
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
-    solution
-        .validity
-        .push(Note::Collocated(Instant::EighthOfPeriod));
+    solution.validity.push(Note::Collocated(Instant::EighthOfPeriod));
     Ok(solution)
 }
 
@@ -460,10 +410,7 @@ fn hamiltonian(
         let potential = mean(&potential(&weighted, x)?)?;
         // Both slopes are odd in A: the common factor goes.
         let slope = |of: &Expr| {
-            Expr::divide(&of.differentiate("A".into()).ok()?, &amplitude)
-                .ok()?
-                .expand()
-                .ok()
+            Expr::divide(&of.differentiate("A".into()).ok()?, &amplitude).ok()?.expand().ok()
         };
         let law = Expr::divide(&slope(&potential)?, &slope(&kinetic)?).ok()?;
         Some((kinetic, potential, law))
@@ -471,11 +418,7 @@ fn hamiltonian(
     match law() {
         Some((kinetic, potential, law)) => {
             let [k, p] = ["K", "P"].map(|name| named(name, oscillator));
-            let slope = |of: Symbol, factor: Expr| Formula::Slope {
-                factor,
-                of,
-                by: "A".into(),
-            };
+            let slope = |of: Symbol, factor: Expr| Formula::Slope { factor, of, by: "A".into() };
             solution.derivation.extend([
                 Line::equation(k, kinetic).because(format!(
                     "mean kinetic energy of {AMPLITUDE}*cos(θ) over {FREQUENCY}^2"
@@ -488,19 +431,15 @@ fn hamiltonian(
             set_law(&mut solution, &law)?;
         }
         None => {
-            let (cosine, sine) = (
-                Expr::from(oscillator.phase()).cos()?,
-                Expr::from(oscillator.phase()).sin()?,
-            );
+            let (cosine, sine) =
+                (Expr::from(oscillator.phase()).cos()?, Expr::from(oscillator.phase()).sin()?);
             let along = &amplitude * &cosine;
             let mass = match &moving.mass {
                 Some(mass) => mass.substitute(x, &along)?,
                 None => mass_name(oscillator).into(),
             };
-            let (growth, force) = (
-                moving.growth.substitute(x, &along)?,
-                moving.force.substitute(x, &along)?,
-            );
+            let (growth, force) =
+                (moving.growth.substitute(x, &along)?, moving.force.substitute(x, &along)?);
             let over_half = |factor: Expr, integrand: Expr| Formula::Integral {
                 factor,
                 from: Expr::zero(),
@@ -521,9 +460,7 @@ fn hamiltonian(
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
-    solution
-        .validity
-        .push(Note::FirstStep(FirstStep::TermOfEquation));
+    solution.validity.push(Note::FirstStep(FirstStep::TermOfEquation));
     Ok(solution)
 }
 
@@ -532,11 +469,7 @@ type TypedTerm = ([u32; 3], Polynomial);
 
 /// The terms of the equation as typed, where it is a polynomial in `x`, `x'` and `x''`.
 fn typed_terms(oscillator: &Oscillator) -> Result<Option<Vec<TypedTerm>>, Refusal> {
-    let own = [
-        oscillator.coordinate,
-        oscillator.velocity(),
-        oscillator.velocity().derivative(),
-    ];
+    let own = [oscillator.coordinate, oscillator.velocity(), oscillator.velocity().derivative()];
     let Some(polynomial) = oscillator.residual.expand()?.to_polynomial(&mut |_| None)? else {
         return Ok(None);
     };
@@ -545,9 +478,7 @@ fn typed_terms(oscillator: &Oscillator) -> Result<Option<Vec<TypedTerm>>, Refusa
         for (power, &name) in powers.iter_mut().zip(&own) {
             *power = u32::try_from(monomial.exponent(name)).ok()?;
         }
-        let rest = own
-            .iter()
-            .fold(monomial.clone(), |rest, &name| rest.without(name));
+        let rest = own.iter().fold(monomial.clone(), |rest, &name| rest.without(name));
         Some((powers, Polynomial::term(rest, number.clone())))
     };
     Ok(polynomial.terms().map(term).collect())
@@ -583,10 +514,7 @@ fn harmonic_balance(
         typed.because("balanced as it stands"),
         Line::equation(x, solution.displacement.clone()),
     ];
-    match (
-        balances(oscillator, &solution.displacement, &harmonics)?,
-        names.as_slice(),
-    ) {
+    match (balances(oscillator, &solution.displacement, &harmonics)?, names.as_slice()) {
         (Some(balances), [_]) => one_balance(&mut solution, &balances[0])?,
         (Some(balances), names) => solution.law = Law::System(system(&balances, names)?),
         (None, names) => {
@@ -595,10 +523,7 @@ fn harmonic_balance(
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
-    solution.validity.push(Note::Balanced {
-        harmonics,
-        by_numbers: false,
-    });
+    solution.validity.push(Note::Balanced { harmonics, by_numbers: false });
     Ok(solution)
 }
 
@@ -644,9 +569,7 @@ fn one_balance(solution: &mut Solution, balance: &Polynomial) -> Result<(), Refu
         &Expr::divide(&inertia, &amplitude)?.expand()?,
     )?;
     let condition = Line::equation(balance, Expr::zero()).because("the cos(θ) part");
-    solution
-        .derivation
-        .extend([condition, Line::equation(squared, &law)]);
+    solution.derivation.extend([condition, Line::equation(squared, &law)]);
     set_law(solution, &law)
 }
 
@@ -656,10 +579,7 @@ fn system(balances: &[Polynomial], names: &[Symbol]) -> Result<System, Refusal> 
     let mut equations: Vec<Expr> = balances.iter().map(Expr::from).collect();
     equations.push((sum - Expr::symbol("A")).expand()?);
     let omega = std::iter::once(Symbol::new("omega"));
-    Ok(System {
-        unknowns: omega.chain(names.iter().copied()).collect(),
-        equations,
-    })
+    Ok(System { unknowns: omega.chain(names.iter().copied()).collect(), equations })
 }
 
 /// The balances as integrals, where they are not written out.
@@ -700,25 +620,14 @@ pub(super) fn at_numbers(
     let equilibrium = solution.equilibrium.clone();
     let moved = &Expr::from(oscillator.coordinate) + &equilibrium;
     let mut centred = oscillator.clone();
-    centred.force = oscillator
-        .force
-        .substitute(oscillator.coordinate, &moved)
-        .ok()?;
-    centred.residual = oscillator
-        .residual
-        .substitute(oscillator.coordinate, &moved)
-        .ok()?;
+    centred.force = oscillator.force.substitute(oscillator.coordinate, &moved).ok()?;
+    centred.residual = oscillator.residual.substitute(oscillator.coordinate, &moved).ok()?;
     let oscillator = &centred;
     let moving = VariableMass::of(oscillator).ok()??;
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
     let mass = moving.mass_at(oscillator, numbers, amplitude)?;
-    let force = Force::new(
-        &moving.force,
-        oscillator.coordinate,
-        &Expr::zero(),
-        numbers,
-        amplitude,
-    )?;
+    let force =
+        Force::new(&moving.force, oscillator.coordinate, &Expr::zero(), numbers, amplitude)?;
     let approach = Entry::of(solution.method).inertia.as_ref()?;
     (approach.numbers)(&Question {
         moving: &moving,
@@ -767,19 +676,13 @@ fn exact_at(question: &Question) -> Option<AtNumbers> {
 fn energy_balance_at(question: &Question) -> Option<AtNumbers> {
     let amplitude = question.amplitude;
     let eighth = amplitude / f64::sqrt(2.0);
-    let rise = integrate_smooth(|x| question.weighted(x), eighth, amplitude, 1e-12)
-        .ok()?
-        .0;
+    let rise = integrate_smooth(|x| question.weighted(x), eighth, amplitude, 1e-12).ok()?.0;
     question.one_term(4.0 * rise / (amplitude * amplitude * (question.mass)(eighth)))
 }
 
 fn hamiltonian_at(question: &Question) -> Option<AtNumbers> {
     let amplitude = question.amplitude;
-    let growth = compiled(
-        question.oscillator,
-        &question.moving.growth,
-        question.numbers,
-    )?;
+    let growth = compiled(question.oscillator, &question.moving.growth, question.numbers)?;
     let mean = |function: &dyn Fn(f64, f64) -> f64| {
         let value = |theta: f64| function(theta.cos(), theta.sin());
         integrate_smooth(value, 0.0, std::f64::consts::PI, 1e-12).map(|(value, _)| value)
@@ -795,12 +698,7 @@ fn hamiltonian_at(question: &Question) -> Option<AtNumbers> {
 fn harmonic_balance_at(question: &Question) -> Option<AtNumbers> {
     let odd = question.moving.is_odd(question.oscillator).ok()?;
     let harmonics = harmonics(question.order, odd);
-    balanced(
-        question.oscillator,
-        question.numbers,
-        &harmonics,
-        question.amplitude,
-    )
+    balanced(question.oscillator, question.numbers, &harmonics, question.amplitude)
 }
 
 /// The balance of the equation as typed by Newton's iteration, the amplitude raised in steps from a
@@ -843,10 +741,7 @@ fn balanced(
     for (index, &k) in harmonics.iter().enumerate() {
         cosine[k] = unknowns[index + 1];
     }
-    Some((
-        unknowns[0],
-        FourierSeries::from_parts(Doubles, cosine, vec![]),
-    ))
+    Some((unknowns[0], FourierSeries::from_parts(Doubles, cosine, vec![])))
 }
 
 /// The equation as typed and its slopes in `x`, `x'` and `x''`, sampled along a motion.
@@ -865,27 +760,18 @@ impl Balance {
         harmonics: &[usize],
     ) -> Option<Self> {
         const FEWEST: usize = 128;
-        let own = [
-            oscillator.coordinate,
-            oscillator.velocity(),
-            oscillator.velocity().derivative(),
-        ];
+        let own =
+            [oscillator.coordinate, oscillator.velocity(), oscillator.velocity().derivative()];
         let names: Vec<Symbol> = own.into_iter().chain(numbers.keys().copied()).collect();
-        let slopes = own
-            .iter()
-            .map(|&name| oscillator.residual.differentiate(name).ok());
+        let slopes = own.iter().map(|&name| oscillator.residual.differentiate(name).ok());
         let expressions: Vec<Expr> = std::iter::once(Some(oscillator.residual.clone()))
             .chain(slopes)
             .collect::<Option<_>>()?;
-        let functions = expressions
-            .iter()
-            .map(|expression| CompiledFunction::new(expression, &names).ok());
+        let functions =
+            expressions.iter().map(|expression| CompiledFunction::new(expression, &names).ok());
         Some(Self {
             functions: functions.collect::<Option<_>>()?,
-            arguments: [0.0; 3]
-                .into_iter()
-                .chain(numbers.values().copied())
-                .collect(),
+            arguments: [0.0; 3].into_iter().chain(numbers.values().copied()).collect(),
             harmonics: harmonics.to_vec(),
             points: FEWEST.max(16 * (harmonics.last()? + 1)),
         })
@@ -895,10 +781,7 @@ impl Balance {
     fn at(&self, state: [f64; 3]) -> Vec<f64> {
         let mut arguments = self.arguments.clone();
         arguments[..3].copy_from_slice(&state);
-        self.functions
-            .iter()
-            .map(|function| function.call(&arguments))
-            .collect()
+        self.functions.iter().map(|function| function.call(&arguments)).collect()
     }
 
     /// omega0^2 at rest.

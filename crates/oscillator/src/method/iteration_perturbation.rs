@@ -59,10 +59,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let force = conservative_force(oscillator, options, METHOD)?;
     let passes = options.order.unwrap_or(1);
     if passes > MOST_PASSES {
-        return Err(Unsuited::HighestOrder {
-            highest: MOST_PASSES,
-        }
-        .to(METHOD));
+        return Err(Unsuited::HighestOrder { highest: MOST_PASSES }.to(METHOD));
     }
     if passes > 1 {
         return iterated(oscillator, options, &force, passes);
@@ -94,9 +91,7 @@ pub(super) fn first_iterate(
     force: &Expr,
 ) -> Result<(), Refusal> {
     let amplitude = Expr::symbol("A");
-    let degree = oscillator
-        .polynomial_degree()?
-        .map(|degree| degree as usize);
+    let degree = oscillator.polynomial_degree()?.map(|degree| degree as usize);
     let highest = degree.unwrap_or(HIGHEST_HARMONIC);
     let stem = fresh_stem("c", &oscillator.names());
     let mut motion = solution.displacement.clone();
@@ -112,10 +107,7 @@ pub(super) fn first_iterate(
             Some(polynomial) => polynomial,
             None => {
                 let symbol = Symbol::new(&format!("{stem}{k}"));
-                solution.definitions.push(Definition {
-                    symbol,
-                    meaning: coefficient,
-                });
+                solution.definitions.push(Definition { symbol, meaning: coefficient });
                 Polynomial::symbol(symbol)
             }
         };
@@ -124,18 +116,13 @@ pub(super) fn first_iterate(
         polynomial = polynomial.times_monomial(&Monomial::power_of(Symbol::new("omega"), -2));
         let wave = linear_combination(
             &POLYNOMIALS,
-            &[
-                (1, &FourierSeries::cos(POLYNOMIALS, k)),
-                (-1, &FourierSeries::cos(POLYNOMIALS, 1)),
-            ],
+            &[(1, &FourierSeries::cos(POLYNOMIALS, k)), (-1, &FourierSeries::cos(POLYNOMIALS, 1))],
         );
         let term = wave.product(&FourierSeries::constant(POLYNOMIALS, polynomial));
         motion = motion.sum(&term.divided_by(divisor));
     }
     if degree.is_none() && motion != solution.displacement {
-        solution
-            .validity
-            .push(Note::MotionCutAfter { harmonic: highest });
+        solution.validity.push(Note::MotionCutAfter { harmonic: highest });
     }
     solution.displacement = motion;
     Ok(())
@@ -165,18 +152,15 @@ fn iterated(
         let pass = Pass::new(oscillator, &coefficients, &motion)?;
         let (particular, resonance) = pass.right_side.solve_oscillator();
         secular = resonance.cosine.constant_term();
-        let particular = particular.map(POLYNOMIALS, |coefficient, _| {
-            coefficient.times_monomial(&inverse)
-        });
+        let particular =
+            particular.map(POLYNOMIALS, |coefficient, _| coefficient.times_monomial(&inverse));
         let rest = FourierSeries::constant(POLYNOMIALS, Polynomial::symbol(amplitude))
             .difference(&particular.at_zero());
         motion = particular.sum(&rest.product(&FourierSeries::cos(POLYNOMIALS, 1)));
         lines.extend(pass.lines(oscillator, number, (number < passes).then_some(&motion))?);
     }
     let relation = secular.times_monomial(&Monomial::power_of(amplitude, -1));
-    let lowest = relation
-        .exponent_range(omega)
-        .map_or(0, |range| range.0.min(0));
+    let lowest = relation.exponent_range(omega).map_or(0, |range| range.0.min(0));
     solution.law = Law::Relation {
         relation: relation.times_monomial(&Monomial::power_of(omega, -lowest)),
         root: None,
@@ -204,20 +188,14 @@ impl Pass {
     ) -> Result<Self, Refusal> {
         // f(0) = 0, so f/x is a polynomial as well.
         let quotient = coefficients.get(1..).unwrap_or_default();
-        if coefficients
-            .first()
-            .is_some_and(|constant| !constant.is_zero())
-        {
+        if coefficients.first().is_some_and(|constant| !constant.is_zero()) {
             return Err(OscillatorError::NoEquilibrium(oscillator.force.to_string()).into());
         }
         let factor = horner(quotient, motion)?;
         let squared =
             Polynomial::term(Monomial::power_of(Symbol::new("omega"), 2), Rational::one());
         let squared = FourierSeries::constant(POLYNOMIALS, squared);
-        Ok(Self {
-            right_side: squared.difference(&factor).product(motion),
-            factor,
-        })
+        Ok(Self { right_side: squared.difference(&factor).product(motion), factor })
     }
 
     /// The pass on paper; `next` is the motion it gives, where another pass follows.
@@ -227,18 +205,12 @@ impl Pass {
         number: u32,
         next: Option<&FourierSeries<Polynomials>>,
     ) -> Result<Vec<Line>, Refusal> {
-        let (before, after) = (
-            numbered(oscillator, number - 1),
-            numbered(oscillator, number),
-        );
+        let (before, after) = (numbered(oscillator, number - 1), numbered(oscillator, number));
         let omega = Expr::symbol("omega").integer_power(2)?;
         let x = Expr::from(oscillator.coordinate);
         let factor = Expr::divide(&oscillator.force, &x)?.expand()?;
         let factor = factor.substitute(oscillator.coordinate, &before.into())?;
-        let left = Formula::Oscillator {
-            of: after,
-            square: omega,
-        };
+        let left = Formula::Oscillator { of: after, square: omega };
         let secular = self.right_side.cosine(1).constant_term();
         let mut lines = vec![
             Line::equation(factor, self.factor.clone())
@@ -275,14 +247,8 @@ fn frozen_function(oscillator: &Oscillator, force: &Expr) -> Result<Vec<Line>, R
     let squared = Expr::symbol("omega").integer_power(2)?;
     Ok(vec![
         Line::equation(start, along),
-        Line::equal([
-            Formula::Oscillator {
-                of: first,
-                square: frozen,
-            },
-            Expr::zero().into(),
-        ])
-        .because(format!("the factor frozen at {start}")),
+        Line::equal([Formula::Oscillator { of: first, square: frozen }, Expr::zero().into()])
+            .because(format!("the factor frozen at {start}")),
         Line::equation(squared, first_projection(oscillator, force)?).because("no cos(θ) remains"),
     ])
 }
@@ -317,14 +283,9 @@ pub(super) fn horner(
 ) -> Result<FourierSeries<Polynomials>, Refusal> {
     let mut value = FourierSeries::zero(POLYNOMIALS);
     for coefficient in coefficients.iter().rev() {
-        value = value
-            .product(motion)
-            .sum(&FourierSeries::constant(POLYNOMIALS, coefficient.clone()));
-        let longest = value
-            .harmonics()
-            .iter()
-            .map(|entry| entry.1.terms().len())
-            .max();
+        value =
+            value.product(motion).sum(&FourierSeries::constant(POLYNOMIALS, coefficient.clone()));
+        let longest = value.harmonics().iter().map(|entry| entry.1.terms().len()).max();
         if longest.is_some_and(|longest| longest > MOST_TERMS) {
             return Err(Refusal::TooLong { terms: MOST_TERMS });
         }

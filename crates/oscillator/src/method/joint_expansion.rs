@@ -61,10 +61,8 @@ pub(super) fn expand_jointly(
     let with_letters = small_parameters(&linear, &others, oscillator, &mut parameters);
     let (force, value) = match with_letters {
         true => {
-            let scaled: BTreeMap<Symbol, Expr> = parameters
-                .iter()
-                .map(|&name| (name, marked(&Expr::from(name))))
-                .collect();
+            let scaled: BTreeMap<Symbol, Expr> =
+                parameters.iter().map(|&name| (name, marked(&Expr::from(name)))).collect();
             (oscillator.force.substitute_all(&scaled).ok()?, None)
         }
         false => {
@@ -74,24 +72,15 @@ pub(super) fn expand_jointly(
                 false => Rational::one(),
             };
             parameters = asked;
-            let scaled: BTreeMap<Symbol, Expr> = parameters
-                .iter()
-                .map(|&name| (name, marked(&Expr::from(name))))
-                .collect();
+            let scaled: BTreeMap<Symbol, Expr> =
+                parameters.iter().map(|&name| (name, marked(&Expr::from(name)))).collect();
             let factor = marked(&Expr::number(value.recip()));
             let small_term = |term: &Expr| {
                 let scaled = term.substitute_all(&scaled)?;
-                Ok(if scaled == *term {
-                    &factor * term
-                } else {
-                    scaled
-                })
+                Ok(if scaled == *term { &factor * term } else { scaled })
             };
-            let rest: Vec<Expr> = others
-                .iter()
-                .map(small_term)
-                .collect::<Result<_, ExprError>>()
-                .ok()?;
+            let rest: Vec<Expr> =
+                others.iter().map(small_term).collect::<Result<_, ExprError>>().ok()?;
             (Expr::sum(linear.into_iter().chain(rest)), Some(value))
         }
     };
@@ -99,9 +88,7 @@ pub(super) fn expand_jointly(
     scaled.force = force;
     scaled.parameters.push(delta);
     Some(JointExpansion {
-        force: scaled
-            .expand(SmallParameter::Parameter(delta), order)
-            .ok()?,
+        force: scaled.expand(SmallParameter::Parameter(delta), order).ok()?,
         delta,
         value,
         parameters,
@@ -117,13 +104,10 @@ fn small_parameters(
     parameters: &mut Vec<Symbol>,
 ) -> bool {
     let vanishes = |term: &Expr, name: Symbol| {
-        term.substitute(name, &Expr::zero())
-            .is_ok_and(|rest| rest.is_zero())
+        term.substitute(name, &Expr::zero()).is_ok_and(|rest| rest.is_zero())
     };
-    let mut left: Vec<&Expr> = others
-        .iter()
-        .filter(|term| !parameters.iter().any(|&name| vanishes(term, name)))
-        .collect();
+    let mut left: Vec<&Expr> =
+        others.iter().filter(|term| !parameters.iter().any(|&name| vanishes(term, name))).collect();
     while !left.is_empty() {
         let free = oscillator.parameters.iter().copied();
         let candidates = free.filter(|&name| !linear.iter().any(|term| term.contains(name)));

@@ -75,19 +75,11 @@ impl AmplitudeEquation {
     /// `None` where the first order has no secular sine at any amplitude: the amplitude is free.
     pub fn new(force: &PerturbedForce, units: &Units) -> Option<Self> {
         let equation = coefficients(force, units);
-        let lowest = equation
-            .iter()
-            .position(|coefficient| !coefficient.is_zero())?;
+        let lowest = equation.iter().position(|coefficient| !coefficient.is_zero())?;
         let factor = common_monomial(&equation);
         let inverse = factor.power(-1);
-        let rest = equation[lowest..]
-            .iter()
-            .map(|entry| entry.times_monomial(&inverse));
-        Some(Self {
-            factor,
-            lowest: lowest as i32,
-            rest: rest.collect(),
-        })
+        let rest = equation[lowest..].iter().map(|entry| entry.times_monomial(&inverse));
+        Some(Self { factor, lowest: lowest as i32, rest: rest.collect() })
     }
 
     /// Whether nothing can balance: the equation has no root but zero.
@@ -120,11 +112,7 @@ impl AmplitudeEquation {
             );
         }
         sine.negate();
-        AmplitudeCondition {
-            sine,
-            unknown,
-            value: cycle.amplitude.clone(),
-        }
+        AmplitudeCondition { sine, unknown, value: cycle.amplitude.clone() }
     }
 
     /// All limit cycles, smallest amplitude first: none where the motion dies out or grows.
@@ -148,9 +136,8 @@ impl AmplitudeEquation {
                 .map(|root| self.numerical(root, &numbers, [name, fresh("z", taken)], &signs))
                 .collect());
         }
-        let powers: Vec<usize> = (1..self.rest.len())
-            .filter(|&k| !self.rest[k].is_zero())
-            .collect();
+        let powers: Vec<usize> =
+            (1..self.rest.len()).filter(|&k| !self.rest[k].is_zero()).collect();
         match powers.as_slice() {
             [] => Ok(vec![]),
             [highest] => self.two_terms(*highest, name, &signs),
@@ -168,20 +155,16 @@ impl AmplitudeEquation {
         signs: &Monomial,
     ) -> Cycle {
         let slope = derivative(equation);
-        let slope_value = slope.iter().rev().fold(0.0, |sum, c| {
-            sum * root.value + crate::exact::rational::to_f64(c)
-        });
+        let slope_value = slope
+            .iter()
+            .rev()
+            .fold(0.0, |sum, c| sum * root.value + crate::exact::rational::to_f64(c));
         let sign =
             |positive: bool| Rational::from_integer(if positive { 1.into() } else { (-1).into() });
-        let attracts_where = root
-            .simple
-            .then(|| Polynomial::term(signs.clone(), sign(slope_value < 0.0)));
+        let attracts_where =
+            root.simple.then(|| Polynomial::term(signs.clone(), sign(slope_value < 0.0)));
         let degree = root.factor.len() as i32 - 1;
-        if let Some(exact) = root
-            .exact
-            .as_ref()
-            .and_then(|exact| power(exact, &ratio(1, 2)))
-        {
+        if let Some(exact) = root.exact.as_ref().and_then(|exact| power(exact, &ratio(1, 2))) {
             return Cycle {
                 amplitude: Expr::number(exact.clone()),
                 attracts_where,
@@ -193,9 +176,7 @@ impl AmplitudeEquation {
             };
         }
         let radical = radical(root);
-        let amplitude = radical
-            .clone()
-            .unwrap_or_else(|| Expr::number(rounded(root.value.sqrt())));
+        let amplitude = radical.clone().unwrap_or_else(|| Expr::number(rounded(root.value.sqrt())));
         let remark = radical.is_none().then(|| {
             let term = |(k, c): (usize, &Rational)| {
                 Polynomial::term(Monomial::power_of(z, k as i32), c.clone())
@@ -212,35 +193,23 @@ impl AmplitudeEquation {
             let term = |(k, c): (usize, &Rational)| {
                 Polynomial::term(Monomial::power_of(name, 2 * k as i32), c.clone())
             };
-            list.iter()
-                .enumerate()
-                .map(term)
-                .fold(Polynomial::zero(), |sum, term| sum + term)
+            list.iter().enumerate().map(term).fold(Polynomial::zero(), |sum, term| sum + term)
         };
         let leading = &root.factor[degree as usize];
-        let lower: Vec<Rational> = root.factor[..degree as usize]
-            .iter()
-            .map(|c| -(c / leading))
-            .collect();
+        let lower: Vec<Rational> =
+            root.factor[..degree as usize].iter().map(|c| -(c / leading)).collect();
         let mut whole = vec![Rational::zero(); self.lowest as usize + 1];
         whole.extend(slope.iter().map(|c| c * ratio(-2, 1)));
         let inverse = inverse_modulo(&remainder(&whole, &root.factor), &root.factor);
         Cycle {
             attracts_where,
             unit: Polynomial::symbol(name),
-            definition: Some(Definition {
-                symbol: name,
-                meaning: amplitude.clone(),
-            }),
+            definition: Some(Definition { symbol: name, meaning: amplitude.clone() }),
             amplitude,
             inverse_slope: inverse
                 .map(|list| in_name(&list).times_monomial(&self.factor.power(-1))),
             remark,
-            relation: Some(Relation {
-                symbol: name,
-                degree: 2 * degree,
-                value: in_name(&lower),
-            }),
+            relation: Some(Relation { symbol: name, degree: 2 * degree, value: in_name(&lower) }),
         }
     }
 
@@ -256,21 +225,15 @@ impl AmplitudeEquation {
         let m = highest as i32;
         let scale = |value: i64| Polynomial::constant(Rational::from_integer(value.into()));
         let times = |polynomial: &Polynomial, number: i64| polynomial.product(&scale(number));
-        let ratio_of_terms = high
-            .power(-1)
-            .map(|inverse| times(&low.product(&inverse), -1));
+        let ratio_of_terms = high.power(-1).map(|inverse| times(&low.product(&inverse), -1));
         let single = |polynomial: &Polynomial| {
-            polynomial
-                .single_term()
-                .map(|(monomial, number)| (monomial.clone(), number.clone()))
+            polynomial.single_term().map(|(monomial, number)| (monomial.clone(), number.clone()))
         };
         // z h'(z) = m h_m z^m = -m h_0: of the two the one whose sign a single term shows.
         let (direction, factor_of_slope, exponent) = match (single(low), single(high)) {
-            (_, Some((monomial, number))) => (
-                (monomial, -number),
-                times(high, -2 * i64::from(m)),
-                self.lowest + m,
-            ),
+            (_, Some((monomial, number))) => {
+                ((monomial, -number), times(high, -2 * i64::from(m)), self.lowest + m)
+            }
             (Some(term), None) => (term, times(low, 2 * i64::from(m)), self.lowest),
             (None, None) => return Err("which divides by a sum of symbols"),
         };
@@ -287,27 +250,19 @@ impl AmplitudeEquation {
             let quotient = Expr::divide(&-&Expr::from(low), &Expr::from(high))
                 .map_err(|_| "which divides by zero")?;
             let amplitude = root(&quotient)?;
-            let inverse = factor_of_slope
-                .power(-1)
-                .ok_or("which divides by a sum of symbols")?;
+            let inverse = factor_of_slope.power(-1).ok_or("which divides by a sum of symbols")?;
             let inverse = inverse.times_monomial(&Monomial::power_of(name, -2 * exponent));
             return Ok(vec![Cycle {
                 attracts_where,
                 unit: Polynomial::symbol(name),
-                definition: Some(Definition {
-                    symbol: name,
-                    meaning: amplitude.clone(),
-                }),
+                definition: Some(Definition { symbol: name, meaning: amplitude.clone() }),
                 amplitude,
                 inverse_slope: Some(inverse.times_monomial(&self.factor.power(-1))),
                 remark: None,
                 relation: None,
             }]);
         };
-        if squared
-            .single_term()
-            .is_some_and(|(_, number)| !number.is_positive())
-        {
+        if squared.single_term().is_some_and(|(_, number)| !number.is_positive()) {
             return Ok(vec![]);
         }
         let exact = root_of_term(&squared, 2 * m);
@@ -315,10 +270,8 @@ impl AmplitudeEquation {
             Some(exact) => Expr::from(exact),
             None => root(&Expr::from(&squared))?,
         };
-        let definition = exact.is_none().then(|| Definition {
-            symbol: name,
-            meaning: amplitude.clone(),
-        });
+        let definition =
+            exact.is_none().then(|| Definition { symbol: name, meaning: amplitude.clone() });
         Ok(vec![Cycle {
             amplitude,
             attracts_where,
@@ -338,20 +291,11 @@ impl AmplitudeEquation {
 impl Cycle {
     /// A polynomial with the powers of `a0` that can be expressed by lower ones so expressed.
     pub fn reduced(&self, polynomial: &Polynomial) -> Polynomial {
-        let Some(Relation {
-            symbol,
-            degree,
-            value,
-        }) = &self.relation
-        else {
+        let Some(Relation { symbol, degree, value }) = &self.relation else {
             return polynomial.clone();
         };
         let mut reduced = polynomial.clone();
-        let inverse = value
-            .single_term()
-            .is_some()
-            .then(|| value.power(-1))
-            .flatten();
+        let inverse = value.single_term().is_some().then(|| value.power(-1)).flatten();
         loop {
             let mut next = Polynomial::zero();
             let mut changed = false;
@@ -378,13 +322,10 @@ impl Cycle {
 
     /// The cycle in the words of the answer, where `marker` stands for `small`.
     pub fn to_leading(&self, marker: Symbol, small: Symbol) -> LeadingCycle {
-        let condition = self
-            .attracts_where
-            .as_ref()
-            .and_then(|condition| match marker == small {
-                true => Some(condition.clone()),
-                false => condition.substitute(marker, &Polynomial::constant(One::one())),
-            });
+        let condition = self.attracts_where.as_ref().and_then(|condition| match marker == small {
+            true => Some(condition.clone()),
+            false => condition.substitute(marker, &Polynomial::constant(One::one())),
+        });
         LeadingCycle {
             amplitude: self.amplitude.clone(),
             attracts_where: condition.map(|condition| Expr::from(&condition)),
@@ -393,10 +334,7 @@ impl Cycle {
 
     /// Whether it attracts for small positive values of everything.
     pub fn attracts(&self) -> bool {
-        let term = self
-            .attracts_where
-            .as_ref()
-            .and_then(Polynomial::single_term);
+        let term = self.attracts_where.as_ref().and_then(Polynomial::single_term);
         term.is_some_and(|(_, number)| number.is_positive())
     }
 }
@@ -415,26 +353,14 @@ impl Units {
     /// `omega0 = sqrt(2)` stays out of the expansion, and where the equation for the amplitude has
     /// sums without it.
     pub fn new(force: &PerturbedForce, frequency: Polynomial) -> Self {
-        let plain = Self {
-            frequency,
-            square: None,
-        };
+        let plain = Self { frequency, square: None };
         let known = force.linear.symbols();
-        let named = force
-            .definitions
-            .iter()
-            .any(|definition| known.contains(&definition.symbol));
-        let sums = || {
-            coefficients(force, &plain)
-                .iter()
-                .any(|coefficient| coefficient.terms().len() > 1)
-        };
+        let named = force.definitions.iter().any(|definition| known.contains(&definition.symbol));
+        let sums =
+            || coefficients(force, &plain).iter().any(|coefficient| coefficient.terms().len() > 1);
         let is_number = force.linear.as_number().is_some() && plain.frequency.as_number().is_none();
         match is_number || (!named && force.linear.single_term().is_some() && sums()) {
-            true => Self {
-                square: Some(force.linear.clone()),
-                ..plain
-            },
+            true => Self { square: Some(force.linear.clone()), ..plain },
             false => plain,
         }
     }
@@ -470,18 +396,13 @@ pub(super) fn chosen(
     }
     let Some(asked) = asked else {
         let simple = |cycle: &Cycle| cycle.attracts_where.is_some();
-        let place = cycles
-            .iter()
-            .position(Cycle::attracts)
-            .or_else(|| cycles.iter().position(simple));
+        let place =
+            cycles.iter().position(Cycle::attracts).or_else(|| cycles.iter().position(simple));
         return Ok(place.unwrap_or(0) + 1);
     };
     match usize::try_from(asked) {
         Ok(number) if (1..=cycles.len()).contains(&number) => Ok(number),
-        _ => Err(Refusal::NoSuchCycle {
-            asked,
-            count: cycles.len(),
-        }),
+        _ => Err(Refusal::NoSuchCycle { asked, count: cycles.len() }),
     }
 }
 
@@ -499,18 +420,11 @@ pub(super) fn amplitude_of(
 /// `g_k`, the coefficients of `z^k` in the secular sine over the amplitude.
 fn coefficients(force: &PerturbedForce, units: &Units) -> Vec<Polynomial> {
     let mut equation: Vec<Polynomial> = vec![];
-    let first = force
-        .terms
-        .iter()
-        .filter(|term| term.order == 1 && term.velocity % 2 == 1);
+    let first = force.terms.iter().filter(|term| term.order == 1 && term.velocity % 2 == 1);
     for term in first {
         let sine = FourierSeries::cos(Rationals, 1)
             .power(term.position)
-            .product(
-                &FourierSeries::sin(Rationals, 1)
-                    .times(-1)
-                    .power(term.velocity),
-            )
+            .product(&FourierSeries::sin(Rationals, 1).times(-1).power(term.velocity))
             .sine(1);
         let (weight, _) = sine.mean();
         if weight.is_zero() {
@@ -521,10 +435,7 @@ fn coefficients(force: &PerturbedForce, units: &Units) -> Vec<Polynomial> {
             equation.resize(power + 1, Polynomial::zero());
         }
         let frequency = units.power_of_frequency(term.velocity as i32 - 2);
-        let weighted = term
-            .coefficient
-            .product(&frequency)
-            .product(&Polynomial::constant(weight));
+        let weighted = term.coefficient.product(&frequency).product(&Polynomial::constant(weight));
         equation[power].accumulate(&weighted);
     }
     while equation.last().is_some_and(Zero::is_zero) {
@@ -536,17 +447,12 @@ fn coefficients(force: &PerturbedForce, units: &Units) -> Vec<Polynomial> {
 /// The product of the lowest powers of every symbol over all terms.
 fn common_monomial(polynomials: &[Polynomial]) -> Monomial {
     let terms = || {
-        polynomials
-            .iter()
-            .flat_map(|polynomial| polynomial.terms().map(|(monomial, _)| monomial))
+        polynomials.iter().flat_map(|polynomial| polynomial.terms().map(|(monomial, _)| monomial))
     };
     let symbols: std::collections::BTreeSet<Symbol> =
         polynomials.iter().flat_map(Polynomial::symbols).collect();
     symbols.into_iter().fold(Monomial::one(), |common, symbol| {
-        let lowest = terms()
-            .map(|monomial| monomial.exponent(symbol))
-            .min()
-            .unwrap_or(0);
+        let lowest = terms().map(|monomial| monomial.exponent(symbol)).min().unwrap_or(0);
         common.product(&Monomial::power_of(symbol, lowest))
     })
 }
@@ -559,9 +465,7 @@ fn sign_of(monomial: &Monomial, linear_frequency: &Polynomial) -> Monomial {
         .factors()
         .iter()
         .filter(|(symbol, exponent)| exponent.is_odd() && !positive.contains(symbol));
-    odd.fold(Monomial::one(), |sign, (symbol, _)| {
-        sign.product(&Monomial::power_of(*symbol, 1))
-    })
+    odd.fold(Monomial::one(), |sign, (symbol, _)| sign.product(&Monomial::power_of(*symbol, 1)))
 }
 
 /// The exact `degree`-th root of a single term.
@@ -592,11 +496,7 @@ fn radical(root: &RealRoot) -> Option<Expr> {
             let half = coefficient(1)? / leading * ratio(-1, 2);
             let square = &half * &half - coefficient(0)? / leading;
             let middle = crate::exact::rational::to_f64(&half);
-            let sign = if root.value.powi(step.to_i32()?) > middle {
-                1
-            } else {
-                -1
-            };
+            let sign = if root.value.powi(step.to_i32()?) > middle { 1 } else { -1 };
             let surd = Expr::number(square).sqrt().ok()?;
             &Expr::number(half) + &(&Expr::from(sign) * &surd)
         }

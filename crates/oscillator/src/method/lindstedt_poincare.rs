@@ -68,12 +68,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     };
     perturbation.force.write_with_frequency(&oscillator.names());
     let force = &perturbation.force;
-    let LinearPart {
-        frequency: linear_frequency,
-        root,
-        mut definitions,
-        taken,
-    } = LinearPart::of(force, oscillator);
+    let LinearPart { frequency: linear_frequency, root, mut definitions, taken } =
+        LinearPart::of(force, oscillator);
 
     let units = Units::new(force, linear_frequency.clone());
     let excited = self_excitation(&perturbation, &units, &parts, options.cycle, &taken)?;
@@ -107,21 +103,18 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         _ => polynomial,
     };
     let unit = unit_of(cycle, convention);
-    let displacement = series.displacement.map(POLYNOMIALS, |coefficient, _| {
-        in_numbers(reduced(cycle, coefficient.product(&unit)))
-    });
+    let displacement = series
+        .displacement
+        .map(POLYNOMIALS, |coefficient, _| in_numbers(reduced(cycle, coefficient.product(&unit))));
     // In powers of the amplitude, the small parameter is the symbol that stands for it.
-    let small = perturbation
-        .marker
-        .map_or(convention.symbol(), |_| perturbation.small);
+    let small = perturbation.marker.map_or(convention.symbol(), |_| perturbation.small);
     let amplitude = match extent {
         Extent::Motion => amplitude_of(&displacement, convention),
         // To leading order: the rest of it belongs to the motion.
         Extent::Frequency => in_numbers(unit.clone()),
     };
-    let limit_cycle = excited
-        .as_ref()
-        .map(|excited| excited.limit_cycle(&perturbation, small, amplitude));
+    let limit_cycle =
+        excited.as_ref().map(|excited| excited.limit_cycle(&perturbation, small, amplitude));
     let mut validity = vec![match is_free_and_linear(oscillator)? {
         true => Note::Exact(ExactBy::Linear),
         false => perturbation.cut(small),
@@ -135,9 +128,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         validity.extend(excited.cycle().remark.clone());
     }
     validity.extend(root.iter().cloned().chain(of_cycle).map(Note::Positive));
-    let squared = series
-        .frequency_squared
-        .product(&linear_frequency.product(&linear_frequency));
+    let squared = series.frequency_squared.product(&linear_frequency.product(&linear_frequency));
     Ok(Solution {
         equation: oscillator.equation(),
         method: Method::LindstedtPoincare,
@@ -187,12 +178,7 @@ impl LinearPart {
         let constants = constants_beside(force, &frequency);
         let definitions: Vec<Definition> = root.clone().into_iter().chain(constants).collect();
         taken.extend(definitions.iter().map(|definition| definition.symbol));
-        Self {
-            frequency,
-            root,
-            definitions,
-            taken,
-        }
+        Self { frequency, root, definitions, taken }
     }
 }
 
@@ -200,15 +186,10 @@ impl LinearPart {
 /// are written out in that of the linear frequency.
 fn constants_beside(force: &PerturbedForce, linear_frequency: &Polynomial) -> Vec<Definition> {
     let coefficients = force.terms.iter().map(|term| &term.coefficient);
-    let used: BTreeSet<Symbol> = coefficients
-        .chain([linear_frequency])
-        .flat_map(Polynomial::symbols)
-        .collect();
+    let used: BTreeSet<Symbol> =
+        coefficients.chain([linear_frequency]).flat_map(Polynomial::symbols).collect();
     let constants = force.definitions.iter();
-    constants
-        .filter(|entry| used.contains(&entry.symbol))
-        .cloned()
-        .collect()
+    constants.filter(|entry| used.contains(&entry.symbol)).cloned().collect()
 }
 
 /// The limit cycles of a self-excited equation.
@@ -235,11 +216,7 @@ impl SelfExcitation {
         LimitCycle {
             amplitude,
             number: self.number,
-            cycles: self
-                .cycles
-                .iter()
-                .map(|cycle| cycle.to_leading(marker, small))
-                .collect(),
+            cycles: self.cycles.iter().map(|cycle| cycle.to_leading(marker, small)).collect(),
             small_with: perturbation.small_with.clone(),
         }
     }
@@ -259,44 +236,27 @@ fn self_excitation(
             None => Ok(None),
         };
     };
-    let without = |reason| Refusal::LimitCycle {
-        equation: equation.in_square(fresh("z", taken)),
-        reason,
-    };
+    let without =
+        |reason| Refusal::LimitCycle { equation: equation.in_square(fresh("z", taken)), reason };
     let marker = perturbation.marker.unwrap_or(perturbation.small);
-    let cycles = equation
-        .cycles(marker, &units.frequency, taken)
-        .map_err(without)?;
+    let cycles = equation.cycles(marker, &units.frequency, taken).map_err(without)?;
     if perturbation.marker.is_none() {
-        return Err(Refusal::AmplitudeNotFree {
-            term: first_term(&parts.damping),
-        });
+        return Err(Refusal::AmplitudeNotFree { term: first_term(&parts.damping) });
     }
     let number = chosen(&cycles, asked, || match equation.is_single_term() {
         true => damped(parts),
-        false => Refusal::NoLimitCycle {
-            equation: equation.in_square(fresh("z", taken)),
-        },
+        false => Refusal::NoLimitCycle { equation: equation.in_square(fresh("z", taken)) },
     })?;
     if cycles[number - 1].attracts_where.is_none() {
-        return Err(without(
-            "a multiple root: no expansion in powers begins there",
-        ));
+        return Err(without("a multiple root: no expansion in powers begins there"));
     }
-    Ok(Some(SelfExcitation {
-        equation,
-        cycles,
-        number,
-    }))
+    Ok(Some(SelfExcitation { equation, cycles, number }))
 }
 
 /// What the motion is measured in: the amplitude of the cycle to leading order, or the symbol of a
 /// free one.
 fn unit_of(cycle: Option<&Cycle>, convention: AmplitudeConvention) -> Polynomial {
-    cycle.map_or_else(
-        || Polynomial::symbol(convention.symbol()),
-        |cycle| cycle.unit.clone(),
-    )
+    cycle.map_or_else(|| Polynomial::symbol(convention.symbol()), |cycle| cycle.unit.clone())
 }
 
 /// A polynomial in lowest powers of what the amplitude of the cycle is a root of.
@@ -325,30 +285,16 @@ fn expanded(
         },
         detuning: Detuning::Acceleration,
     };
-    let terms = scaled_terms(
-        &perturbation.force.terms,
-        &unit_of(cycle, convention),
-        units,
-    );
+    let terms = scaled_terms(&perturbation.force.terms, &unit_of(cycle, convention), units);
     let terms: Vec<Term> = terms
         .into_iter()
-        .map(|term| Term {
-            coefficient: reduced(cycle, term.coefficient),
-            ..term
-        })
+        .map(|term| Term { coefficient: reduced(cycle, term.coefficient), ..term })
         .collect();
     let delta = perturbation.delta(convention);
     let inverse_slope = cycle.and_then(|cycle| cycle.inverse_slope.as_ref());
     let order = perturbation.order;
-    let series = expand_exactly(
-        &terms,
-        order,
-        &scheme,
-        Some(delta),
-        inverse_slope,
-        names,
-        supervision,
-    );
+    let series =
+        expand_exactly(&terms, order, &scheme, Some(delta), inverse_slope, names, supervision);
     let mut series = series.map_err(|error| match error {
         SecularError::Growth { .. } | SecularError::Degenerate { .. }
             if !parts.damping.is_zero() =>
@@ -387,10 +333,7 @@ pub(super) fn with_square(polynomial: &Polynomial, root: Symbol, square: &Ration
     for (monomial, number) in polynomial.terms() {
         let pairs = monomial.exponent(root) / 2;
         let rest = Monomial::power_of(root, monomial.exponent(root) % 2);
-        written.add_term(
-            monomial.without(root).product(&rest),
-            number * square.pow(pairs),
-        );
+        written.add_term(monomial.without(root).product(&rest), number * square.pow(pairs));
     }
     written
 }
@@ -421,10 +364,7 @@ impl Perturbation {
         Note::Cut(Cut::Truncated {
             small: std::iter::once(small).chain(together).collect(),
             order: self.order,
-            marks: self
-                .bookkeeping
-                .as_ref()
-                .map(|definition| definition.meaning.clone()),
+            marks: self.bookkeeping.as_ref().map(|definition| definition.meaning.clone()),
         })
     }
 }
@@ -438,13 +378,9 @@ fn in_a_parameter(
 ) -> Result<Option<Solution>, Refusal> {
     match oscillator.small_parameter(options.small.as_deref()) {
         // Such a force has no higher order to default to.
-        Ok(SmallParameter::Parameter(small)) => first_order::solve(
-            oscillator,
-            parts,
-            options,
-            small,
-            options.order.unwrap_or(1),
-        ),
+        Ok(SmallParameter::Parameter(small)) => {
+            first_order::solve(oscillator, parts, options, small, options.order.unwrap_or(1))
+        }
         _ => Ok(None),
     }
 }
@@ -457,11 +393,7 @@ fn perturbation(
     options: &Options,
 ) -> Result<Perturbation, Refusal> {
     let small = oscillator.small_parameter(options.small.as_deref())?;
-    let default = if small == SmallParameter::Amplitude {
-        4
-    } else {
-        2
-    };
+    let default = if small == SmallParameter::Amplitude { 4 } else { 2 };
     let order = options.order.unwrap_or(default);
     let expanded = oscillator.expand(small, order);
     if let Ok(force) = &expanded {
@@ -479,10 +411,9 @@ fn perturbation(
             within_reach(&joint.force, parts, order)?;
         }
         if let Some(joint) = joint.filter(|joint| may_balance(&joint.force)) {
-            let bookkeeping = joint.value.map(|value| Definition {
-                symbol: joint.delta,
-                meaning: Expr::number(value),
-            });
+            let bookkeeping = joint
+                .value
+                .map(|value| Definition { symbol: joint.delta, meaning: Expr::number(value) });
             let mut parameters = joint.parameters.into_iter();
             let first = match bookkeeping {
                 None => parameters.next(),
@@ -538,15 +469,9 @@ fn perturbation(
 /// An error where powers are so high that even the first order of the amplitude would take too
 /// long.
 fn within_reach(force: &PerturbedForce, parts: &Parts, order: u32) -> Result<(), SecularError> {
-    let terms = force
-        .terms
-        .iter()
-        .map(|term| (term.order, term.position + term.velocity));
+    let terms = force.terms.iter().map(|term| (term.order, term.position + term.velocity));
     // The last amplitude of a limit cycle follows from one order more.
-    bounded(
-        terms,
-        order as usize + usize::from(!parts.damping.is_zero()),
-    )
+    bounded(terms, order as usize + usize::from(!parts.damping.is_zero()))
 }
 
 /// Whether the amplitude changes, at whatever order of an expansion in it.
@@ -577,9 +502,7 @@ fn damped(parts: &Parts) -> Refusal {
 fn damping_or_excitation(parts: &Parts) -> Refusal {
     match parts.damping.terms() {
         [_] => damped(parts),
-        _ => Refusal::AmplitudeNotFree {
-            term: first_term(&parts.damping),
-        },
+        _ => Refusal::AmplitudeNotFree { term: first_term(&parts.damping) },
     }
 }
 
@@ -590,10 +513,7 @@ fn scaled_terms(terms: &[Term], unit: &Polynomial, units: &Units) -> Vec<Term> {
         let exponent = (term.position + term.velocity) as i32 - 1;
         let unit = unit.power(exponent).unwrap_or_else(Polynomial::zero);
         let frequency = units.power_of_frequency(term.velocity as i32 - 2);
-        Term {
-            coefficient: term.coefficient.product(&unit).product(&frequency),
-            ..term.clone()
-        }
+        Term { coefficient: term.coefficient.product(&unit).product(&frequency), ..term.clone() }
     };
     terms.iter().map(scale).collect()
 }
@@ -607,19 +527,13 @@ mod tests {
     fn removable_singularities_are_their_series() {
         for (quotient, series) in [
             ("(1 - cos(x))/x", "x/2 - x^3/24 + x^5/720"),
-            (
-                "(exp(x) - 1)/x - 1",
-                "x/2 + x^2/6 + x^3/24 + x^4/120 + x^5/720",
-            ),
+            ("(exp(x) - 1)/x - 1", "x/2 + x^2/6 + x^3/24 + x^4/120 + x^5/720"),
             ("x^2/tan(x)", "x - x^3/3 - x^5/45"),
         ] {
             let laws = [quotient, series].map(|force| {
                 let oscillator = Oscillator::parse(&format!("x'' + {force} = 0")).unwrap();
                 let solution = crate::method::solve(&oscillator, &Options::default()).unwrap();
-                (
-                    solution.law.frequency_squared().cloned(),
-                    solution.displacement,
-                )
+                (solution.law.frequency_squared().cloned(), solution.displacement)
             });
             assert_eq!(laws[0], laws[1], "{quotient}");
         }

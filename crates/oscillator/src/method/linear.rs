@@ -44,17 +44,11 @@ pub(super) struct Linear {
 /// The equation cannot be taken apart.
 pub(super) fn is_free_and_linear(oscillator: &Oscillator) -> Result<bool, Refusal> {
     let parts = oscillator.parts()?;
-    if ![&parts.damping, &parts.forcing, &parts.inertia]
-        .into_iter()
-        .all(Expr::is_zero)
-    {
+    if ![&parts.damping, &parts.forcing, &parts.inertia].into_iter().all(Expr::is_zero) {
         return Ok(false);
     }
     let x = Expr::from(oscillator.coordinate);
-    let stiffness = parts
-        .restoring
-        .differentiate(oscillator.coordinate)?
-        .expand()?;
+    let stiffness = parts.restoring.differentiate(oscillator.coordinate)?.expand()?;
     let is_all = (&parts.restoring - &(&stiffness * &x)).expand()?.is_zero();
     let is_constant = !stiffness.contains(oscillator.coordinate);
     Ok(is_all && is_constant && !stiffness.is_zero() && !stiffness.has_leading_minus())
@@ -80,10 +74,7 @@ impl Linear {
         {
             return Ok(None);
         }
-        let coefficients = (
-            constant(&parts.damping, own[1])?,
-            constant(&parts.restoring, own[0])?,
-        );
+        let coefficients = (constant(&parts.damping, own[1])?, constant(&parts.restoring, own[0])?);
         let (Some(damping), Some(stiffness)) = coefficients else {
             return Ok(None);
         };
@@ -91,11 +82,7 @@ impl Linear {
         let waves: Result<Vec<Wave>, _> =
             waves.map(|term| Wave::new(term, Method::Exact)).collect();
         let restores = !stiffness.is_zero() && !stiffness.has_leading_minus();
-        Ok(waves.ok().filter(|_| restores).map(|waves| Self {
-            damping,
-            stiffness,
-            waves,
-        }))
+        Ok(waves.ok().filter(|_| restores).map(|waves| Self { damping, stiffness, waves }))
     }
 
     /// The exact answer.
@@ -138,12 +125,7 @@ impl Linear {
         mut solution: Solution,
     ) -> Result<Solution, Refusal> {
         let mut taken = oscillator.names();
-        let frequency = named(
-            "omega_d",
-            square.sqrt()?,
-            &mut solution.definitions,
-            &mut taken,
-        );
+        let frequency = named("omega_d", square.sqrt()?, &mut solution.definitions, &mut taken);
         let a = AmplitudeConvention::FirstHarmonic.symbol();
         let start = Expr::from(AmplitudeConvention::Initial.symbol());
         let lag = Expr::function(Function::Atan, vec![Expr::divide(rate, &frequency)?])?;
@@ -154,9 +136,7 @@ impl Linear {
         let rates = [(-&(rate * &Expr::from(a))).expand()?, frequency.clone()];
         let (defined, transient) =
             transient::from_release(a, [&rates[0], &rates[1]], &mut release, &taken);
-        solution
-            .validity
-            .extend(solution.definitions.clone().into_iter().map(Note::Positive));
+        solution.validity.extend(solution.definitions.clone().into_iter().map(Note::Positive));
         solution.definitions.extend(defined);
         solution.law = law(&frequency)?;
         solution.amplitude = AmplitudeConvention::FirstHarmonic;
@@ -208,15 +188,8 @@ impl Linear {
         let speed = -&at_start(&forced.differentiate(t)?)?;
         let decay = |rate: &Expr| Expr::function(Function::Exp, vec![(-&(rate * &time)).expand()?]);
         let free = if sign > 0.0 {
-            let frequency = named(
-                "omega_d",
-                square.sqrt()?,
-                &mut solution.definitions,
-                &mut taken,
-            );
-            solution
-                .validity
-                .extend(solution.definitions.clone().into_iter().map(Note::Positive));
+            let frequency = named("omega_d", square.sqrt()?, &mut solution.definitions, &mut taken);
+            solution.validity.extend(solution.definitions.clone().into_iter().map(Note::Positive));
             solution.law = law(&frequency)?;
             let first = named("C1", place, &mut solution.definitions, &mut taken);
             let second_value = Expr::divide(&(&speed + &(rate * &first)), &frequency)?;
@@ -243,16 +216,14 @@ impl Linear {
         };
         let dies_out = !self.damping.is_zero() && !self.damping.has_leading_minus();
         if dies_out && !self.waves.is_empty() {
-            solution
-                .validity
-                .push(Note::LinearDrive(LinearDrive::Steady {
-                    coordinate: oscillator.coordinate,
-                    motion: forced.clone(),
-                    amplitude: match self.waves.as_slice() {
-                        [only] => Some(self.steady_amplitude(only)?),
-                        _ => None,
-                    },
-                }));
+            solution.validity.push(Note::LinearDrive(LinearDrive::Steady {
+                coordinate: oscillator.coordinate,
+                motion: forced.clone(),
+                amplitude: match self.waves.as_slice() {
+                    [only] => Some(self.steady_amplitude(only)?),
+                    _ => None,
+                },
+            }));
         }
         if self.damping.has_leading_minus() {
             solution.validity.push(Note::Grows);
@@ -275,11 +246,8 @@ impl Linear {
     fn steady_amplitude(&self, wave: &Wave) -> Result<Expr, ExprError> {
         let spring = (&self.stiffness - &(&wave.rate * &wave.rate)).expand()?;
         let drag = (&self.damping * &wave.rate).expand()?;
-        let size = if wave.factor.has_leading_minus() {
-            -&wave.factor
-        } else {
-            wave.factor.clone()
-        };
+        let size =
+            if wave.factor.has_leading_minus() { -&wave.factor } else { wave.factor.clone() };
         Expr::divide(&size, &(&spring * &spring + &drag * &drag).sqrt()?)
     }
 
@@ -301,10 +269,7 @@ impl Linear {
                 let below = Expr::from(2) * &wave.rate;
                 let growing = &Expr::divide(&size, &below)? * &(&time * &quarter_later);
                 let term = &size * &wave_itself;
-                return Ok((
-                    growing,
-                    Some(Note::LinearDrive(LinearDrive::Grows { term })),
-                ));
+                return Ok((growing, Some(Note::LinearDrive(LinearDrive::Grows { term }))));
             }
             let note = spring.as_number().is_none().then(|| {
                 Note::LinearDrive(LinearDrive::Detuned {
@@ -336,10 +301,7 @@ fn characteristic(
 fn law(frequency: &Expr) -> Result<Law, ExprError> {
     Ok(match frequency.to_polynomial(&mut |_| None)? {
         Some(polynomial) => Law::Frequency(polynomial),
-        None => Law::Closed(ClosedForm {
-            squared: false,
-            value: frequency.clone(),
-        }),
+        None => Law::Closed(ClosedForm { squared: false, value: frequency.clone() }),
     })
 }
 
@@ -355,9 +317,6 @@ fn named(
     }
     let symbol = fresh(wanted, taken);
     taken.push(symbol);
-    definitions.push(Definition {
-        symbol,
-        meaning: value,
-    });
+    definitions.push(Definition { symbol, meaning: value });
     Expr::from(symbol)
 }

@@ -61,10 +61,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let coordinate = oscillator.coordinate;
     let (amplitude, x) = (Expr::symbol("A"), Expr::from(coordinate));
     let quotient = Expr::divide(&force, &x)?.expand()?;
-    let at_rest =
-        stiffness_at_rest(&quotient, &force, oscillator).ok_or_else(|| Refusal::Unbounded {
-            quotient: quotient.to_string(),
-        })?;
+    let at_rest = stiffness_at_rest(&quotient, &force, oscillator)
+        .ok_or_else(|| Refusal::Unbounded { quotient: quotient.to_string() })?;
     let at_turning =
         super::energy_balance::positive_amplitude(&quotient.substitute(coordinate, &amplitude)?)
             .unwrap_or_else(|| quotient.clone());
@@ -76,25 +74,22 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let [lo, hi, share] = ["lo", "hi", "k"].map(|name| Expr::from(fresh(name, &names)));
     let [rest, end] = [rest, end].map(Expr::from);
     let mut lines = vec![
-        Line::equation(q, &quotient).because(format!(
-            "{coordinate}'' + {q}*{coordinate} = 0 with the factor"
-        )),
+        Line::equation(q, &quotient)
+            .because(format!("{coordinate}'' + {q}*{coordinate} = 0 with the factor")),
         Line::equation(rest.clone(), &at_rest).because("at rest"),
         Line::equation(end.clone(), &at_turning).because(format!("at {coordinate} = {AMPLITUDE}")),
     ];
     lines.extend(integral_law(oscillator, &force, &solution)?);
     let law = law_of(&solution);
     let between = |bounds: [&Expr; 2]| {
-        Line::equation(
-            squared.clone(),
-            bounds[0] + &share * &(bounds[1] - bounds[0]),
-        )
+        Line::equation(squared.clone(), bounds[0] + &share * &(bounds[1] - bounds[0]))
     };
     let range = match turning_backs(oscillator, &quotient, &force) {
         None => {
-            lines.push(between([&rest, &end]).because(format!(
-                "while {q} runs from one to the other without turning back"
-            )));
+            lines.push(
+                between([&rest, &end])
+                    .because(format!("while {q} runs from one to the other without turning back")),
+            );
             if let Some((place, value)) = stationary_point(&quotient, coordinate)? {
                 lines.push(Line::equal(place).because(format!(
                     "it turns back where the right side is positive and {AMPLITUDE} lies beyond"
@@ -111,9 +106,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             }
         }
         Some(places) if places.is_empty() => {
-            lines.push(between([&rest, &end]).because(format!(
-                "{q} runs from one to the other without turning back"
-            )));
+            lines.push(
+                between([&rest, &end])
+                    .because(format!("{q} runs from one to the other without turning back")),
+            );
             BoundsHold::Always
         }
         Some(places) => {
@@ -124,9 +120,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             BoundsHold::UpTo(places[0].0)
         }
     };
-    let turns = lines
-        .iter()
-        .any(|line| line.equal.first() == Some(&lo.clone().into()));
+    let turns = lines.iter().any(|line| line.equal.first() == Some(&lo.clone().into()));
     let exact_share = law.as_ref().filter(|_| !turns).and_then(|law| {
         let above = (law - &at_rest).expand().ok()?;
         quotient_of(&above, &(&at_turning - &at_rest).expand().ok()?)
@@ -134,17 +128,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     if let Some(value) = exact_share {
         lines.push(Line::equation(share, value));
     } else if let (Some(law), true) = (law, turns) {
-        lines.push(Line::equation(
-            share,
-            Expr::divide(&(law - &lo), &(&hi - &lo))?,
-        ));
+        lines.push(Line::equation(share, Expr::divide(&(law - &lo), &(&hi - &lo))?));
     }
     solution.derivation = lines;
-    let bounds = Note::Bounds {
-        at_rest,
-        at_turning,
-        range,
-    };
+    let bounds = Note::Bounds { at_rest, at_turning, range };
     solution.validity.insert(0, bounds);
     Ok(solution)
 }
@@ -165,27 +152,16 @@ fn turning_backs(
     const POINTS: i32 = 48;
     let coordinate = oscillator.coordinate;
     // A single power changes one way only.
-    let varying = quotient
-        .terms()
-        .iter()
-        .filter(|term| term.contains(coordinate));
+    let varying = quotient.terms().iter().filter(|term| term.contains(coordinate));
     let powers: Vec<bool> = varying.map(|term| is_power(term, coordinate)).collect();
     if powers == [true] || powers.is_empty() {
         return Some(vec![]);
     }
-    if force
-        .symbols()
-        .into_iter()
-        .any(|symbol| symbol != coordinate)
-    {
+    if force.symbols().into_iter().any(|symbol| symbol != coordinate) {
         return None;
     }
     let value = compiled(oscillator, quotient, &BTreeMap::new())?;
-    let slope = compiled(
-        oscillator,
-        &quotient.differentiate(coordinate).ok()?,
-        &BTreeMap::new(),
-    )?;
+    let slope = compiled(oscillator, &quotient.differentiate(coordinate).ok()?, &BTreeMap::new())?;
     let place = |k: i32| 10_f64.powf(f64::from(k) / f64::from(POINTS));
     let mut places: Vec<f64> = (-DECADES * POINTS..=DECADES * POINTS).map(place).collect();
     // Narrow places slip through any grid: they get points of their own.
@@ -234,9 +210,7 @@ fn of_one_sign(sum: &Expr, coordinate: Symbol) -> bool {
     let signs = terms.iter().map(Expr::has_leading_minus);
     let first = terms.first().is_some_and(Expr::has_leading_minus);
     signs.into_iter().all(|minus| minus == first)
-        && terms
-            .iter()
-            .all(|term| term.factors().1.iter().all(positive))
+        && terms.iter().all(|term| term.factors().1.iter().all(positive))
 }
 
 /// Whether a term is a power of the coordinate times a constant.
@@ -256,10 +230,7 @@ fn pieces(
     let rest = compiled(oscillator, at_rest, &BTreeMap::new()).map_or(f64::NAN, |value| value(0.0));
     let (mut least, mut largest) = (rest, rest);
     let taken = oscillator.names();
-    let (q, [l, h]) = (
-        fresh("q", &taken),
-        ["L", "H"].map(|letter| fresh_stem(letter, &taken)),
-    );
+    let (q, [l, h]) = (fresh("q", &taken), ["L", "H"].map(|letter| fresh_stem(letter, &taken)));
     let mut lines = Vec::new();
     for (index, &(place, value)) in places.iter().enumerate() {
         if index == MOST_PIECES {
@@ -282,11 +253,9 @@ fn pieces(
             x = oscillator.coordinate
         )));
         let range = match places.get(index + 1) {
-            Some((next, _)) => format!(
-                "for {AMPLITUDE} from {} to {}",
-                decimal(place),
-                decimal(*next)
-            ),
+            Some((next, _)) => {
+                format!("for {AMPLITUDE} from {} to {}", decimal(place), decimal(*next))
+            }
             None => format!("for {AMPLITUDE} beyond {}", decimal(place)),
         };
         let minimum = Expr::function(Function::Minimum, vec![least_name.into(), end.clone()])?;
@@ -307,9 +276,7 @@ fn stationary_point(
     };
     let mut by_power: BTreeMap<i32, Polynomial> = BTreeMap::new();
     for (monomial, number) in polynomial.terms() {
-        let power = by_power
-            .entry(monomial.exponent(coordinate))
-            .or_insert_with(Polynomial::zero);
+        let power = by_power.entry(monomial.exponent(coordinate)).or_insert_with(Polynomial::zero);
         power.add_term(monomial.without(coordinate), number.clone());
     }
     let constant = by_power.remove(&0).unwrap_or_else(Polynomial::zero);
@@ -360,10 +327,6 @@ fn stiffness_at_rest(quotient: &Expr, force: &Expr, oscillator: &Oscillator) -> 
             _ => None,
         }
     };
-    let terms = quotient
-        .terms()
-        .iter()
-        .map(term)
-        .collect::<Option<Vec<_>>>()?;
+    let terms = quotient.terms().iter().map(term).collect::<Option<Vec<_>>>()?;
     Some(Expr::sum(terms))
 }

@@ -431,13 +431,8 @@ pub enum Unsuited {
 
 /// Whether a function in a term depends on a coordinate and its velocity both.
 fn turns_with_both(term: &Expr) -> bool {
-    let both = |part: &Expr| {
-        part.symbols()
-            .iter()
-            .any(|name| part.contains(name.derivative()))
-    };
-    term.unique_nodes()
-        .any(|part| matches!(part.node(), Node::Function(..)) && both(part))
+    let both = |part: &Expr| part.symbols().iter().any(|name| part.contains(name.derivative()));
+    term.unique_nodes().any(|part| matches!(part.node(), Node::Function(..)) && both(part))
 }
 
 fn resonances(others: &[(u32, u32)]) -> String {
@@ -486,10 +481,7 @@ impl Unsuited {
 
     /// The refusal of a method or a part of one.
     pub fn by(self, refuser: Refuser) -> Refusal {
-        Refusal::Unsuited {
-            refuser,
-            reason: self,
-        }
+        Refusal::Unsuited { refuser, reason: self }
     }
 
     fn help(&self, refuser: Refuser) -> Advice {
@@ -692,11 +684,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         .map_err(|refusal| without_linear_force(refusal, oscillator, options))?;
     let phase = oscillator.phase();
     Ok(Solution {
-        derivation: solution
-            .derivation
-            .into_iter()
-            .map(|line| line.with_phase(phase))
-            .collect(),
+        derivation: solution.derivation.into_iter().map(|line| line.with_phase(phase)).collect(),
         law: solution.law.with_phase(phase),
         ..solution
     })
@@ -710,28 +698,22 @@ fn without_linear_force(refusal: Refusal, oscillator: &Oscillator, options: &Opt
     };
     let asked = oscillator.about.is_some();
     // Two wells, say: with positive letters it pushes away here, and back elsewhere.
-    if let (true, false, Some(unstable)) = (
-        force.has_leading_minus(),
-        asked,
-        stable_elsewhere(oscillator),
-    ) {
+    if let (true, false, Some(unstable)) =
+        (force.has_leading_minus(), asked, stable_elsewhere(oscillator))
+    {
         return unstable.into();
     }
     if let (true, Ok(centred)) = (asked && !force.is_zero(), centred(oscillator, None))
         && centred.cross_well.is_some()
     {
         let method = options.method.unwrap_or(Method::LindstedtPoincare);
-        let refusal = Unsuited::PushesAway {
-            term: force.clone().into(),
-        };
+        let refusal = Unsuited::PushesAway { term: force.clone().into() };
         return quotation::as_typed(refusal.to(method), oscillator, &centred);
     }
     let Ok(parts) = oscillator.parts() else {
         return refusal;
     };
-    let Some(other) = [&parts.forcing, &parts.damping]
-        .into_iter()
-        .find(|part| !part.is_zero())
+    let Some(other) = [&parts.forcing, &parts.damping].into_iter().find(|part| !part.is_zero())
     else {
         return refusal;
     };
@@ -739,10 +721,7 @@ fn without_linear_force(refusal: Refusal, oscillator: &Oscillator, options: &Opt
         true => Method::Averaging,
         false => Method::MultipleScales,
     };
-    let by_averaging = Options {
-        method: Some(Method::Averaging),
-        ..Options::default()
-    };
+    let by_averaging = Options { method: Some(Method::Averaging), ..Options::default() };
     let mut free = oscillator.clone();
     if let Ok(force) = (&oscillator.force - &parts.forcing).expand() {
         free.force = force;
@@ -788,10 +767,7 @@ fn solve_in_its_coordinate(
     };
     // What damps is not seen at the order 0, and rules a periodic motion out all the same.
     if options.order == Some(0) && may_expand {
-        let first = Options {
-            order: Some(1),
-            ..options.clone()
-        };
+        let first = Options { order: Some(1), ..options.clone() };
         if let Err(refusal) = solve_by(Method::LindstedtPoincare, oscillator, &first)
             && default_method::is_of_damping(&refusal, oscillator)
         {
@@ -837,26 +813,17 @@ fn solve_by(
     if entry.expands() && !projected {
         let (_, taken) = near_rest(&centred.oscillator.force, oscillator.coordinate)
             .map_err(OscillatorError::from)?;
-        sides.extend(
-            taken
-                .into_iter()
-                .filter(|side| !centred.sides.contains(side)),
-        );
+        sides.extend(taken.into_iter().filter(|side| !centred.sides.contains(side)));
     }
     if !sides.is_empty() {
         solution.validity.push(Note::CornerSides(sides));
     }
     if centred.endless {
-        solution.validity.push(Note::EndlessPotential {
-            coordinate: oscillator.coordinate,
-        });
+        solution.validity.push(Note::EndlessPotential { coordinate: oscillator.coordinate });
     }
     if let Some(motions) = &centred.cross_well {
         // A relation has no root that comes from an unstable rest.
-        solution
-            .validity
-            .iter_mut()
-            .for_each(Note::take_root_of_first_order);
+        solution.validity.iter_mut().for_each(Note::take_root_of_first_order);
         solution.validity.push(Note::CrossWell(motions.clone()));
     }
     if centred.position.is_zero() {
@@ -864,10 +831,9 @@ fn solve_by(
         solution.equation = oscillator.equation();
         return Ok(solution);
     }
-    if let (Some(degree), true) = (
-        degree,
-        centred.numerical && !polynomial && entry.takes(Choice::Taylor),
-    ) {
+    if let (Some(degree), true) =
+        (degree, centred.numerical && !polynomial && entry.takes(Choice::Taylor))
+    {
         solution.validity.push(Note::TaylorPolynomial { degree });
     }
     move_back(&mut solution, oscillator, &centred)?;
@@ -885,10 +851,7 @@ fn refuse_what_it_does_not_take(entry: &Entry, options: &Options) -> Result<(), 
         (Choice::Resonance, options.resonance.is_some()),
         (Choice::FrequencyAlone, options.frequency_alone),
     ];
-    match given
-        .iter()
-        .find(|(choice, given)| *given && !entry.takes(*choice))
-    {
+    match given.iter().find(|(choice, given)| *given && !entry.takes(*choice)) {
         Some(&(choice, _)) => Err(Unsuited::NoSuchChoice { choice }.to(entry.method)),
         None => Ok(()),
     }
@@ -902,11 +865,7 @@ fn about_a_load(centred: &Centred, options: &Options) -> Options {
     let amplitude = options.small.is_none()
         && matches!(small, Ok(SmallParameter::Parameter(name)) if moves(name));
     Options {
-        small: if amplitude {
-            Some(AMPLITUDE.to_string())
-        } else {
-            options.small.clone()
-        },
+        small: if amplitude { Some(AMPLITUDE.to_string()) } else { options.small.clone() },
         ..options.clone()
     }
 }
@@ -925,10 +884,7 @@ fn move_back(
     if !solution.displacement.is_zero() {
         let position = FourierSeries::constant(POLYNOMIALS, position);
         solution.displacement = solution.displacement.sum(&position);
-        let motion = solution
-            .modulation
-            .as_mut()
-            .and_then(|slow| slow.motion.as_mut());
+        let motion = solution.modulation.as_mut().and_then(|slow| slow.motion.as_mut());
         if let Some(motion) = motion {
             *motion = motion.sum(&position);
         }
@@ -950,10 +906,7 @@ fn move_back(
         (_, None) => Position::WhereReal(centred.position.clone()),
     };
     if centred.cross_well.is_none() {
-        solution.validity.push(Note::Equilibrium {
-            coordinate: x,
-            position,
-        });
+        solution.validity.push(Note::Equilibrium { coordinate: x, position });
     }
     if let Some(definition) = &centred.definition {
         solution.definitions.insert(0, definition.clone());
@@ -965,9 +918,7 @@ fn move_back(
 fn has_corners(force: &Expr) -> bool {
     use crate::expr::Function::{Absolute, Maximum, Minimum, Sign, Step};
     let corners = [Absolute, Maximum, Minimum, Sign, Step];
-    corners
-        .into_iter()
-        .any(|function| force.contains_function(function))
+    corners.into_iter().any(|function| force.contains_function(function))
 }
 
 /// The refusal of a force that is no polynomial in the coordinate, by the terms that are none.
@@ -977,25 +928,20 @@ fn not_polynomial(force: &Expr, coordinate: Symbol) -> Unsuited {
         let mut name =
             |factor: &Expr| (constants && !factor.contains(coordinate)).then_some(constant);
         match term.to_polynomial(&mut name) {
-            Ok(Some(polynomial)) => polynomial
-                .exponent_range(coordinate)
-                .is_some_and(|(lowest, _)| lowest < 0),
+            Ok(Some(polynomial)) => {
+                polynomial.exponent_range(coordinate).is_some_and(|(lowest, _)| lowest < 0)
+            }
             Ok(None) | Err(_) => true,
         }
     };
     let expanded = force.expand().unwrap_or_else(|_| force.clone());
     // A constant such as sqrt(k) is in the way of some methods, and named where nothing else is.
     let found = [true, false].map(|constants| {
-        let terms = expanded
-            .terms()
-            .iter()
-            .filter(|term| is_none(term, constants));
+        let terms = expanded.terms().iter().filter(|term| is_none(term, constants));
         Expr::sum(terms.cloned())
     });
     let term = found.iter().find(|terms| !terms.is_zero()).unwrap_or(force);
-    Unsuited::PolynomialOnly {
-        term: term.clone().into(),
-    }
+    Unsuited::PolynomialOnly { term: term.clone().into() }
 }
 
 /// The term of a sum that a refusal names.

@@ -68,36 +68,20 @@ impl fmt::Display for Motion {
         let coefficients = (0..=self.displacement.highest_harmonic()).flat_map(|k| {
             let part = |series: FourierSeries<Doubles>| series.mean().0;
             let cosine = part(self.displacement.cosine(k));
-            let sine = if k == 0 {
-                0.0
-            } else {
-                part(self.displacement.sine(k))
-            };
+            let sine = if k == 0 { 0.0 } else { part(self.displacement.sine(k)) };
             [(k, "cos", cosine), (k, "sin", sine)]
         });
         let coefficients: Vec<_> = coefficients.collect();
-        let largest = coefficients
-            .iter()
-            .fold(0.0, |most: f64, entry| most.max(entry.2.abs()));
-        let felt = coefficients
-            .into_iter()
-            .filter(|entry| entry.2.abs() > 1e-15 * largest);
+        let largest = coefficients.iter().fold(0.0, |most: f64, entry| most.max(entry.2.abs()));
+        let felt = coefficients.into_iter().filter(|entry| entry.2.abs() > 1e-15 * largest);
         let written = felt.map(|(k, function, value)| {
             let value = significant(value, 6);
             match k {
                 0 => value,
-                _ => format!(
-                    "{value}*{function}({}*t)",
-                    significant(k as f64 * self.frequency, 6)
-                ),
+                _ => format!("{value}*{function}({}*t)", significant(k as f64 * self.frequency, 6)),
             }
         });
-        write!(
-            formatter,
-            "{}(t) = {}",
-            self.coordinate,
-            terms::sum(written)
-        )
+        write!(formatter, "{}(t) = {}", self.coordinate, terms::sum(written))
     }
 }
 

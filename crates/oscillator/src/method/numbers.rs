@@ -107,10 +107,7 @@ pub enum NoNumbers {
     #[error("not positive: {} <= 0", FREQUENCY)]
     NotPositive,
     /// The law is larger than any number.
-    #[error(
-        "{} is beyond the range of double precision, 1.8e308",
-        of_frequency(law)
-    )]
+    #[error("{} is beyond the range of double precision, 1.8e308", of_frequency(law))]
     LawBeyond {
         /// `omega^2` or `omega`.
         law: &'static str,
@@ -234,21 +231,15 @@ pub fn evaluate(
         return Err(NoNumbers::Cancels { rounding });
     }
     let motion = match Entry::of(solution.method).motion {
-        Motion::Exact if squared > 0.0 => exact_motion(oscillator, solution, &numbers, known)
-            .ok()
-            .map(|found| found.1),
+        Motion::Exact if squared > 0.0 => {
+            exact_motion(oscillator, solution, &numbers, known).ok().map(|found| found.1)
+        }
         Motion::Exact => None,
         // The frequency alone.
         Motion::Formula if solution.displacement.is_zero() => None,
         _ => formula_motion(oscillator, solution, &numbers, squared),
     };
-    Ok(Numbers {
-        frequency_squared: squared,
-        rounding,
-        motion,
-        chosen,
-        remark: None,
-    })
+    Ok(Numbers { frequency_squared: squared, rounding, motion, chosen, remark: None })
 }
 
 /// omega^2 alone, without the motion where that costs more; where its terms cancel, with the digits
@@ -316,14 +307,8 @@ fn in_own_amplitude(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> BTr
     for (monomial, number) in solution.displacement.at_zero().constant_term().terms() {
         let power = monomial.exponent(own);
         if power > 0 && one.coefficient(monomial).is_zero() {
-            let order = if in_amplitude {
-                power - 1
-            } else {
-                solution.order_of(monomial)
-            };
-            let terms = beside
-                .entry((power, order))
-                .or_insert_with(Polynomial::zero);
+            let order = if in_amplitude { power - 1 } else { solution.order_of(monomial) };
+            let terms = beside.entry((power, order)).or_insert_with(Polynomial::zero);
             terms.add_term(monomial.without(own), -number.clone());
         }
     }
@@ -348,11 +333,7 @@ fn solved_as_series(first: f64, beside: &[(i32, i32, f64)], order: u32) -> f64 {
     for pass in 1..=order as usize {
         let product = |one: &[f64], other: &[f64]| -> Vec<f64> {
             (0..=pass)
-                .map(|k| {
-                    (0..=k)
-                        .filter_map(|j| Some(one.get(j)? * other.get(k - j)?))
-                        .sum()
-                })
+                .map(|k| (0..=k).filter_map(|j| Some(one.get(j)? * other.get(k - j)?)).sum())
                 .collect()
         };
         let highest = beside.iter().map(|term| term.0).max().unwrap_or(0);
@@ -363,9 +344,7 @@ fn solved_as_series(first: f64, beside: &[(i32, i32, f64)], order: u32) -> f64 {
             raised = product(&raised, &series);
             for &(_, shift, factor) in beside.iter().filter(|term| term.0 == power) {
                 let shifted = next.iter_mut().skip(usize::try_from(shift).unwrap_or(0));
-                shifted
-                    .zip(&raised)
-                    .for_each(|(sum, value)| *sum += factor * value);
+                shifted.zip(&raised).for_each(|(sum, value)| *sum += factor * value);
             }
         }
         series = next;
@@ -394,25 +373,13 @@ fn balanced(
         let value = motion.cosine(k).mean().0;
         (name, if k == 0 { value - equilibrium } else { value })
     };
-    solution
-        .balanced_harmonics()
-        .into_iter()
-        .map(valued)
-        .collect()
+    solution.balanced_harmonics().into_iter().map(valued).collect()
 }
 
 fn contains(solution: &Solution, symbol: Symbol) -> bool {
-    let laws = solution
-        .law
-        .frequency()
-        .into_iter()
-        .chain(solution.law.frequency_squared());
+    let laws = solution.law.frequency().into_iter().chain(solution.law.frequency_squared());
     laws.into_iter().any(|law| law.symbols().contains(&symbol))
-        || solution
-            .displacement
-            .harmonics()
-            .iter()
-            .any(|entry| entry.1.symbols().contains(&symbol))
+        || solution.displacement.harmonics().iter().any(|entry| entry.1.symbols().contains(&symbol))
 }
 
 /// Laws of one term are written for positive amplitudes: a negative one is half a period away.
@@ -471,10 +438,7 @@ pub fn law_name(solution: &Solution) -> &'static str {
 
 /// The amplitude; one where the law is free of it and none is given.
 fn amplitude_of(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> f64 {
-    numbers
-        .get(&solution.amplitude.symbol())
-        .copied()
-        .unwrap_or(1.0)
+    numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0)
 }
 
 /// omega^2, and how far rounding of the formula may move it, relatively.
@@ -490,9 +454,7 @@ fn frequency_squared(
     }
     if is_exact(solution) {
         // The law itself says nothing of whether the motion comes back.
-        let force = known
-            .force(oscillator, solution, numbers)
-            .ok_or(NoNumbers::NoValue)?;
+        let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
         let start = amplitude_of(solution, numbers);
         let turns = force.turning_point(start);
         turns.map_err(|error| force.why_no_period(start, error))?;
@@ -500,11 +462,7 @@ fn frequency_squared(
     let sized = law_takes_size(oscillator, solution);
     let value_of = |name| {
         let value = numbers.get(&name).copied()?;
-        Some(if sized && name == symbol {
-            value.abs()
-        } else {
-            value
-        })
+        Some(if sized && name == symbol { value.abs() } else { value })
     };
     if solution.law.frequency_squared().is_none() && solution.law.relation().is_some() {
         return match solution.branch_at(&value_of) {
@@ -519,9 +477,8 @@ fn frequency_squared(
     if let Some(form) = solution.law.closed_form() {
         let value_of = |name| rounded(solution, name, &value_of);
         let found = form.value.evaluate_rounded(&value_of);
-        let error = found
-            .filter(|found| found.0.is_finite())
-            .map(|(value, error)| error / value.abs());
+        let error =
+            found.filter(|found| found.0.is_finite()).map(|(value, error)| error / value.abs());
         if error.is_none_or(|error| error.is_nan() || error > LOST_DIGITS)
             && let Some(better) = by_definition(oscillator, solution, numbers, known)
             && error.is_none_or(|error| error.is_nan() || better.1 <= error)
@@ -532,10 +489,7 @@ fn frequency_squared(
     }
     let undefined = || {
         let missing = solution.defined_values(&value_of).err()?;
-        let mut names = solution
-            .definitions
-            .iter()
-            .map(|definition| definition.symbol);
+        let mut names = solution.definitions.iter().map(|definition| definition.symbol);
         names.find(|name| *name == missing)
     };
     // What the exact motion is refused for is said rather than that its formula has no value.
@@ -563,13 +517,9 @@ fn rounded(
         Some(value) => Some((value, 0.0)),
         None => match solution.definitions.iter().find(|own| own.symbol == name) {
             // One may use those before it.
-            Some(own) => own
-                .meaning
-                .evaluate_rounded(&|name| rounded(solution, name, value_of)),
+            Some(own) => own.meaning.evaluate_rounded(&|name| rounded(solution, name, value_of)),
             None => {
-                let value = solution
-                    .evaluate(&Polynomial::symbol(name), value_of)
-                    .ok()?;
+                let value = solution.evaluate(&Polynomial::symbol(name), value_of).ok()?;
                 Some((value, f64::EPSILON * value.abs()))
             }
         },
@@ -586,19 +536,15 @@ fn stays_defined(
     if matches!(oscillator.polynomial_degree(), Ok(Some(_))) {
         return Ok(());
     }
-    let (Some(force), Some(amplitude)) = (
-        known.force(oscillator, solution, numbers),
-        numbers.get(&solution.amplitude.symbol()),
-    ) else {
+    let (Some(force), Some(amplitude)) =
+        (known.force(oscillator, solution, numbers), numbers.get(&solution.amplitude.symbol()))
+    else {
         return Ok(());
     };
     match force.gap(-amplitude.abs(), amplitude.abs()) {
         // Beyond double precision the force has a value that a law may not need.
         Some(place) if force.overflow(place - force.equilibrium()).is_some() => Ok(()),
-        Some(place) => Err(NoNumbers::Gap {
-            coordinate: oscillator.coordinate,
-            place,
-        }),
+        Some(place) => Err(NoNumbers::Gap { coordinate: oscillator.coordinate, place }),
         None => Ok(()),
     }
 }
@@ -614,11 +560,7 @@ fn overflow(
     let amplitude = amplitude_of(solution, numbers);
     let found = |place: f64| {
         let term = force.overflow(place)?;
-        Some(
-            PeriodError::Overflow { place, term }
-                .moved(force.equilibrium())
-                .into(),
-        )
+        Some(PeriodError::Overflow { place, term }.moved(force.equilibrium()).into())
     };
     [amplitude, -amplitude].into_iter().find_map(found)
 }
@@ -633,19 +575,11 @@ fn by_definition(
 ) -> Option<(f64, f64)> {
     let size = numbers.get(&solution.amplitude.symbol())?.abs();
     if is_exact(solution) {
-        return exact_motion(oscillator, solution, numbers, known)
-            .ok()
-            .map(|found| (found.0, 0.0));
+        return exact_motion(oscillator, solution, numbers, known).ok().map(|found| (found.0, 0.0));
     }
     let force = if is_first_order(solution) {
         let force = first_order::truncated(oscillator, solution.small_parameter)?;
-        Force::new(
-            &force,
-            oscillator.coordinate,
-            &solution.equilibrium,
-            numbers,
-            size,
-        )?
+        Force::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, size)?
     } else {
         known.force(oscillator, solution, numbers)?
     };
@@ -660,12 +594,8 @@ pub fn error_of_integral(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Option<f64> {
-    let other = [
-        Method::Exact,
-        Method::HarmonicBalance,
-        Method::EnergyBalance,
-    ]
-    .contains(&solution.method);
+    let other =
+        [Method::Exact, Method::HarmonicBalance, Method::EnergyBalance].contains(&solution.method);
     if solution.law.quadrature().is_none() || other {
         return None;
     }
@@ -700,11 +630,7 @@ fn formula_motion(
             return Some(squared.sqrt());
         }
         let value = numbers.get(&symbol).copied()?;
-        Some(if turned && symbol == amplitude {
-            -value
-        } else {
-            value
-        })
+        Some(if turned && symbol == amplitude { -value } else { value })
     };
     let motion = solution.motion(&value).ok()?;
     if !turned {
@@ -718,11 +644,7 @@ fn formula_motion(
     // period later the even ones, which have kept their signs, need it with the other sign.
     let start = solution.equilibrium.evaluate(numbers).ok()? + numbers.get(&amplitude)?;
     let missing = start - motion.evaluate(0.0);
-    Some(motion.sum(&FourierSeries::from_parts(
-        Doubles,
-        vec![0.0, missing],
-        vec![],
-    )))
+    Some(motion.sum(&FourierSeries::from_parts(Doubles, vec![0.0, missing], vec![])))
 }
 
 /// Whether the motion is that of the size of the amplitude, half a period later.
@@ -731,9 +653,7 @@ fn is_turned(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> bool {
-    let negative = numbers
-        .get(&solution.amplitude.symbol())
-        .is_some_and(|value| *value < 0.0);
+    let negative = numbers.get(&solution.amplitude.symbol()).is_some_and(|value| *value < 0.0);
     negative && motion_takes_size(oscillator, solution)
 }
 
@@ -771,15 +691,10 @@ pub fn symbol_values(
         false => (name, value),
     };
     // A limit cycle is free of the amplitude.
-    let known = numbers
-        .iter()
-        .filter(|entry| solution.limit_cycle.is_none() || *entry.0 != amplitude);
+    let known =
+        numbers.iter().filter(|entry| solution.limit_cycle.is_none() || *entry.0 != amplitude);
     let mut values: Vec<(Symbol, f64)> = known.map(sized).collect();
-    values.extend(
-        found
-            .into_iter()
-            .flat_map(|found| found.chosen.iter().copied()),
-    );
+    values.extend(found.into_iter().flat_map(|found| found.chosen.iter().copied()));
     let squared = found.map(|found| found.frequency_squared);
     let lost = squared.and_then(|squared| lost_projections(oscillator, solution, numbers, squared));
     let lost: Vec<(Symbol, f64)> = lost
@@ -787,14 +702,7 @@ pub fn symbol_values(
         .flatten()
         .filter_map(|(k, value)| {
             let name = projection_name(solution, k)?;
-            Some((
-                name,
-                if turned {
-                    half_a_period(k, value)
-                } else {
-                    value
-                },
-            ))
+            Some((name, if turned { half_a_period(k, value) } else { value }))
         })
         .collect();
     // A definition may use those before it.
@@ -803,21 +711,10 @@ pub fn symbol_values(
         if values.iter().any(|entry| entry.0 == name) {
             continue;
         }
-        let by_definition = lost
-            .iter()
-            .find(|entry| entry.0 == name)
-            .map(|entry| entry.1);
-        let value = by_definition.or_else(|| {
-            definition
-                .meaning
-                .evaluate(&values.iter().copied().collect())
-                .ok()
-        });
-        values.extend(
-            value
-                .filter(|value| value.is_finite())
-                .map(|value| (name, value)),
-        );
+        let by_definition = lost.iter().find(|entry| entry.0 == name).map(|entry| entry.1);
+        let value = by_definition
+            .or_else(|| definition.meaning.evaluate(&values.iter().copied().collect()).ok());
+        values.extend(value.filter(|value| value.is_finite()).map(|value| (name, value)));
     }
     values.extend(squared.map(|squared| (Symbol::new("omega"), squared.sqrt())));
     let pi = Symbol::new("pi");
@@ -835,23 +732,14 @@ pub fn symbol_values(
 /// The name that a first iterate gives to `c_k`: what stands over omega^2 in the harmonic, alone.
 fn projection_name(solution: &Solution, k: usize) -> Option<Symbol> {
     let omega = Symbol::new("omega");
-    let (_, cosine, _) = solution
-        .displacement
-        .harmonics()
-        .into_iter()
-        .find(|entry| entry.0 == k)?;
-    let alone = cosine
-        .terms()
-        .filter_map(|(monomial, _)| match *monomial.factors() {
-            [(name, 1), (over, -2)] | [(over, -2), (name, 1)] if over == omega => Some(name),
-            _ => None,
-        });
-    let mut defined = alone.filter(|&name| {
-        solution
-            .definitions
-            .iter()
-            .any(|definition| definition.symbol == name)
+    let (_, cosine, _) =
+        solution.displacement.harmonics().into_iter().find(|entry| entry.0 == k)?;
+    let alone = cosine.terms().filter_map(|(monomial, _)| match *monomial.factors() {
+        [(name, 1), (over, -2)] | [(over, -2), (name, 1)] if over == omega => Some(name),
+        _ => None,
     });
+    let mut defined = alone
+        .filter(|&name| solution.definitions.iter().any(|definition| definition.symbol == name));
     defined.next()
 }
 
@@ -910,11 +798,7 @@ fn lost_projections(
     let force = Known::default().force(oscillator, solution, numbers)?;
     let harmonics = solution.displacement.harmonics().into_iter();
     let projections = harmonics.filter(|entry| entry.0 != 1);
-    Some(
-        projections
-            .map(|(k, ..)| (k, one_term::coefficient(&force, amplitude, k).0))
-            .collect(),
-    )
+    Some(projections.map(|(k, ..)| (k, one_term::coefficient(&force, amplitude, k).0)).collect())
 }
 
 /// What has to be solved: balances, integrals, the exact motion; and a remark.
@@ -928,11 +812,7 @@ fn solve(
         let found = || {
             let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
             let (squared, motion) = inertia::at_numbers(oscillator, solution, numbers)?;
-            Some((
-                squared,
-                motion.sum(&FourierSeries::constant(Doubles, equilibrium)),
-                None,
-            ))
+            Some((squared, motion.sum(&FourierSeries::constant(Doubles, equilibrium)), None))
         };
         return found().ok_or(NoNumbers::NoValue);
     }
@@ -943,19 +823,12 @@ fn solve(
     let given = || {
         let equilibrium = solution.equilibrium.evaluate(numbers).ok()?;
         let amplitude = *numbers.get(&solution.amplitude.symbol())?;
-        Some((
-            equilibrium,
-            amplitude,
-            known.force(oscillator, solution, numbers)?,
-        ))
+        Some((equilibrium, amplitude, known.force(oscillator, solution, numbers)?))
     };
     let (equilibrium, amplitude, force) = given().ok_or(NoNumbers::NoValue)?;
     let shift = FourierSeries::constant(Doubles, equilibrium);
     if Entry::of(solution.method).motion == Motion::Balance {
-        let odd = solution
-            .balanced_harmonics()
-            .iter()
-            .all(|entry| entry.0 % 2 == 1);
+        let odd = solution.balanced_harmonics().iter().all(|entry| entry.0 % 2 == 1);
         let harmonics = harmonic_balance::harmonics(solution.order, odd);
         let degree = oscillator.polynomial_degree().ok().flatten();
         let found = balance::balance(&force, degree, &harmonics, amplitude, &known.balance)?;
@@ -987,9 +860,7 @@ fn exact_motion(
     numbers: &BTreeMap<Symbol, f64>,
     known: &Known,
 ) -> Result<(f64, FourierSeries<Doubles>), NoNumbers> {
-    let force = known
-        .force(oscillator, solution, numbers)
-        .ok_or(NoNumbers::NoValue)?;
+    let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
     let start = amplitude_of(solution, numbers);
     let found = motion_about(&force, start);
     let (period, cosine) = found.map_err(|error| force.why_no_period(start, error))?;
@@ -1011,29 +882,18 @@ fn along(
     frequency: f64,
 ) -> Option<Vec<f64>> {
     let mut values = numbers.clone();
-    values.extend(
-        solution
-            .defined_values(&|name| numbers.get(&name).copied())
-            .ok()?,
-    );
+    values.extend(solution.defined_values(&|name| numbers.get(&name).copied()).ok()?);
     let time = Symbol::new("t");
-    let names: Vec<Symbol> = std::iter::once(time)
-        .chain(values.keys().copied())
-        .collect();
+    let names: Vec<Symbol> = std::iter::once(time).chain(values.keys().copied()).collect();
     let function = CompiledFunction::new(motion, &names).ok()?;
-    let arguments: Vec<f64> = std::iter::once(0.0)
-        .chain(values.values().copied())
-        .collect();
+    let arguments: Vec<f64> = std::iter::once(0.0).chain(values.values().copied()).collect();
     let place = |theta: f64| {
         let mut arguments = arguments.clone();
         arguments[0] = theta / frequency;
         function.call(&arguments)
     };
     let cosine = cosines(&place);
-    cosine
-        .iter()
-        .all(|value| value.is_finite())
-        .then_some(cosine)
+    cosine.iter().all(|value| value.is_finite()).then_some(cosine)
 }
 
 /// The hbar between -2 and 0 at which the squared residual of the original equation is least.
@@ -1046,15 +906,11 @@ fn best_hbar(
 ) -> Result<f64, NoNumbers> {
     const TRIALS: usize = 40;
     const SAMPLES: usize = 64;
-    let force = known
-        .force(oscillator, solution, numbers)
-        .ok_or(NoNumbers::NoValue)?;
+    let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
     // What does not depend on hbar is computed once.
     let mut numbers = numbers.clone();
-    let fixed = solution
-        .definitions
-        .iter()
-        .take_while(|definition| !definition.meaning.contains(hbar));
+    let fixed =
+        solution.definitions.iter().take_while(|definition| !definition.meaning.contains(hbar));
     for definition in fixed {
         // Without a first frequency there is none for any hbar.
         let undefined = |error| match error {
@@ -1062,13 +918,9 @@ fn best_hbar(
             EvaluationError::Undefined { .. }
                 if definition.meaning.overflow(&numbers).is_some() =>
             {
-                NoNumbers::Beyond {
-                    name: definition.symbol,
-                }
+                NoNumbers::Beyond { name: definition.symbol }
             }
-            EvaluationError::Undefined { .. } => NoNumbers::Undefined {
-                name: definition.symbol,
-            },
+            EvaluationError::Undefined { .. } => NoNumbers::Undefined { name: definition.symbol },
         };
         let value = definition.meaning.evaluate(&numbers).map_err(undefined)?;
         numbers.insert(definition.symbol, value);

@@ -144,10 +144,7 @@ pub(super) fn cosine(coefficient: Polynomial) -> FourierSeries<Polynomials> {
 pub(super) fn set_law(solution: &mut Solution, law: &Expr) -> Result<(), Refusal> {
     solution.law = match law.to_polynomial(&mut |_| None)? {
         Some(polynomial) => Law::squared(polynomial),
-        None => Law::Closed(ClosedForm {
-            squared: true,
-            value: law.factored(),
-        }),
+        None => Law::Closed(ClosedForm { squared: true, value: law.factored() }),
     };
     Ok(())
 }
@@ -156,13 +153,7 @@ pub(super) fn set_law(solution: &mut Solution, law: &Expr) -> Result<(), Refusal
 pub(super) fn shared_integral(oscillator: &Oscillator, force: &Expr) -> Option<Expr> {
     let amplitude = Expr::symbol("A");
     let first = cosine_coefficient(force, oscillator.coordinate, &amplitude, 1)?;
-    Some(
-        Expr::divide(&first, &amplitude)
-            .ok()?
-            .expand()
-            .ok()?
-            .factored(),
-    )
+    Some(Expr::divide(&first, &amplitude).ok()?.expand().ok()?.factored())
 }
 
 /// The answer of the methods whose law is the shared integral.
@@ -184,14 +175,10 @@ pub(super) fn solve_by_integral(
             solution.law = Law::Quadrature(vec![Line::equation(squared, integral)]);
         }
     }
-    solution
-        .validity
-        .push(Note::FirstStep(FirstStep::TermOfForce));
+    solution.validity.push(Note::FirstStep(FirstStep::TermOfForce));
     note_even_part(&mut solution, oscillator, &force)?;
-    solution.derivation = vec![Line::equation(
-        oscillator.coordinate,
-        solution.displacement.clone(),
-    )];
+    solution.derivation =
+        vec![Line::equation(oscillator.coordinate, solution.displacement.clone())];
     let law = integral_law(oscillator, &force, &solution)?;
     solution.derivation.extend(law);
     Ok(solution)
@@ -213,9 +200,7 @@ pub(super) fn note_even_part(
 /// Puts what is said of the even part of the force behind what was said since.
 pub(super) fn note_even_part_last(solution: &mut Solution) {
     // False sorts before true, and the others keep their order.
-    solution
-        .validity
-        .sort_by_key(|note| matches!(note, Note::EvenPartLeftOut(_)));
+    solution.validity.sort_by_key(|note| matches!(note, Note::EvenPartLeftOut(_)));
 }
 
 /// `(2/(pi A)) int_0^pi f(A cos theta) cos(theta) dtheta`, written out.
@@ -244,9 +229,7 @@ pub(super) fn integral_law(
     let squared = Expr::symbol("omega").integer_power(2)?;
     let mut equal = vec![squared.into(), first_projection(oscillator, force)?];
     equal.extend(law_of(solution).map(Formula::from));
-    Ok(vec![
-        Line::equal(equal).because("no cos(θ) remains in the equation"),
-    ])
+    Ok(vec![Line::equal(equal).because("no cos(θ) remains in the equation")])
 }
 
 /// omega^2 of an answer that has it as a polynomial or in closed form.
@@ -284,9 +267,7 @@ pub(crate) fn coefficient_by_quadrature(
         };
         let sums = (0..points)
             .map(value)
-            .fold((0.0, 0.0), |(sum, size), value| {
-                (sum + value, size + value.abs())
-            });
+            .fold((0.0, 0.0), |(sum, size), value| (sum + value, size + value.abs()));
         (2.0 / points as f64 * sums.0, 2.0 / points as f64 * sums.1)
     };
     let (mut value, mut points) = (with_points(FEWEST).0, 2 * FEWEST);
@@ -309,20 +290,14 @@ pub(crate) fn coefficient(force: &Force, amplitude: f64, k: usize) -> (f64, f64)
     if cuts.is_empty() {
         return coefficient_by_quadrature(&|y| force.at(y), amplitude, k);
     }
-    let mut angles: Vec<f64> = cuts
-        .iter()
-        .map(|cut| (cut / amplitude).clamp(-1.0, 1.0).acos())
-        .collect();
+    let mut angles: Vec<f64> =
+        cuts.iter().map(|cut| (cut / amplitude).clamp(-1.0, 1.0).acos()).collect();
     angles.extend([0.0, PI]);
     angles.sort_by(f64::total_cmp);
     let integrand = |theta: f64| force.at(amplitude * theta.cos()) * (k as f64 * theta).cos();
     let sum = match integrate_piecewise(integrand, &angles, TOLERANCE) {
         Ok(found) => found,
-        Err(QuadratureError::NotConverged {
-            value,
-            error_estimate,
-            ..
-        }) => (value, error_estimate),
+        Err(QuadratureError::NotConverged { value, error_estimate, .. }) => (value, error_estimate),
         Err(_) => (f64::NAN, f64::NAN),
     };
     (sum.0 * 2.0 / PI, sum.1 * 2.0 / PI)
@@ -334,13 +309,10 @@ pub(crate) fn compiled(
     force: &Expr,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Option<impl Fn(f64) -> f64 + use<>> {
-    let names: Vec<Symbol> = std::iter::once(oscillator.coordinate)
-        .chain(numbers.keys().copied())
-        .collect();
+    let names: Vec<Symbol> =
+        std::iter::once(oscillator.coordinate).chain(numbers.keys().copied()).collect();
     let function = CompiledFunction::new(force, &names).ok()?;
-    let arguments: Vec<f64> = std::iter::once(0.0)
-        .chain(numbers.values().copied())
-        .collect();
+    let arguments: Vec<f64> = std::iter::once(0.0).chain(numbers.values().copied()).collect();
     // One row of arguments for all calls: only its first entry, the position, changes.
     let arguments = std::cell::RefCell::new(arguments);
     Some(move |x: f64| {

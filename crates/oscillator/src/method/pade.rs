@@ -59,11 +59,7 @@ const LARGEST_WITH_SYMBOLS: usize = 9;
 /// As for the method of Lindstedt and Poincare; degrees without an approximant.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let degrees = options.degrees.unwrap_or(Degrees::Quotient(2, 1));
-    let refused = |reason| Refusal::Approximant {
-        method: METHOD,
-        degrees,
-        reason,
-    };
+    let refused = |reason| Refusal::Approximant { method: METHOD, degrees, reason };
     let Degrees::Quotient(numerator_degree, denominator_degree) = degrees else {
         return Err(refused("it has two, those of numerator and denominator"));
     };
@@ -76,18 +72,12 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let series = &resummed.series;
     let quotient = quotient(series, (numerator_degree, denominator_degree)).map_err(refused)?;
     let below = series.with_powers(&quotient.below);
-    let value = Expr::divide(
-        &Expr::from(&series.with_powers(&quotient.above)),
-        &Expr::from(&below),
-    )?;
+    let value =
+        Expr::divide(&Expr::from(&series.with_powers(&quotient.above)), &Expr::from(&below))?;
     if !has_values(&value) {
         return Err(refused(TOO_LONG));
     }
-    let notes = vec![
-        resummed.agreement(degrees),
-        Note::Poles(poles(&below)),
-        Note::MotionOfSeries,
-    ];
+    let notes = vec![resummed.agreement(degrees), Note::Poles(poles(&below)), Note::MotionOfSeries];
     let letters = ["p", "q"].map(|letter| fresh_stem(letter, &resummed.names()));
     let derivation = match resummed.long {
         // Equations by the dozen, with coefficients of thousands of digits.
@@ -111,18 +101,12 @@ fn quotient(
     (numerator_degree, denominator_degree): (u32, u32),
 ) -> Result<Quotient, &'static str> {
     let (l, m) = (i64::from(numerator_degree), denominator_degree as usize);
-    let coefficients: Vec<Polynomial> = (0..=l + m as i64)
-        .map(|power| series.coefficient(power))
-        .collect();
+    let coefficients: Vec<Polynomial> =
+        (0..=l + m as i64).map(|power| series.coefficient(power)).collect();
     if m > LARGEST_BY_FRACTIONS
         && let Some((unit, numbers)) = scaled(&coefficients)
     {
-        return by_primes(
-            &coefficients[0],
-            &unit,
-            numbers,
-            (numerator_degree as usize, m),
-        );
+        return by_primes(&coefficients[0], &unit, numbers, (numerator_degree as usize, m));
     }
     let below = denominator(&coefficients, l, m)?;
     let entry = |i: i64| {
@@ -132,10 +116,7 @@ fn quotient(
         }
         sum
     };
-    Ok(Quotient {
-        above: (0..=l).map(entry).collect(),
-        below,
-    })
+    Ok(Quotient { above: (0..=l).map(entry).collect(), below })
 }
 
 /// The quotient of a series `c_k = c_0 unit^k n_k` in numbers, modulo many primes.
@@ -162,10 +143,7 @@ fn by_primes(
         };
         (0..).zip(numbers).map(term).collect()
     };
-    Ok(Quotient {
-        above: polynomials(above, symbols),
-        below: polynomials(below, &Monomial::one()),
-    })
+    Ok(Quotient { above: polynomials(above, symbols), below: polynomials(below, &Monomial::one()) })
 }
 
 /// Why there is no quotient.
@@ -196,12 +174,9 @@ fn linear_system(
         let polynomial = Expr::from(polynomial);
         Expr::divide(&polynomial, &first).unwrap_or(polynomial)
     };
-    let squared = Expr::symbol("omega")
-        .integer_power(2)
-        .unwrap_or_else(|_| Expr::zero());
-    let numerator: Vec<Polynomial> = (0..above.len())
-        .map(|i| Polynomial::symbol(name(p, i)))
-        .collect();
+    let squared = Expr::symbol("omega").integer_power(2).unwrap_or_else(|_| Expr::zero());
+    let numerator: Vec<Polynomial> =
+        (0..above.len()).map(|i| Polynomial::symbol(name(p, i))).collect();
     let denominator: Vec<Polynomial> = (0..=m).map(unknown).collect();
     let [numerator, denominator] =
         [numerator, denominator].map(|names| Expr::from(&series.with_powers(&names)));
@@ -241,12 +216,7 @@ fn denominator(series: &[Polynomial], l: i64, m: usize) -> Result<Vec<Polynomial
     if let Some((unit, numbers)) = scaled(series) {
         let zero = Rational::zero();
         let number = |power: i64| usize::try_from(power).map_or(&zero, |power| &numbers[power]);
-        let row = |k: i64| {
-            (1..=m as i64)
-                .chain([0])
-                .map(|j| number(l + k - j).clone())
-                .collect()
-        };
+        let row = |k: i64| (1..=m as i64).chain([0]).map(|j| number(l + k - j).clone()).collect();
         let solved = solve_linear((1..=m as i64).map(row).collect()).ok_or(SINGULAR)?;
         let one = std::iter::once(Rational::one());
         let values = one.chain(solved.into_iter().map(|value| -value));
@@ -262,15 +232,10 @@ fn denominator(series: &[Polynomial], l: i64, m: usize) -> Result<Vec<Polynomial
         let power = usize::try_from(power).ok();
         power.map_or_else(Polynomial::zero, |power| series[power].clone())
     };
-    let rows: Vec<Vec<Polynomial>> = (1..=m as i64)
-        .map(|k| (0..=m as i64).map(|j| coefficient(l + k - j)).collect())
-        .collect();
+    let rows: Vec<Vec<Polynomial>> =
+        (1..=m as i64).map(|k| (0..=m as i64).map(|j| coefficient(l + k - j)).collect()).collect();
     let mut below = cofactors(&rows);
-    let first = below
-        .first()
-        .filter(|first| !first.is_zero())
-        .cloned()
-        .ok_or(SINGULAR)?;
+    let first = below.first().filter(|first| !first.is_zero()).cloned().ok_or(SINGULAR)?;
     normalise(&mut below, &first);
     Ok(below)
 }
@@ -286,11 +251,7 @@ fn solve_linear(mut rows: Vec<Vec<Rational>>) -> Option<Vec<Rational>> {
             *value *= &inverse;
         }
         let pivot = rows[column].clone();
-        for (_, row) in rows
-            .iter_mut()
-            .enumerate()
-            .filter(|(row, _)| *row != column)
-        {
+        for (_, row) in rows.iter_mut().enumerate().filter(|(row, _)| *row != column) {
             let factor = row[column].clone();
             if factor.is_zero() {
                 continue;
@@ -328,9 +289,7 @@ fn cofactors(rows: &[Vec<Polynomial>]) -> Vec<Polynomial> {
     }
     let all = (1_u32 << (rows.len() + 1)) - 1;
     let mut cofactor = |j: usize| {
-        let mut minor = minors
-            .remove(&(all & !(1 << j)))
-            .unwrap_or_else(Polynomial::zero);
+        let mut minor = minors.remove(&(all & !(1 << j))).unwrap_or_else(Polynomial::zero);
         if j % 2 == 1 {
             minor.negate();
         }
@@ -346,9 +305,7 @@ fn normalise(coefficients: &mut [Polynomial], first: &Polynomial) {
     };
     let (inverse, number) = (monomial.power(-1), number.recip());
     for coefficient in coefficients {
-        *coefficient = coefficient
-            .times_monomial(&inverse)
-            .map(|value| value * &number);
+        *coefficient = coefficient.times_monomial(&inverse).map(|value| value * &number);
     }
 }
 
@@ -362,10 +319,8 @@ fn poles(below: &Polynomial) -> Poles {
     if exact.len() > LARGEST_BY_FRACTIONS + 1 {
         // Roots of so many in doubles are taken for what they are where the exact polynomial
         // changes its sign.
-        let floats: Vec<BigFloat> = exact
-            .iter()
-            .map(|value| BigFloat::of_fraction(value, BITS))
-            .collect();
+        let floats: Vec<BigFloat> =
+            exact.iter().map(|value| BigFloat::of_fraction(value, BITS)).collect();
         places.retain(|place| changes_sign(&floats, *place));
     }
     places.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
@@ -382,10 +337,8 @@ fn changes_sign(polynomial: &[BigFloat], place: f64) -> bool {
     let zero = BigFloat::zero(BITS);
     let value = |place: f64| {
         let place = BigFloat::of_f64(place, BITS);
-        let value = polynomial
-            .iter()
-            .rev()
-            .fold(zero.clone(), |sum, number| &(&sum * &place) + number);
+        let value =
+            polynomial.iter().rev().fold(zero.clone(), |sum, number| &(&sum * &place) + number);
         value > zero
     };
     value(place * (1.0 - BESIDE)) != value(place * (1.0 + BESIDE))
@@ -439,10 +392,7 @@ mod tests {
         for _ in 0..9 {
             (a, g) = ((a + g) / 2.0, f64::sqrt(a * g));
         }
-        let found = law
-            .evaluate(&[(Symbol::new("A"), amplitude)].into())
-            .unwrap()
-            .sqrt();
+        let found = law.evaluate(&[(Symbol::new("A"), amplitude)].into()).unwrap().sqrt();
         assert!((found / a - 1.0).abs() < 1e-6, "{found} {a}");
     }
 
@@ -454,11 +404,7 @@ mod tests {
         let cases: [(&str, Work, f64); 3] = [
             ("x'' + sin(x) = 0", |x| 1.0 - x.cos(), 2.8),
             ("x'' + x/(1 + x^2) = 0", |x| 0.5 * x.powi(2).ln_1p(), 2.0),
-            (
-                "x'' + 1e-9*sin(1e3*x) = 0",
-                |x| 1e-12 * (1.0 - (1e3 * x).cos()),
-                2.5e-3,
-            ),
+            ("x'' + 1e-9*sin(1e3*x) = 0", |x| 1e-12 * (1.0 - (1e3 * x).cos()), 2.5e-3),
         ];
         for (equation, potential, amplitude) in cases {
             let law = approximant(equation, (20, 20)).unwrap();
@@ -471,14 +417,8 @@ mod tests {
                 })
                 .sum();
             let expected = std::f64::consts::PI / (2.0 * quarter);
-            let found = law
-                .evaluate(&[(Symbol::new("A"), amplitude)].into())
-                .unwrap()
-                .sqrt();
-            assert!(
-                (found / expected - 1.0).abs() < 1e-6,
-                "{equation}: {found} {expected}"
-            );
+            let found = law.evaluate(&[(Symbol::new("A"), amplitude)].into()).unwrap().sqrt();
+            assert!((found / expected - 1.0).abs() < 1e-6, "{equation}: {found} {expected}");
         }
     }
 
@@ -490,13 +430,8 @@ mod tests {
             (a, g) = ((a + g) / 2.0, f64::sqrt(a * g));
         }
         let law = approximant("x'' + x + eps*x^3 = 0", (12, 12)).unwrap();
-        let found = law
-            .evaluate(&[("A".into(), 2.0), ("eps".into(), 1.0)].into())
-            .unwrap();
-        assert!(
-            (found.sqrt() / (f64::sqrt(5.0) * a) - 1.0).abs() < 1e-9,
-            "{found}"
-        );
+        let found = law.evaluate(&[("A".into(), 2.0), ("eps".into(), 1.0)].into()).unwrap();
+        assert!((found.sqrt() / (f64::sqrt(5.0) * a) - 1.0).abs() < 1e-9, "{found}");
     }
 
     #[test]
@@ -507,32 +442,15 @@ mod tests {
                     .product(&Monomial::power_of("A".into(), 2 * power));
                 Polynomial::term(unit, crate::exact::from_f64(value).unwrap())
             };
-            poles(
-                &terms
-                    .iter()
-                    .map(term)
-                    .fold(Polynomial::zero(), |sum, term| sum + term),
-            )
-            .to_string()
+            poles(&terms.iter().map(term).fold(Polynomial::zero(), |sum, term| sum + term))
+                .to_string()
         };
         // (1 - z/2)(1 + z^n): of the circle only -1 is real, and for even n none.
         let product = |n: i32| named(&[(0, 1.0), (1, -0.5), (n, 1.0), (n + 1, -0.5)]);
-        assert!(
-            product(19).starts_with("poles at k*A^2 = -1, 2:"),
-            "{}",
-            product(19)
-        );
-        assert!(
-            product(18).starts_with("poles at k*A^2 = 2:"),
-            "{}",
-            product(18)
-        );
+        assert!(product(19).starts_with("poles at k*A^2 = -1, 2:"), "{}", product(19));
+        assert!(product(18).starts_with("poles at k*A^2 = 2:"), "{}", product(18));
         // Beyond the highest degree nothing is listed.
-        assert!(
-            product(60).starts_with("where its denominator vanishes"),
-            "{}",
-            product(60)
-        );
+        assert!(product(60).starts_with("where its denominator vanishes"), "{}", product(60));
         // A pair of zeros next to the axis is none on it, at any scale; a double zero is two.
         for unit in [1.0, 1e3, 1e-3] {
             let near = |distance: f64| {
@@ -540,10 +458,7 @@ mod tests {
             };
             assert_eq!((near(1e-8), near(-1e-8)), (0, 2), "{unit}");
         }
-        assert_eq!(
-            named(&[(0, 1.0), (1, 0.5), (2, 1.0)]),
-            "its denominator has no real zero"
-        );
+        assert_eq!(named(&[(0, 1.0), (1, 0.5), (2, 1.0)]), "its denominator has no real zero");
         assert!(real_roots(&[3.0]).is_empty() && real_roots(&[]).is_empty());
     }
 
@@ -552,9 +467,8 @@ mod tests {
         let series: Vec<Polynomial> = [3, 1, -4, 1, 5, -9, 2, 6, 5]
             .map(|number| Polynomial::constant(Rational::from_integer(number.into())))
             .into();
-        let rows: Vec<Vec<Polynomial>> = (1..=4)
-            .map(|k| (0..=4).map(|j| series[4 + k - j].clone()).collect())
-            .collect();
+        let rows: Vec<Vec<Polynomial>> =
+            (1..=4).map(|k| (0..=4).map(|j| series[4 + k - j].clone()).collect()).collect();
         let mut expected = cofactors(&rows);
         let first = expected[0].clone();
         normalise(&mut expected, &first);

@@ -43,13 +43,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     const METHOD: Method = Method::ParameterExpansion;
     conservative_force(oscillator, options, METHOD)?;
     let polynomial = oscillator.polynomial_degree()?.is_some();
-    let order = options
-        .order
-        .unwrap_or(if polynomial || options.taylor.is_some() {
-            2
-        } else {
-            1
-        });
+    let order = options.order.unwrap_or(if polynomial || options.taylor.is_some() { 2 } else { 1 });
     if order <= 1 && options.taylor.is_none() {
         let mut solution = solve_by_integral(oscillator, options, METHOD)?;
         let omega = Expr::symbol("omega").integer_power(2)?;
@@ -58,15 +52,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             &omega * &along - oscillator.force.substitute(oscillator.coordinate, &along)?;
         let [start, first] = [0, 1].map(|number| numbered(oscillator, number));
         let names = oscillator.names();
-        let (p, w, omega0) = (
-            fresh("p", &names),
-            fresh_stem("w", &names),
-            fresh("omega0", &names),
-        );
-        let left = Formula::Oscillator {
-            of: first,
-            square: omega,
-        };
+        let (p, w, omega0) = (fresh("p", &names), fresh_stem("w", &names), fresh("omega0", &names));
+        let left = Formula::Oscillator { of: first, square: omega };
         solution.derivation = vec![
             Line::equation(start, along).because(format!("at {p}^0")),
             Line::equation(left, driven).because(format!(
@@ -80,10 +67,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     if !polynomial && options.taylor.is_none() && options.order.is_some() {
         return Err(not_polynomial(&oscillator.force, oscillator.coordinate).to(METHOD));
     }
-    let options = Options {
-        order: Some(order),
-        ..options.clone()
-    };
+    let options = Options { order: Some(order), ..options.clone() };
     let mut solution = homotopy_perturbation::solve_without_linear_part(oscillator, &options)?;
     solution.method = METHOD;
     Ok(solution)

@@ -31,14 +31,8 @@ impl PowerSeries {
         let small = solution.small_parameter;
         let law = solution.law.frequency_squared().cloned();
         let law = law.unwrap_or_else(Polynomial::zero);
-        let even = law
-            .terms()
-            .all(|(monomial, _)| monomial.exponent(small) % 2 == 0);
-        Self {
-            law,
-            small,
-            step: if in_amplitude && even { 2 } else { 1 },
-        }
+        let even = law.terms().all(|(monomial, _)| monomial.exponent(small) % 2 == 0);
+        Self { law, small, step: if in_amplitude && even { 2 } else { 1 } }
     }
 
     /// `c_k`; zero for a negative power.
@@ -66,23 +60,17 @@ impl PowerSeries {
     /// has powers.
     pub fn in_one_variable(&self) -> Option<(Monomial, Vec<Rational>)> {
         let (_, highest) = self.law.exponent_range(self.small)?;
-        let coefficients: Vec<Polynomial> = (0..=i64::from(highest / self.step))
-            .map(|power| self.coefficient(power))
-            .collect();
+        let coefficients: Vec<Polynomial> =
+            (0..=i64::from(highest / self.step)).map(|power| self.coefficient(power)).collect();
         let (unit, numbers) = scaled(&coefficients)?;
-        Some((
-            Monomial::power_of(self.small, self.step).product(&unit),
-            numbers,
-        ))
+        Some((Monomial::power_of(self.small, self.step).product(&unit), numbers))
     }
 }
 
 /// The terms of one power of the small parameter, without it.
 fn part(law: &Polynomial, small: Symbol, power: i32) -> Polynomial {
     let mut part = Polynomial::zero();
-    for (monomial, number) in law
-        .terms()
-        .filter(|(monomial, _)| monomial.exponent(small) == power)
+    for (monomial, number) in law.terms().filter(|(monomial, _)| monomial.exponent(small) == power)
     {
         part.add_term(monomial.without(small), number.clone());
     }
@@ -97,10 +85,8 @@ pub(crate) fn scaled(series: &[Polynomial]) -> Option<(Monomial, Vec<Rational>)>
     let (k, first) = (1..).zip(&series[1..]).find(|(_, c)| !c.is_zero())?;
     let mut unit = Monomial::one();
     for &(symbol, exponent) in ratio(first)?.factors() {
-        unit = unit.product(&Monomial::power_of(
-            symbol,
-            (exponent % k == 0).then_some(exponent / k)?,
-        ));
+        unit =
+            unit.product(&Monomial::power_of(symbol, (exponent % k == 0).then_some(exponent / k)?));
     }
     let number = |(k, c): (i32, &Polynomial)| match c.is_zero() {
         true => Some(Rational::zero()),
@@ -146,11 +132,7 @@ impl Resummed {
             oscillator.small_parameter(options.small.as_deref())? == SmallParameter::Amplitude;
         let long = order > LONG;
         let series_to = |highest: u32, frequency_alone: bool| {
-            let options = Options {
-                order: Some(highest),
-                frequency_alone,
-                ..options.clone()
-            };
+            let options = Options { order: Some(highest), frequency_alone, ..options.clone() };
             let solution = lindstedt_poincare::solve(oscillator, &options)?;
             Ok::<_, Refusal>((solution.order >= highest).then_some(solution))
         };
@@ -181,12 +163,7 @@ impl Resummed {
         }
         solution.method = method;
         solution.displacement = first_correction(&solution.displacement, series.small, series.step);
-        Ok(Some(Self {
-            series,
-            solution,
-            order,
-            long,
-        }))
+        Ok(Some(Self { series, solution, order, long }))
     }
 
     /// The names that mean something already.
@@ -197,11 +174,8 @@ impl Resummed {
     /// Puts `omega0^2` for a symbol of which `omega0` is the root, so that one of the two is left.
     pub fn write_squares_by_their_roots(&mut self) {
         for definition in &self.solution.definitions {
-            let square = definition
-                .meaning
-                .integer_power(2)
-                .ok()
-                .and_then(|square| square.as_symbol());
+            let square =
+                definition.meaning.integer_power(2).ok().and_then(|square| square.as_symbol());
             let root = Polynomial::term(Monomial::power_of(definition.symbol, 2), Rational::one());
             if let Some(law) = square.and_then(|square| self.series.law.substitute(square, &root)) {
                 self.series.law = law;
@@ -229,23 +203,14 @@ impl Resummed {
     ) -> Solution {
         let mut solution = self.solution;
         let harmonics = solution.displacement.harmonics();
-        let motion = harmonics
-            .iter()
-            .flat_map(|(_, cosine, sine)| [cosine, sine]);
+        let motion = harmonics.iter().flat_map(|(_, cosine, sine)| [cosine, sine]);
         let mut used = &solution.equilibrium.symbols() | &self.series.law.symbols();
         used.extend(motion.flat_map(Polynomial::symbols));
-        solution.definitions = solution
-            .definitions_behind(used)
-            .into_iter()
-            .cloned()
-            .collect();
+        solution.definitions = solution.definitions_behind(used).into_iter().cloned().collect();
         solution.definitions.extend(definitions);
         solution.order = self.order;
         solution.degrees = Some(degrees);
-        solution.law = Law::Closed(ClosedForm {
-            squared: true,
-            value,
-        });
+        solution.law = Law::Closed(ClosedForm { squared: true, value });
         solution.steps = vec![];
         solution.validity = validity;
         solution.derivation = derivation;
@@ -260,23 +225,13 @@ fn first_correction(
     step: i32,
 ) -> FourierSeries<Polynomials> {
     let leading = if small == Symbol::new("A") { 1 } else { 0 };
-    motion.map(POLYNOMIALS, |coefficient, _| {
-        coefficient.truncated(small, leading + step)
-    })
+    motion.map(POLYNOMIALS, |coefficient, _| coefficient.truncated(small, leading + step))
 }
 
 /// Whether a quotient can be evaluated in double precision, where its whole numbers do not
 /// overflow.
 pub(crate) fn has_values(value: &Expr) -> bool {
-    let at = |place: f64| {
-        value
-            .symbols()
-            .into_iter()
-            .map(|symbol| (symbol, place))
-            .collect()
-    };
+    let at = |place: f64| value.symbols().into_iter().map(|symbol| (symbol, place)).collect();
     // One of the places may be a pole.
-    [1.0, 0.5]
-        .iter()
-        .any(|place| value.evaluate(&at(*place)).is_ok_and(f64::is_finite))
+    [1.0, 0.5].iter().any(|place| value.evaluate(&at(*place)).is_ok_and(f64::is_finite))
 }

@@ -32,9 +32,8 @@ pub(super) fn as_typed(
             if let Some(found) = typed_around(term.expression(), oscillator, centred) {
                 *term = found;
                 // The force was expanded as it is seen from the equilibrium.
-                let place = point
-                    .iter_mut()
-                    .find(|(variable, _)| *variable == oscillator.coordinate);
+                let place =
+                    point.iter_mut().find(|(variable, _)| *variable == oscillator.coordinate);
                 if let Some((_, centre)) = place.filter(|(_, centre)| centre.is_zero()) {
                     centre.clone_from(&centred.position);
                 }
@@ -103,8 +102,7 @@ fn typed(sum: &Quotation, oscillator: &Oscillator, centred: &Centred) -> Option<
     let among = |part: &Expr| part.terms().iter().any(|term| wanted.contains(&of(term)));
     let mirrored = |part: &Expr| {
         let turned = -Expr::from(oscillator.coordinate);
-        part.substitute(oscillator.coordinate, &turned)
-            .and_then(|part| part.expand())
+        part.substitute(oscillator.coordinate, &turned).and_then(|part| part.expand())
     };
     let comes_from = |part: &Expr| {
         // The even part of a force may hold the mirror image of what was typed.
@@ -135,10 +133,8 @@ fn typed_around(inner: &Expr, oscillator: &Oscillator, centred: &Centred) -> Opt
     let part = parts.get(number)?.clone()?;
     // Of `1/x`, from `x*x'' + 1`, the typed term `1` shows nothing.
     let divided = oscillator.velocity().derivative();
-    let own_mass = oscillator
-        .residual
-        .differentiate(divided)
-        .is_ok_and(|mass| mass.symbols().is_empty());
+    let own_mass =
+        oscillator.residual.differentiate(divided).is_ok_and(|mass| mass.symbols().is_empty());
     let typed = oscillator.typed.values().nth(number)?;
     if !own_mass && centred.written.is_zero() && !occurs(&typed) {
         return None;
@@ -167,11 +163,9 @@ fn parts(oscillator: &Oscillator, centred: &Centred) -> Vec<Option<Expr>> {
         }
     };
     let values = oscillator.typed.values();
-    let parts = values.map(
-        |value| match value.is_zero() || value.contains(acceleration) {
-            true => None,
-            false => part(value).ok(),
-        },
-    );
+    let parts = values.map(|value| match value.is_zero() || value.contains(acceleration) {
+        true => None,
+        false => part(value).ok(),
+    });
     parts.collect()
 }

@@ -79,15 +79,10 @@ pub fn with_resonance_at(
     let Some((resonances, ratio)) = ratio_at(oscillator, at, method) else {
         return Ok(chosen);
     };
-    let found = by_distance(resonances, ratio)
-        .into_iter()
-        .find(|candidate| {
-            let asked = Options {
-                resonance: Some(*candidate),
-                ..options.clone()
-            };
-            super::solve(oscillator, &asked).is_ok()
-        });
+    let found = by_distance(resonances, ratio).into_iter().find(|candidate| {
+        let asked = Options { resonance: Some(*candidate), ..options.clone() };
+        super::solve(oscillator, &asked).is_ok()
+    });
     if let Some(nearest) = found {
         is_near(nearest, ratio, method)?;
         chosen.resonance = found;
@@ -104,25 +99,14 @@ fn ratio_at(
 ) -> Option<(Vec<(u32, u32)>, f64)> {
     let centred = crate::equilibrium::centred(oscillator, None).ok()?;
     let oscillator = &centred.oscillator;
-    let parts = oscillator
-        .parts()
-        .ok()
-        .filter(|parts| !parts.forcing.is_zero())?;
+    let parts = oscillator.parts().ok().filter(|parts| !parts.forcing.is_zero())?;
     let drive = Drive::of(&parts, oscillator, method).ok()?;
     let mut numbers = at.numbers();
     if let Some(definition) = &centred.definition {
-        numbers.insert(
-            definition.symbol,
-            definition.meaning.evaluate(&numbers).ok()?,
-        );
+        numbers.insert(definition.symbol, definition.meaning.evaluate(&numbers).ok()?);
     }
     let x = oscillator.coordinate;
-    let stiffness = parts
-        .restoring
-        .differentiate(x)
-        .ok()?
-        .substitute(x, &Expr::zero())
-        .ok()?;
+    let stiffness = parts.restoring.differentiate(x).ok()?.substitute(x, &Expr::zero()).ok()?;
     let ratio =
         drive.frequency.evaluate(&numbers).ok()? / stiffness.evaluate(&numbers).ok()?.sqrt();
     Some((drive.resonances(), ratio)).filter(|(_, ratio)| ratio.is_normal())

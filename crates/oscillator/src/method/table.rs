@@ -130,11 +130,7 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         takes: &[Choice::Order, Choice::Taylor],
         sees: Sees::TaylorPolynomial,
         rounded_degree: |options, _| {
-            Some(
-                options
-                    .taylor
-                    .unwrap_or(beyond_twice(options.order.unwrap_or(2))),
-            )
+            Some(options.taylor.unwrap_or(beyond_twice(options.order.unwrap_or(2))))
         },
         definition: None,
         signed: true,
@@ -146,11 +142,7 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         takes: &[Choice::Order, Choice::Taylor, Choice::Hbar],
         sees: Sees::TaylorPolynomial,
         rounded_degree: |options, _| {
-            Some(
-                options
-                    .taylor
-                    .unwrap_or(beyond_twice(options.order.unwrap_or(2))),
-            )
+            Some(options.taylor.unwrap_or(beyond_twice(options.order.unwrap_or(2))))
         },
         definition: None,
         signed: true,
@@ -189,21 +181,14 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         inertia: Some(inertia::ENERGY_BALANCE),
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
-        method: Method::MaxMin,
-        solve: max_min::solve,
-        ..OF_THE_SHARED_INTEGRAL
-    },
+    Entry { method: Method::MaxMin, solve: max_min::solve, ..OF_THE_SHARED_INTEGRAL },
     Entry {
         method: Method::AmplitudeFrequency,
         solve: amplitude_frequency::solve,
         definition: Some(amplitude_frequency::by_definition),
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
-        inertia: Some(inertia::HAMILTONIAN),
-        ..OF_THE_SHARED_INTEGRAL
-    },
+    Entry { inertia: Some(inertia::HAMILTONIAN), ..OF_THE_SHARED_INTEGRAL },
     Entry {
         method: Method::VariationalIteration,
         solve: variational_iteration::solve,
@@ -244,9 +229,7 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         takes: &[Choice::Degrees, Choice::Cycle],
         sees: Sees::Derivatives,
         rounded_degree: |options, _| {
-            Some(beyond_twice(
-                options.degrees.map_or(3, Degrees::sum).saturating_add(1),
-            ))
+            Some(beyond_twice(options.degrees.map_or(3, Degrees::sum).saturating_add(1)))
         },
         definition: None,
         signed: true,

@@ -98,11 +98,7 @@ pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
         };
         // The lower power first, where both are numbers.
         let lower_is_first = p.as_number()? < q.as_number()?;
-        let (lower, power) = if lower_is_first {
-            (c, q - p)
-        } else {
-            (d, p - q)
-        };
+        let (lower, power) = if lower_is_first { (c, q - p) } else { (d, p - q) };
         let other = if lower_is_first { d } else { c };
         let size = (-&Expr::divide(lower, other).ok()?).expand().ok()?;
         // Whether a sum is positive is for the letters in it.
@@ -115,14 +111,8 @@ pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
         let feeds = if is_sum { -other } else { lower.clone() };
         let (number, factors) = feeds.factors();
         let sign = Expr::number(number.signum());
-        let letters = factors
-            .iter()
-            .filter(|factor| !factor.symbols().is_empty())
-            .cloned();
-        Some(LeadingCycle {
-            amplitude,
-            attracts_where: Some(sign * Expr::product(letters)),
-        })
+        let letters = factors.iter().filter(|factor| !factor.symbols().is_empty()).cloned();
+        Some(LeadingCycle { amplitude, attracts_where: Some(sign * Expr::product(letters)) })
     };
     match PowerLaw::of(rate, a) {
         Some(_) => balance().into_iter().collect(),
@@ -136,11 +126,7 @@ fn steady_by_numbers(a: Symbol, rate: &Expr) -> Option<Vec<LeadingCycle>> {
     /// The amplitudes looked at, in scales: ten to the power of these parts of a hundred.
     const GRID: std::ops::RangeInclusive<i32> = -300..=300;
     const PER_DECADE: f64 = 100.0;
-    let letters: Vec<Symbol> = rate
-        .symbols()
-        .into_iter()
-        .filter(|name| *name != a)
-        .collect();
+    let letters: Vec<Symbol> = rate.symbols().into_iter().filter(|name| *name != a).collect();
     let powers = [ratio(1, 2), ratio(-1, 2)];
     let of_letters = letters.iter().flat_map(|name| {
         let letter = Expr::from(*name);
@@ -150,62 +136,42 @@ fn steady_by_numbers(a: Symbol, rate: &Expr) -> Option<Vec<LeadingCycle>> {
         let power =
             |exponent: &Rational| Expr::power(&letter, &Expr::number(exponent.clone())).ok();
         let roots = powers.iter().map(power);
-        let scales = [Some(letter.clone()), size]
-            .into_iter()
-            .chain(inverses)
-            .chain(roots);
+        let scales = [Some(letter.clone()), size].into_iter().chain(inverses).chain(roots);
         scales.flatten().collect::<Vec<Expr>>()
     });
-    std::iter::once(Expr::one())
-        .chain(of_letters)
-        .find_map(|scale| {
-            let scaled = rate
-                .substitute(a, &(&scale * &Expr::from(a)))
-                .ok()?
-                .expand()
-                .ok()?;
-            // What every term has in common with the first.
-            let (number, factors) = scaled.terms().first()?.factors();
-            let (outside, _): (Vec<Expr>, Vec<Expr>) = factors
-                .iter()
-                .cloned()
-                .partition(|factor| !factor.contains(a));
-            let letters = outside
-                .into_iter()
-                .filter(|factor| !factor.symbols().is_empty());
-            let letters: Vec<Expr> = letters.collect();
-            let common = Expr::product(letters.iter().cloned());
-            // The scale is positive and decides no sign.
-            let (of_scale, _) = scale.base_and_exponent();
-            let signed = letters
-                .iter()
-                .filter(|factor| factor.base_and_exponent().0 != of_scale);
-            let signed = Expr::product(signed.cloned());
-            let quotients = scaled
-                .terms()
-                .iter()
-                .map(|term| Expr::divide(term, &common).ok());
-            let quotient = Expr::sum(quotients.collect::<Option<Vec<Expr>>>()?);
-            if number.is_zero() || quotient.symbols().into_iter().any(|name| name != a) {
-                return None;
-            }
-            let function = CompiledFunction::new(&quotient, &[a]).ok()?;
-            let value = |amplitude: f64| function.call(&[amplitude]);
-            let grid: Vec<f64> = GRID
-                .map(|k| 10.0_f64.powf(f64::from(k) / PER_DECADE))
-                .collect();
-            let cycle = |pair: &[f64]| {
-                let (before, behind) = (value(pair[0]), value(pair[1]));
-                let root =
-                    (before * behind < 0.0).then(|| find_root(value, pair[0], pair[1]).ok())??;
-                let sign = Expr::from(if before > 0.0 { 1 } else { -1 });
-                Some(LeadingCycle {
-                    amplitude: &scale * &Expr::number(rounded(root)),
-                    attracts_where: Some(sign * &signed),
-                })
-            };
-            Some(grid.windows(2).filter_map(cycle).collect())
-        })
+    std::iter::once(Expr::one()).chain(of_letters).find_map(|scale| {
+        let scaled = rate.substitute(a, &(&scale * &Expr::from(a))).ok()?.expand().ok()?;
+        // What every term has in common with the first.
+        let (number, factors) = scaled.terms().first()?.factors();
+        let (outside, _): (Vec<Expr>, Vec<Expr>) =
+            factors.iter().cloned().partition(|factor| !factor.contains(a));
+        let letters = outside.into_iter().filter(|factor| !factor.symbols().is_empty());
+        let letters: Vec<Expr> = letters.collect();
+        let common = Expr::product(letters.iter().cloned());
+        // The scale is positive and decides no sign.
+        let (of_scale, _) = scale.base_and_exponent();
+        let signed = letters.iter().filter(|factor| factor.base_and_exponent().0 != of_scale);
+        let signed = Expr::product(signed.cloned());
+        let quotients = scaled.terms().iter().map(|term| Expr::divide(term, &common).ok());
+        let quotient = Expr::sum(quotients.collect::<Option<Vec<Expr>>>()?);
+        if number.is_zero() || quotient.symbols().into_iter().any(|name| name != a) {
+            return None;
+        }
+        let function = CompiledFunction::new(&quotient, &[a]).ok()?;
+        let value = |amplitude: f64| function.call(&[amplitude]);
+        let grid: Vec<f64> = GRID.map(|k| 10.0_f64.powf(f64::from(k) / PER_DECADE)).collect();
+        let cycle = |pair: &[f64]| {
+            let (before, behind) = (value(pair[0]), value(pair[1]));
+            let root =
+                (before * behind < 0.0).then(|| find_root(value, pair[0], pair[1]).ok())??;
+            let sign = Expr::from(if before > 0.0 { 1 } else { -1 });
+            Some(LeadingCycle {
+                amplitude: &scale * &Expr::number(rounded(root)),
+                attracts_where: Some(sign * &signed),
+            })
+        };
+        Some(grid.windows(2).filter_map(cycle).collect())
+    })
 }
 
 /// A sum of powers of the amplitude: exponents, and what stands before.
@@ -283,10 +249,7 @@ impl PowerLaw {
                 Expr::divide(&rise(&j)?, c).ok()
             }
             [first, second] => {
-                let (k, [p, q]) = (
-                    k.as_number()?,
-                    [first.0.as_number()?, second.0.as_number()?],
-                );
+                let (k, [p, q]) = (k.as_number()?, [first.0.as_number()?, second.0.as_number()?]);
                 let ([(high, c), (low, d)], highest) = match p > q {
                     true => ([(p, &first.1), (q, &second.1)], p),
                     false => ([(q, &second.1), (p, &first.1)], q),
@@ -341,9 +304,7 @@ fn of_one_power(n: &Expr, c: &Expr, start: &Expr) -> Option<(Expr, Option<Expr>)
         return Some((amplitude, ends));
     }
     let excess = (n - &Expr::one()).expand().ok()?;
-    let pace = (&(&excess * c) * &Expr::power(start, &excess).ok()?)
-        .expand()
-        .ok()?;
+    let pace = (&(&excess * c) * &Expr::power(start, &excess).ok()?).expand().ok()?;
     let below = Expr::power(&(Expr::one() - &pace * &time()), &inverse(&excess)?).ok()?;
     let ends = match pace.has_leading_minus() {
         true => None,
@@ -387,10 +348,7 @@ fn bernoulli(c: &Expr, m: &Expr, d: &Expr, start: &Expr) -> Option<(Expr, Option
     }
     let grows = (Expr::one() - exponential(&pace)?) * &(&quotient * &size);
     let below = Expr::power(&(Expr::one() + grows), &root).ok()?;
-    Some((
-        Expr::divide(&(start * &exponential(c)?), &below).ok()?,
-        None,
-    ))
+    Some((Expr::divide(&(start * &exponential(c)?), &below).ok()?, None))
 }
 
 /// `a' = c + d a^2` where both drain.

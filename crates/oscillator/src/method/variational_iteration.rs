@@ -60,9 +60,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Line::equation(start.clone(), &amplitude * &(&omega * &t).cos()?).because("first iterate"),
         Line::equation(first - start, functional).because("correction functional"),
     ];
-    solution
-        .derivation
-        .extend(integral_law(oscillator, &force, &solution)?);
+    solution.derivation.extend(integral_law(oscillator, &force, &solution)?);
     note_even_part_last(&mut solution);
     Ok(solution)
 }

@@ -110,19 +110,10 @@ mod tests {
         ] {
             let (beside, sides) = beside_corners(&force.parse().unwrap(), "x".into()).unwrap();
             let expected: Expr = expected.parse().unwrap();
-            assert!(
-                (&beside - &expected).expand().unwrap().is_zero(),
-                "{force}: {beside}"
-            );
+            assert!((&beside - &expected).expand().unwrap().is_zero(), "{force}: {beside}");
             assert_eq!(sides[0].positive, positive.parse().unwrap(), "{force}");
         }
-        for force in [
-            "abs(x)*x",
-            "H(x - 1/2)",
-            "max(x + a - b, 0)",
-            "H(x + cos(t))",
-            "sgn(x')",
-        ] {
+        for force in ["abs(x)*x", "H(x - 1/2)", "max(x + a - b, 0)", "H(x + cos(t))", "sgn(x')"] {
             let force: Expr = force.parse().unwrap();
             assert_eq!(beside_corners(&force, "x".into()), Ok((force, vec![])));
         }

@@ -91,10 +91,9 @@ impl fmt::Display for Setting {
             Self::Amplitude(convention) => write!(formatter, "amplitude {}", convention.name()),
             Self::Small(name) => write!(formatter, "small {name}"),
             Self::Taylor => formatter.write_str("a Taylor degree"),
-            Self::About {
-                coordinate,
-                position,
-            } => write!(formatter, "about {coordinate}={position}"),
+            Self::About { coordinate, position } => {
+                write!(formatter, "about {coordinate}={position}")
+            }
             Self::Values => formatter.write_str("values"),
             Self::Resonance(driving, linear) => write!(formatter, "resonance {driving}:{linear}"),
         }

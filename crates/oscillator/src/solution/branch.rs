@@ -55,11 +55,7 @@ pub enum Branch {
 /// Follows the branch from rest to `amplitude`, with coefficients good to `precision`, relatively;
 /// `None` where it has no start, or a value is not finite.
 pub(super) fn follow(terms: &[Term], amplitude: f64, precision: f64) -> Option<Branch> {
-    if terms
-        .iter()
-        .any(|term| !term.coefficient.mantissa.is_finite())
-        || !amplitude.is_finite()
-    {
+    if terms.iter().any(|term| !term.coefficient.mantissa.is_finite()) || !amplitude.is_finite() {
         return None;
     }
     if rest_is_unstable(terms) {
@@ -90,10 +86,8 @@ fn rest_is_unstable(terms: &[Term]) -> bool {
             used.filter(move |term| term.frequency == frequency)
         };
         let power = terms().map(|term| term.amplitude).min()?;
-        let values: Vec<Scaled> = terms()
-            .filter(|term| term.amplitude == power)
-            .map(|term| term.coefficient)
-            .collect();
+        let values: Vec<Scaled> =
+            terms().filter(|term| term.amplitude == power).map(|term| term.coefficient).collect();
         let unit = values.iter().map(|value| value.exponent).max()?;
         Some(values.iter().map(|value| value.in_units(unit)).sum::<f64>())
     };
@@ -108,21 +102,14 @@ fn follow_up(terms: &[Term], amplitude: f64, precision: f64) -> Option<Branch> {
     if !amplitude.is_finite() {
         return None;
     }
-    let relation = Relation {
-        highest: terms.iter().map(|term| term.frequency).max()?,
-        terms,
-    };
+    let relation = Relation { highest: terms.iter().map(|term| term.frequency).max()?, terms };
     let target = Scaled::new(amplitude);
     let (mut at, mut z) = relation.start(target)?;
     let (mut length, goal) = (LONGEST / 8.0, target.logarithm());
     while at.logarithm() < goal {
         let left = goal - at.logarithm();
         let step = f64::min(length, left);
-        let next = if step == left {
-            target
-        } else {
-            at.product(Scaled::new(step.exp()))
-        };
+        let next = if step == left { target } else { at.product(Scaled::new(step.exp())) };
         let onward = relation
             .extrapolated(at, z, step)
             .and_then(|predicted| relation.corrected(next, predicted));
@@ -160,10 +147,7 @@ impl Relation<'_> {
     fn values(&self, amplitude: Scaled, k: i64) -> Vec<f64> {
         let value = |term: &Term| {
             let value = term.coefficient.product(amplitude.power(term.amplitude));
-            Scaled {
-                exponent: value.exponent + k * i64::from(term.frequency),
-                ..value
-            }
+            Scaled { exponent: value.exponent + k * i64::from(term.frequency), ..value }
         };
         let values: Vec<Scaled> = self.terms.iter().map(value).collect();
         let sizes = values.iter().filter(|value| value.mantissa != 0.0);
@@ -176,9 +160,8 @@ impl Relation<'_> {
         let mut coefficients =
             vec![0.0; usize::try_from(self.highest).map_or(0, |highest| highest + 1)];
         for (term, value) in self.terms.iter().zip(values) {
-            if let Some(entry) = usize::try_from(term.frequency)
-                .ok()
-                .and_then(|q| coefficients.get_mut(q))
+            if let Some(entry) =
+                usize::try_from(term.frequency).ok().and_then(|q| coefficients.get_mut(q))
             {
                 *entry += value;
             }
@@ -197,25 +180,15 @@ impl Relation<'_> {
             let below = self.highest - term.frequency;
             (below > 0).then(|| f64::from(term.amplitude) / f64::from(below))
         };
-        let used = self
-            .terms
-            .iter()
-            .filter(|term| term.coefficient.mantissa != 0.0);
+        let used = self.terms.iter().filter(|term| term.coefficient.mantissa != 0.0);
         let growth = used.filter_map(exponent).fold(f64::INFINITY, f64::min);
         let decides = |term: &Term| match exponent(term) {
             Some(own) => own == growth,
             None => term.amplitude == 0,
         };
-        let lowest: Vec<Term> = self
-            .terms
-            .iter()
-            .filter(|term| decides(term))
-            .map(|term| Term { ..*term })
-            .collect();
-        let lowest = Relation {
-            terms: &lowest,
-            highest: self.highest,
-        };
+        let lowest: Vec<Term> =
+            self.terms.iter().filter(|term| decides(term)).map(|term| Term { ..*term }).collect();
+        let lowest = Relation { terms: &lowest, highest: self.highest };
         let mut at = amplitude;
         for _ in 0..HALVINGS {
             let z = lowest.largest_root(at)?;
@@ -231,11 +204,7 @@ impl Relation<'_> {
                 }
             }
             if others <= SMALL * leading {
-                let z = if others == 0.0 {
-                    z
-                } else {
-                    self.newton(at, z)?
-                };
+                let z = if others == 0.0 { z } else { self.newton(at, z)? };
                 return Some((at, z));
             }
             at.exponent -= 1;
@@ -249,10 +218,7 @@ impl Relation<'_> {
             let value = term.coefficient.product(amplitude.power(term.amplitude));
             value.logarithm()
         };
-        let leading = self
-            .terms
-            .iter()
-            .find(|term| term.frequency == self.highest)?;
+        let leading = self.terms.iter().find(|term| term.frequency == self.highest)?;
         let bound = self
             .terms
             .iter()
@@ -265,10 +231,8 @@ impl Relation<'_> {
         if !bound.is_finite() {
             return None;
         }
-        let start = Scaled {
-            mantissa: 1.0,
-            exponent: (bound / std::f64::consts::LN_2).ceil() as i64 + 1,
-        };
+        let start =
+            Scaled { mantissa: 1.0, exponent: (bound / std::f64::consts::LN_2).ceil() as i64 + 1 };
         self.newton(amplitude, start)
     }
 
@@ -298,10 +262,7 @@ impl Relation<'_> {
         let settled = last <= 1e-12 * u.abs();
         (settled && u > 0.0 && u.is_finite()).then(|| {
             let root = Scaled::new(u);
-            Scaled {
-                exponent: root.exponent + start.exponent,
-                ..root
-            }
+            Scaled { exponent: root.exponent + start.exponent, ..root }
         })
     }
 
@@ -468,13 +429,7 @@ mod tests {
         // z^2 - 2 L z + L^2 - D/4 = 0 of order 2 for x - 1.9 x^3 + 1.17 x^5: the roots L +-
         // sqrt(D)/2 come close and part again.
         let l = |s: f64| 0.5 - 57.0 / 80.0 * s + 117.0 / 320.0 * s * s;
-        let d = [
-            1.0,
-            -57.0 / 20.0,
-            2019.0 / 640.0,
-            -24453.0 / 16000.0,
-            77571.0 / 256000.0,
-        ];
+        let d = [1.0, -57.0 / 20.0, 2019.0 / 640.0, -24453.0 / 16000.0, 77571.0 / 256000.0];
         let term = |coefficient: f64, amplitude, frequency| Term {
             coefficient: Scaled::new(coefficient),
             amplitude,
@@ -524,9 +479,6 @@ mod tests {
         };
         let ((exact, rounding), (changed, _)) = (at(0.0), at(1e-12));
         let moved = (changed / exact - 1.0).abs();
-        assert!(
-            moved < 5.0 * rounding && rounding < 100.0 * moved,
-            "{moved} {rounding}"
-        );
+        assert!(moved < 5.0 * rounding && rounding < 100.0 * moved, "{moved} {rounding}");
     }
 }

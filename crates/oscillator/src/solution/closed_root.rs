@@ -39,41 +39,27 @@ fn normalised(relation: &Polynomial, amplitude: Symbol) -> Option<[Vec<Rational>
         parts[place].add_term(monomial.without(omega), number.clone());
     }
     let at_rest = |part: &Polynomial| {
-        let mut free = part
-            .terms()
-            .filter(|(monomial, _)| monomial.exponent(amplitude) == 0);
+        let mut free = part.terms().filter(|(monomial, _)| monomial.exponent(amplitude) == 0);
         let (monomial, number) = free.next()?;
-        free.next()
-            .is_none()
-            .then(|| (monomial.power(-1), Rational::one() / number))
+        free.next().is_none().then(|| (monomial.power(-1), Rational::one() / number))
     };
     let [leading, middle] = [at_rest(&parts[0])?, at_rest(&parts[1])?];
-    let last = (
-        leading.0.power(-1).product(&middle.0.power(2)),
-        &middle.1 * &middle.1 / &leading.1,
-    );
+    let last =
+        (leading.0.power(-1).product(&middle.0.power(2)), &middle.1 * &middle.1 / &leading.1);
     let factors = [leading, middle, last];
-    let scaled = parts
-        .iter()
-        .zip(&factors)
-        .map(|(part, (monomial, number))| {
-            let part = part.times_monomial(monomial);
-            part.map(|own| own * number)
-        });
+    let scaled = parts.iter().zip(&factors).map(|(part, (monomial, number))| {
+        let part = part.times_monomial(monomial);
+        part.map(|own| own * number)
+    });
     let scaled: Vec<Polynomial> = scaled.collect();
-    let of_amplitude = scaled
-        .iter()
-        .flat_map(Polynomial::terms)
-        .map(|(monomial, _)| monomial);
+    let of_amplitude = scaled.iter().flat_map(Polynomial::terms).map(|(monomial, _)| monomial);
     // The least power of the amplitude is that of m, or all are powers of its root: both are tried.
     let least = of_amplitude
         .filter(|monomial| monomial.exponent(amplitude) > 0)
         .min_by_key(|monomial| monomial.exponent(amplitude))?
         .clone();
-    let univariate: Option<Vec<Vec<Rational>>> = scaled
-        .iter()
-        .map(|part| in_powers_of(part, &least, amplitude))
-        .collect();
+    let univariate: Option<Vec<Vec<Rational>>> =
+        scaled.iter().map(|part| in_powers_of(part, &least, amplitude)).collect();
     univariate?.try_into().ok()
 }
 
@@ -138,14 +124,9 @@ fn ends_for_good([alpha, beta, gamma]: &[Vec<Rational>; 3], sign: i64) -> bool {
     }
     places.sort_by(f64::total_cmp);
     let farthest = places.last().map_or(1.0, |last| 2.0 * last + 1.0);
-    let between = places
-        .windows(2)
-        .map(|pair| 0.5 * (pair[0] + pair[1]))
-        .chain([farthest]);
+    let between = places.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).chain([farthest]);
     let value = |part: &[Rational], m: f64| {
-        part.iter()
-            .rev()
-            .fold(0.0, |sum, number| sum * m + to_f64(number))
+        part.iter().rev().fold(0.0, |sum, number| sum * m + to_f64(number))
     };
     let is_positive = |m: f64| {
         let root = value(&discriminant, m).sqrt();
@@ -162,23 +143,16 @@ mod tests {
 
     fn of(relation: &str) -> bool {
         let relation = parse_expression(relation).expect("an expression");
-        let relation = relation
-            .expand()
-            .expect("a sum")
-            .to_polynomial(&mut |_| None)
-            .expect("no error");
+        let relation =
+            relation.expand().expect("a sum").to_polynomial(&mut |_| None).expect("no error");
         is_the_branch(&relation.expect("a polynomial"), "A".into())
     }
 
     #[test]
     fn a_root_that_comes_back_is_told_from_one_that_ends() {
         // Real on both sides of -0.94 and -2.26, beyond which it is negative.
-        assert!(of(
-            "omega^4 - omega^2 - 3*eps*omega^2*A^2/4 + 3*eps^2*A^4/128"
-        ));
-        assert!(of(
-            "omega^4 - k*omega^2 - 3*eps*omega^2*A^2/4 + 3*eps^2*A^4/128"
-        ));
+        assert!(of("omega^4 - omega^2 - 3*eps*omega^2*A^2/4 + 3*eps^2*A^4/128"));
+        assert!(of("omega^4 - k*omega^2 - 3*eps*omega^2*A^2/4 + 3*eps^2*A^4/128"));
         // The circle z^2 - z + A^2 = 0 turns back for good.
         assert!(of("omega^4 - omega^2 + A^2"));
         // z^2 - z + (A^2 - A^4)/3: the discriminant 1 - 4*(A^2 - A^4)/3 is positive throughout, at

@@ -68,10 +68,7 @@ pub struct System {
 impl Law {
     /// omega^2 alone, as a polynomial.
     pub fn squared(value: Polynomial) -> Self {
-        Self::Series {
-            squared: value,
-            frequency: None,
-        }
+        Self::Series { squared: value, frequency: None }
     }
 
     /// omega, where the law gives it as a polynomial.
@@ -87,10 +84,7 @@ impl Law {
     pub fn frequency_squared(&self) -> Option<&Polynomial> {
         match self {
             Self::Series { squared, .. } => Some(squared),
-            Self::Relation {
-                root: Some(Root::Polynomial(squared)),
-                ..
-            } => Some(squared),
+            Self::Relation { root: Some(Root::Polynomial(squared)), .. } => Some(squared),
             _ => None,
         }
     }
@@ -106,11 +100,9 @@ impl Law {
     /// The expression for omega or omega^2 that is no polynomial.
     pub fn closed_form(&self) -> Option<&ClosedForm> {
         match self {
-            Self::Closed(form)
-            | Self::Relation {
-                root: Some(Root::Closed(form)),
-                ..
-            } => Some(form),
+            Self::Closed(form) | Self::Relation { root: Some(Root::Closed(form)), .. } => {
+                Some(form)
+            }
             _ => None,
         }
     }
@@ -138,19 +130,16 @@ impl Law {
 
     /// Every polynomial in it.
     pub fn polynomials(&self) -> impl Iterator<Item = &Polynomial> {
-        [self.frequency(), self.frequency_squared(), self.relation()]
-            .into_iter()
-            .flatten()
+        [self.frequency(), self.frequency_squared(), self.relation()].into_iter().flatten()
     }
 
     /// The law with every polynomial changed.
     #[must_use]
     pub fn map(&self, change: impl Fn(&Polynomial) -> Polynomial) -> Self {
         match self {
-            Self::Series { squared, frequency } => Self::Series {
-                squared: change(squared),
-                frequency: frequency.as_ref().map(change),
-            },
+            Self::Series { squared, frequency } => {
+                Self::Series { squared: change(squared), frequency: frequency.as_ref().map(change) }
+            }
             Self::Frequency(frequency) => Self::Frequency(change(frequency)),
             Self::Relation { relation, root } => Self::Relation {
                 relation: change(relation),
@@ -167,19 +156,12 @@ impl Law {
     #[must_use]
     pub fn with_numbers(self, change: &dyn Fn(&Rational) -> Rational) -> Self {
         let changed = |value: &Expr| value.with_numbers(change).unwrap_or_else(|_| value.clone());
-        let closed = |form: ClosedForm| ClosedForm {
-            value: changed(&form.value),
-            ..form
-        };
+        let closed = |form: ClosedForm| ClosedForm { value: changed(&form.value), ..form };
         match self {
             Self::Closed(form) => Self::Closed(closed(form)),
-            Self::Relation {
-                relation,
-                root: Some(Root::Closed(form)),
-            } => Self::Relation {
-                relation,
-                root: Some(Root::Closed(closed(form))),
-            },
+            Self::Relation { relation, root: Some(Root::Closed(form)) } => {
+                Self::Relation { relation, root: Some(Root::Closed(closed(form))) }
+            }
             Self::Quadrature(lines) => {
                 Self::Quadrature(lines.iter().map(|line| line.with_numbers(change)).collect())
             }
@@ -195,12 +177,9 @@ impl Law {
     #[must_use]
     pub(crate) fn with_phase(self, name: Symbol) -> Self {
         match self {
-            Self::Quadrature(lines) => Self::Quadrature(
-                lines
-                    .into_iter()
-                    .map(|line| line.with_phase(name))
-                    .collect(),
-            ),
+            Self::Quadrature(lines) => {
+                Self::Quadrature(lines.into_iter().map(|line| line.with_phase(name)).collect())
+            }
             other => other,
         }
     }
@@ -208,19 +187,10 @@ impl Law {
     /// Whether a symbol stands in it; integrals are taken along the motion, so the amplitude stands
     /// in each.
     pub fn contains(&self, symbol: Symbol) -> bool {
-        let equations = self
-            .system()
-            .into_iter()
-            .flat_map(|system| &system.equations);
-        let forms = self
-            .closed_form()
-            .map(|form| &form.value)
-            .into_iter()
-            .chain(equations);
+        let equations = self.system().into_iter().flat_map(|system| &system.equations);
+        let forms = self.closed_form().map(|form| &form.value).into_iter().chain(equations);
         self.quadrature().is_some()
-            || self
-                .polynomials()
-                .any(|law| law.symbols().contains(&symbol))
+            || self.polynomials().any(|law| law.symbols().contains(&symbol))
             || forms.into_iter().any(|form| form.contains(symbol))
     }
 }
@@ -252,10 +222,9 @@ impl Law {
             _ => None,
         };
         let before = match self {
-            Self::Relation {
-                relation,
-                root: Some(Root::Closed(_)),
-            } => Some(Shown::Relation(relation)),
+            Self::Relation { relation, root: Some(Root::Closed(_)) } => {
+                Some(Shown::Relation(relation))
+            }
             _ => None,
         };
         before.into_iter().chain([shown]).chain(beside).collect()
@@ -265,20 +234,14 @@ impl Law {
     pub fn in_one_line(&self) -> Shown<'_> {
         match self {
             Self::Series { squared, .. }
-            | Self::Relation {
-                root: Some(Root::Polynomial(squared)),
-                ..
-            } => Shown::Squared(squared),
+            | Self::Relation { root: Some(Root::Polynomial(squared)), .. } => {
+                Shown::Squared(squared)
+            }
             Self::Frequency(frequency) => Shown::Frequency(frequency),
-            Self::Closed(form)
-            | Self::Relation {
-                root: Some(Root::Closed(form)),
-                ..
-            } => Shown::Closed(form),
-            Self::Relation {
-                relation,
-                root: None,
-            } => Shown::Relation(relation),
+            Self::Closed(form) | Self::Relation { root: Some(Root::Closed(form)), .. } => {
+                Shown::Closed(form)
+            }
+            Self::Relation { relation, root: None } => Shown::Relation(relation),
             Self::Quadrature(lines) => Shown::Quadrature(lines),
             Self::System(system) => Shown::System(system),
         }

@@ -34,11 +34,7 @@ pub enum LinearDrive {
 impl fmt::Display for LinearDrive {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Steady {
-                coordinate,
-                motion,
-                amplitude,
-            } => {
+            Self::Steady { coordinate, motion, amplitude } => {
                 write!(
                     formatter,
                     "once the free part has died out the steady motion is left: {coordinate} = {motion}"

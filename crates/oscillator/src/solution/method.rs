@@ -86,48 +86,32 @@ impl Method {
     fn words(self) -> (&'static str, &'static str, Counts) {
         match self {
             Self::LindstedtPoincare => ("lindstedt-poincare", "Lindstedt-Poincare", Counts::Powers),
-            Self::HomotopyPerturbation => (
-                "homotopy-perturbation",
-                "Homotopy perturbation",
-                Counts::PowersOfBookkeeping,
-            ),
-            Self::HomotopyAnalysis => (
-                "homotopy-analysis",
-                "Homotopy analysis",
-                Counts::Corrections,
-            ),
-            Self::IterationPerturbation => (
-                "iteration-perturbation",
-                "Iteration perturbation",
-                Counts::Passes,
-            ),
-            Self::ParameterExpansion => (
-                "parameter-expansion",
-                "Parameter expansion",
-                Counts::PowersOfBookkeeping,
-            ),
+            Self::HomotopyPerturbation => {
+                ("homotopy-perturbation", "Homotopy perturbation", Counts::PowersOfBookkeeping)
+            }
+            Self::HomotopyAnalysis => {
+                ("homotopy-analysis", "Homotopy analysis", Counts::Corrections)
+            }
+            Self::IterationPerturbation => {
+                ("iteration-perturbation", "Iteration perturbation", Counts::Passes)
+            }
+            Self::ParameterExpansion => {
+                ("parameter-expansion", "Parameter expansion", Counts::PowersOfBookkeeping)
+            }
             Self::HarmonicBalance => ("harmonic-balance", "Harmonic balance", Counts::Harmonics),
             Self::EnergyBalance => ("energy-balance", "Energy balance", Counts::Nothing),
             Self::MaxMin => ("max-min", "Max-min approach", Counts::Nothing),
-            Self::AmplitudeFrequency => (
-                "amplitude-frequency",
-                "Amplitude-frequency formulation",
-                Counts::Nothing,
-            ),
+            Self::AmplitudeFrequency => {
+                ("amplitude-frequency", "Amplitude-frequency formulation", Counts::Nothing)
+            }
             Self::Hamiltonian => ("hamiltonian", "Hamiltonian approach", Counts::Nothing),
-            Self::VariationalIteration => (
-                "variational-iteration",
-                "Variational iteration",
-                Counts::Nothing,
-            ),
+            Self::VariationalIteration => {
+                ("variational-iteration", "Variational iteration", Counts::Nothing)
+            }
             Self::FrequencyFormula => ("frequency-formula", "Frequency formula", Counts::Nothing),
             Self::Averaging => ("averaging", "Averaging", Counts::Powers),
             Self::Pade => ("pade", "Pade approximant", Counts::Degrees(2)),
-            Self::HermitePade => (
-                "hermite-pade",
-                "Hermite-Pade approximant",
-                Counts::Degrees(3),
-            ),
+            Self::HermitePade => ("hermite-pade", "Hermite-Pade approximant", Counts::Degrees(3)),
             Self::MultipleScales => ("multiple-scales", "Multiple scales", Counts::Powers),
             Self::Exact => ("exact", "Exact frequency", Counts::Nothing),
         }

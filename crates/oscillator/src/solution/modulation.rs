@@ -90,10 +90,7 @@ pub struct Transient {
 impl Release {
     /// To leading order: `a(0) = A`, `psi(0) = 0`.
     pub fn at_start() -> Self {
-        Self {
-            amplitude: Expr::from(AmplitudeConvention::Initial.symbol()),
-            phase: Expr::zero(),
-        }
+        Self { amplitude: Expr::from(AmplitudeConvention::Initial.symbol()), phase: Expr::zero() }
     }
 
     /// Whether it is that.
@@ -138,10 +135,8 @@ impl Solution {
     /// The periodic motion at an amplitude that stays: the smallest that attracts for small
     /// positive parameters, else the smallest; `None` where none is known.
     pub fn on_cycle(&self) -> Option<Self> {
-        let modulation = self
-            .modulation
-            .as_ref()
-            .filter(|modulation| modulation.resonance.is_none())?;
+        let modulation =
+            self.modulation.as_ref().filter(|modulation| modulation.resonance.is_none())?;
         let attracts = |cycle: &LeadingCycle| {
             let condition = cycle.attracts_where.as_ref();
             condition.is_some_and(|condition| !condition.has_leading_minus())
@@ -154,10 +149,7 @@ impl Solution {
             Some(unit) => unit,
             None => {
                 let symbol = fresh(&format!("{FIRST_HARMONIC}0"), &self.names());
-                periodic.definitions.push(Definition {
-                    symbol,
-                    meaning: amplitude,
-                });
+                periodic.definitions.push(Definition { symbol, meaning: amplitude });
                 Polynomial::symbol(symbol)
             }
         };
@@ -183,9 +175,7 @@ impl Solution {
         periodic.modulation = None;
         // What tells where a motion began is nothing of the cycle.
         let start = AmplitudeConvention::Initial.symbol();
-        periodic
-            .definitions
-            .retain(|definition| !definition.meaning.contains(start));
+        periodic.definitions.retain(|definition| !definition.meaning.contains(start));
         Some(periodic)
     }
 }

@@ -449,10 +449,9 @@ impl fmt::Display for CrossWell {
                 write!(formatter, "{from} < |{AMPLITUDE}| < {to}")?
             }
             (Some(from), CrossWellEnd::Never) => write!(formatter, "|{AMPLITUDE}| > {from}")?,
-            (Some(from), CrossWellEnd::Somewhere) => write!(
-                formatter,
-                "|{AMPLITUDE}| > {from}, up to the next unstable one"
-            )?,
+            (Some(from), CrossWellEnd::Somewhere) => {
+                write!(formatter, "|{AMPLITUDE}| > {from}, up to the next unstable one")?
+            }
             (None, CrossWellEnd::Somewhere) => write!(
                 formatter,
                 "where the potential energy at {AMPLITUDE} is above that of the equilibrium, up to the next unstable one"
@@ -477,12 +476,7 @@ impl Note {
     /// continues the first order.
     pub(crate) fn take_root_of_first_order(&mut self) {
         if let Self::Cut(
-            Cut::TruncatedRelation {
-                linear_frequency, ..
-            }
-            | Cut::Passes {
-                linear_frequency, ..
-            },
+            Cut::TruncatedRelation { linear_frequency, .. } | Cut::Passes { linear_frequency, .. },
         ) = self
         {
             *linear_frequency = None;
@@ -718,10 +712,9 @@ fn action(formatter: &mut fmt::Formatter<'_>, rate: &Expr, pendulum: bool) -> fm
         "for any amplitude the action J, 1/(2*pi) of the area of the orbit, decays as J({AMPLITUDE})*exp(-({rate})*t)"
     )?;
     match pendulum {
-        true => write!(
-            formatter,
-            "; J = (8/pi)*(E(m) - (1 - m)*K(m)), m = sin({FIRST_HARMONIC}/2)^2"
-        ),
+        true => {
+            write!(formatter, "; J = (8/pi)*(E(m) - (1 - m)*K(m)), m = sin({FIRST_HARMONIC}/2)^2")
+        }
         false => Ok(()),
     }
 }
@@ -764,10 +757,7 @@ impl fmt::Display for Instant {
             Self::EighthOfPeriod => "an eighth of the period",
             Self::CosineSquared => "a twelfth of the period",
         };
-        write!(
-            formatter,
-            "one term, collocated at {at}: the instant is a convention of the method"
-        )
+        write!(formatter, "one term, collocated at {at}: the instant is a convention of the method")
     }
 }
 
@@ -776,16 +766,8 @@ fn balanced(
     harmonics: &[usize],
     by_numbers: bool,
 ) -> fmt::Result {
-    let how = if by_numbers {
-        "; solved by numbers at an amplitude"
-    } else {
-        ""
-    };
-    write!(
-        formatter,
-        "harmonics {} balanced, those above left out{how}",
-        listed(harmonics)
-    )
+    let how = if by_numbers { "; solved by numbers at an amplitude" } else { "" };
+    write!(formatter, "harmonics {} balanced, those above left out{how}", listed(harmonics))
 }
 
 fn agreement(
@@ -800,67 +782,46 @@ fn agreement(
         _ => format!("{small}^{step}"),
     };
     match degrees {
-        Degrees::Quotient(above, below) => write!(
-            formatter,
-            "degree {above} over degree {below} in {variable}"
-        )?,
+        Degrees::Quotient(above, below) => {
+            write!(formatter, "degree {above} over degree {below} in {variable}")?
+        }
         Degrees::Quadratic(p, q, r) => write!(formatter, "degrees {p}, {q} and {r} in {variable}")?,
     }
-    write!(
-        formatter,
-        ": agrees with the exact series through {small}^{}",
-        step * order
-    )
+    write!(formatter, ": agrees with the exact series through {small}^{}", step * order)
 }
 
 fn corner_sides(formatter: &mut fmt::Formatter<'_>, sides: &[CornerSide]) -> fmt::Result {
-    let mut conditions: Vec<String> = sides
-        .iter()
-        .map(|side| format!("{} > 0", side.positive))
-        .collect();
+    let mut conditions: Vec<String> =
+        sides.iter().map(|side| format!("{} > 0", side.positive)).collect();
     conditions.dedup();
     write!(formatter, "for {}: ", conditions.join(", "))?;
     if sides.iter().all(|side| side.taken.is_zero()) {
         return formatter.write_str("no barrier acts at rest");
     }
-    let sides: Vec<String> = sides
-        .iter()
-        .map(|side| format!("{} is {}", side.corner, side.taken))
-        .collect();
+    let sides: Vec<String> =
+        sides.iter().map(|side| format!("{} is {}", side.corner, side.taken)).collect();
     write!(formatter, "near rest {}", sides.join(", "))
 }
 
 impl fmt::Display for Cut {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Truncated {
-                small,
-                order,
-                marks,
-            } => truncated(formatter, small, *order, marks.as_ref()),
+            Self::Truncated { small, order, marks } => {
+                truncated(formatter, small, *order, marks.as_ref())
+            }
             Self::FirstOrderOnly { small } => write!(
                 formatter,
                 "truncated after {small}^1, the highest order for a force that is no polynomial; an expansion for small {small}"
             ),
-            Self::TruncatedRelation {
-                bookkeeping,
-                order,
-                linear_frequency,
-            } => {
+            Self::TruncatedRelation { bookkeeping, order, linear_frequency } => {
                 write!(formatter, "truncated after {bookkeeping}^{order}; ")?;
                 root(formatter, *linear_frequency)
             }
-            Self::Passes {
-                passes,
-                linear_frequency,
-            } => {
+            Self::Passes { passes, linear_frequency } => {
                 write!(formatter, "after {passes} passes; ")?;
                 root(formatter, *linear_frequency)
             }
-            Self::Corrections {
-                order: 1,
-                embedding,
-            } => write!(
+            Self::Corrections { order: 1, embedding } => write!(
                 formatter,
                 "order 1: the first frequency alone, the terms without {embedding}"
             ),
@@ -901,10 +862,9 @@ fn truncated(
             formatter,
             "truncated after {names}^{order}; {names} marks all terms but the linear one, which are taken to be small, and is {value} in this equation"
         ),
-        (None, 1) => write!(
-            formatter,
-            "truncated after {names}^{order}; an expansion for small {names}"
-        ),
+        (None, 1) => {
+            write!(formatter, "truncated after {names}^{order}; an expansion for small {names}")
+        }
         (None, _) => write!(
             formatter,
             "truncated after order {order} in {names} together; an expansion for small {names}"
@@ -966,20 +926,9 @@ fn bounds(
             decimal(*place)
         );
     }
-    write!(
-        formatter,
-        "{FREQUENCY}^2 lies between {at_rest} and {at_turning}"
-    )?;
-    if let BoundsHold::While {
-        slope,
-        coordinate,
-        positive,
-    } = range
-    {
-        write!(
-            formatter,
-            " while {slope} keeps its sign for 0 < {coordinate} < {AMPLITUDE}"
-        )?;
+    write!(formatter, "{FREQUENCY}^2 lies between {at_rest} and {at_turning}")?;
+    if let BoundsHold::While { slope, coordinate, positive } = range {
+        write!(formatter, " while {slope} keeps its sign for 0 < {coordinate} < {AMPLITUDE}")?;
         if let Some(letters) = positive {
             write!(formatter, ", as it does for positive {}", listed(letters))?;
         }
@@ -1008,12 +957,7 @@ impl fmt::Display for Poles {
 
 impl fmt::Display for FollowedRoot {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            variable,
-            sign,
-            crossings,
-            ends,
-        } = self;
+        let Self { variable, sign, crossings, ends } = self;
         let mut sentences = vec![];
         if !crossings.is_empty() {
             let places: Vec<String> = crossings.iter().map(|place| decimal(*place)).collect();
@@ -1027,10 +971,7 @@ impl fmt::Display for FollowedRoot {
                 RootEnd::Meets => "where it meets the other one",
                 RootEnd::Infinite => "where it is infinite",
             };
-            sentences.push(format!(
-                "the root ends at {variable} = {}, {why}",
-                decimal(*place)
-            ));
+            sentences.push(format!("the root ends at {variable} = {}, {why}", decimal(*place)));
         }
         formatter.write_str(&sentences.join("; "))
     }

@@ -44,19 +44,13 @@ impl PlanePolynomial {
         for (monomial, number) in polynomial.terms() {
             let exponents = [u, v].map(|name| monomial.exponent(name));
             let rest = monomial.without(u).without(v);
-            let coefficient = coefficients
-                .entry(exponents)
-                .or_insert_with(num_traits::Zero::zero);
+            let coefficient = coefficients.entry(exponents).or_insert_with(num_traits::Zero::zero);
             coefficient.add_term(rest, number.clone());
         }
         let value = |(exponents, coefficient): (&[i32; 2], &Polynomial)| {
             Some((solution.evaluate(coefficient, value_of).ok()?, *exponents))
         };
-        coefficients
-            .iter()
-            .map(value)
-            .collect::<Option<_>>()
-            .map(Self)
+        coefficients.iter().map(value).collect::<Option<_>>().map(Self)
     }
 
     /// The value, and the slopes by both coordinates.
@@ -78,9 +72,7 @@ impl PlanePolynomial {
     pub(super) fn size_above(&self, degree: i32, radius: f64) -> f64 {
         let across = radius * std::f64::consts::FRAC_1_SQRT_2;
         let terms = self.0.iter().filter(|(_, [i, j])| i + j > degree);
-        terms
-            .map(|(factor, [i, j])| factor.abs() * across.powi(i + j))
-            .sum()
+        terms.map(|(factor, [i, j])| factor.abs() * across.powi(i + j)).sum()
     }
 
     fn degree(&self) -> i32 {
@@ -168,10 +160,7 @@ impl Powers {
     }
 
     fn value(&self, x: f64) -> f64 {
-        self.coefficients
-            .iter()
-            .rev()
-            .fold(0.0, |sum, c| sum * x + c)
+        self.coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
     }
 }
 
@@ -197,25 +186,17 @@ impl Field {
             |rate: &Polynomial| PlanePolynomial::new(solution, rate, plane.coordinates, value_of);
         let [u, v] = plane.rates.each_ref().map(numeric);
         let rates = [u?, v?];
-        let finite = rates
-            .iter()
-            .flat_map(|rate| &rate.0)
-            .all(|(factor, _)| factor.is_finite());
+        let finite = rates.iter().flat_map(|rate| &rate.0).all(|(factor, _)| factor.is_finite());
         finite.then_some(Self { rates, times })
     }
 
     /// Both rates.
     pub(super) fn rates_at(&self, place: [f64; 2]) -> [f64; 2] {
-        self.rates
-            .each_ref()
-            .map(|rate| rate.value_and_slopes(place)[0])
+        self.rates.each_ref().map(|rate| rate.value_and_slopes(place)[0])
     }
 
     fn jacobian(&self, place: [f64; 2]) -> Matrix2<f64> {
-        let [[_, a, b], [_, c, d]] = self
-            .rates
-            .each_ref()
-            .map(|rate| rate.value_and_slopes(place));
+        let [[_, a, b], [_, c, d]] = self.rates.each_ref().map(|rate| rate.value_and_slopes(place));
         Matrix2::new(a, b, c, d)
     }
 
@@ -318,11 +299,7 @@ impl Field {
             let turns = (0..common)
                 .map(|k| (angle + std::f64::consts::TAU * f64::from(k)) / f64::from(common));
             for angle in turns {
-                self.keep(
-                    self.settled_from(on_circle(amplitude, angle)),
-                    amplitude,
-                    &mut places,
-                );
+                self.keep(self.settled_from(on_circle(amplitude, angle)), amplitude, &mut places);
             }
         }
         Some(places)
@@ -374,41 +351,25 @@ impl Field {
         const ANGLES: usize = 72;
         /// The least part of their sizes that counts where they almost vanish.
         const LEAST: f64 = 1e-2;
-        let degree = self
-            .rates
-            .iter()
-            .map(PlanePolynomial::degree)
-            .max()
-            .unwrap_or(0);
+        let degree = self.rates.iter().map(PlanePolynomial::degree).max().unwrap_or(0);
         let size = |wanted: &dyn Fn(i32) -> bool, radius: f64| -> f64 {
             let terms = self.rates.iter().flat_map(|rate| &rate.0);
             let terms = terms.filter(|(_, [i, j])| wanted(i + j));
-            terms
-                .map(|(factor, [i, j])| factor.abs() * radius.powi(i + j))
-                .sum()
+            terms.map(|(factor, [i, j])| factor.abs() * radius.powi(i + j)).sum()
         };
         let leading = |k: usize| {
             let place = on_circle(1.0, std::f64::consts::TAU * k as f64 / ANGLES as f64);
             let value = |rate: &PlanePolynomial| -> f64 {
                 let terms = rate.0.iter().filter(|(_, [i, j])| i + j == degree);
-                terms
-                    .map(|(factor, [i, j])| factor * place[0].powi(*i) * place[1].powi(*j))
-                    .sum()
+                terms.map(|(factor, [i, j])| factor * place[0].powi(*i) * place[1].powi(*j)).sum()
             };
-            self.rates
-                .each_ref()
-                .map(value)
-                .into_iter()
-                .fold(0.0, f64::hypot)
+            self.rates.each_ref().map(value).into_iter().fold(0.0, f64::hypot)
         };
         let least = (0..ANGLES).map(leading).fold(f64::INFINITY, f64::min);
         let least = least.max(LEAST * size(&|own| own == degree, 1.0));
         let excess = |log: f64| {
             let radius = log.exp();
-            let (own, others) = (
-                least * radius.powi(degree),
-                size(&|own| own < degree, radius),
-            );
+            let (own, others) = (least * radius.powi(degree), size(&|own| own < degree, radius));
             (own - others) / (own + others)
         };
         /// Logarithms of the smallest and the largest radius.
@@ -470,22 +431,15 @@ impl Field {
         let power = |k: usize| half.powi(i32::try_from(k).unwrap_or(i32::MAX));
         let excluded = |table: &[Vec<f64>]| {
             let terms = terms(table);
-            let others: f64 = terms
-                .iter()
-                .skip(1)
-                .map(|(i, j, value)| value.abs() * power(i + j))
-                .sum();
+            let others: f64 =
+                terms.iter().skip(1).map(|(i, j, value)| value.abs() * power(i + j)).sum();
             table[0][0].abs() > others
         };
         if tables.iter().any(|table| excluded(table)) {
             return Look::Nothing;
         }
         let entry = |table: &[Vec<f64>], i: usize, j: usize| -> f64 {
-            table
-                .get(i)
-                .and_then(|row| row.get(j))
-                .copied()
-                .unwrap_or(0.0)
+            table.get(i).and_then(|row| row.get(j)).copied().unwrap_or(0.0)
         };
         let [one, other] = &tables;
         let slopes = Matrix2::new(
@@ -494,9 +448,8 @@ impl Field {
             entry(other, 1, 0),
             entry(other, 0, 1),
         );
-        let Some(inverse) = slopes
-            .try_inverse()
-            .filter(|inverse| inverse.iter().all(|value| value.is_finite()))
+        let Some(inverse) =
+            slopes.try_inverse().filter(|inverse| inverse.iter().all(|value| value.is_finite()))
         else {
             return Look::Unknown;
         };
@@ -537,9 +490,7 @@ enum Look {
 /// `D`, `D cos(g theta)` and `D sin(g theta)`.
 fn solved([[rate, rate_cos, rate_sin], [turn, turn_cos, turn_sin]]: &[Wave; 2]) -> [Powers; 3] {
     [
-        rate_cos
-            .product(turn_sin)
-            .minus(&rate_sin.product(turn_cos)),
+        rate_cos.product(turn_sin).minus(&rate_sin.product(turn_cos)),
         rate_sin.product(turn).minus(&rate.product(turn_sin)),
         turn_cos.product(rate).minus(&rate_cos.product(turn)),
     ]
@@ -566,19 +517,12 @@ fn expanded([i, j]: [i32; 2]) -> BTreeMap<i32, f64> {
 fn amplitudes(relation: &[f64]) -> Vec<f64> {
     let lowest = relation.iter().position(|value| *value != 0.0).unwrap_or(0);
     let relation = &relation[lowest..];
-    let odd = relation
-        .iter()
-        .skip(1)
-        .step_by(2)
-        .any(|value| *value != 0.0);
+    let odd = relation.iter().skip(1).step_by(2).any(|value| *value != 0.0);
     match odd {
         true => positive_roots(relation),
         false => {
             let in_square: Vec<f64> = relation.iter().step_by(2).copied().collect();
-            positive_roots(&in_square)
-                .into_iter()
-                .map(f64::sqrt)
-                .collect()
+            positive_roots(&in_square).into_iter().map(f64::sqrt).collect()
         }
     }
 }
@@ -586,10 +530,7 @@ fn amplitudes(relation: &[f64]) -> Vec<f64> {
 /// The positive roots of a polynomial where it changes its sign, lowest coefficient first.
 fn positive_roots(coefficients: &[f64]) -> Vec<f64> {
     let zeros = real_zeros(coefficients, [0.0, f64::INFINITY]).into_iter();
-    zeros
-        .filter(|zero| zero.crosses)
-        .map(|zero| zero.place)
-        .collect()
+    zeros.filter(|zero| zero.crosses).map(|zero| zero.place).collect()
 }
 
 /// `u` and `v` of a radius and an angle.

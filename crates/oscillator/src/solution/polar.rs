@@ -25,11 +25,8 @@ pub(super) fn steady_states(
     value_of: &dyn Fn(Symbol) -> Option<f64>,
 ) -> Option<Vec<SteadyState>> {
     let rates = Rates::new(solution, modulation, times, value_of)?;
-    let mut states: Vec<SteadyState> = rates
-        .amplitudes()
-        .into_iter()
-        .filter_map(|amplitude| rates.state(amplitude))
-        .collect();
+    let mut states: Vec<SteadyState> =
+        rates.amplitudes().into_iter().filter_map(|amplitude| rates.state(amplitude)).collect();
     states.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
     states.extend(rates.rest());
     Some(states)
@@ -69,13 +66,11 @@ impl Rates {
         value_of: &dyn Fn(Symbol) -> Option<f64>,
     ) -> Option<Self> {
         let parameters = solution.parameters.iter();
-        let mut known: BTreeMap<Symbol, f64> = parameters
-            .filter_map(|&name| Some((name, value_of(name)?)))
-            .collect();
+        let mut known: BTreeMap<Symbol, f64> =
+            parameters.filter_map(|&name| Some((name, value_of(name)?))).collect();
         known.extend(solution.defined_values(value_of).ok()?);
-        let exact = known
-            .iter()
-            .filter_map(|(name, value)| Some((*name, Expr::number(from_f64(*value)?))));
+        let exact =
+            known.iter().filter_map(|(name, value)| Some((*name, Expr::number(from_f64(*value)?))));
         let exact = exact.collect();
         let unknown = [modulation.amplitude, modulation.phase];
         let rates = [&modulation.amplitude_rate, &modulation.phase_rate];
@@ -149,11 +144,7 @@ impl Rates {
         let found = Matrix2::new(aa, ap, pa, pp).complex_eigenvalues();
         let eigenvalues = [(found[0].re, found[0].im), (found[1].re, found[1].im)];
         let known = phase.is_finite() && eigenvalues.iter().all(|value| value.0.is_finite());
-        known.then_some(SteadyState {
-            amplitude,
-            phase: wrapped(phase),
-            eigenvalues,
-        })
+        known.then_some(SteadyState { amplitude, phase: wrapped(phase), eigenvalues })
     }
 
     /// The motion without a part of its own, where no force drives it, or dry friction drains more

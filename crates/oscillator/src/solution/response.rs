@@ -166,11 +166,7 @@ impl Solution {
             eigenvalues: field.eigenvalues([u, v]),
         };
         let mut states: Vec<SteadyState> = field.places_of_rest().into_iter().map(state).collect();
-        if field
-            .rates_at([0.0, 0.0])
-            .iter()
-            .all(|rate| rate.abs() < 1e-300)
-        {
+        if field.rates_at([0.0, 0.0]).iter().all(|rate| rate.abs() < 1e-300) {
             states.push(state([0.0, 0.0]));
         }
         // Of one amplitude up to rounding they keep the order of their phases.

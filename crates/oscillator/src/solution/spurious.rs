@@ -37,10 +37,7 @@ impl Orders {
             let orders = part.iter().map(|[u, v]| Some([numeric(u)?, numeric(v)?]));
             orders.collect::<Option<Vec<_>>>()
         });
-        Some(Self {
-            parts: parts.collect::<Option<_>>()?,
-            frequency,
-        })
+        Some(Self { parts: parts.collect::<Option<_>>()?, frequency })
     }
 
     /// Whether at this amplitude the last order is more than half of the one before it.
@@ -53,10 +50,7 @@ impl Orders {
         }
         let added = |k: usize| -> f64 {
             let orders = self.parts.iter().filter_map(|part| part.get(k));
-            orders
-                .flatten()
-                .map(|rate| rate.size_above(LINEAR, amplitude))
-                .sum()
+            orders.flatten().map(|rate| rate.size_above(LINEAR, amplitude)).sum()
         };
         let sizes = std::iter::once(self.frequency * amplitude).chain((0..count).map(added));
         let sizes: Vec<f64> = sizes.filter(|size| *size != 0.0).collect();

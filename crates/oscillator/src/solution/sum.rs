@@ -22,9 +22,7 @@ impl Sum {
     pub fn new(polynomial: &Polynomial, rounded: bool, key: impl Fn(&Monomial) -> i32) -> Self {
         let terms = terms::in_order(polynomial, key).into_iter();
         Self {
-            terms: terms
-                .map(|(monomial, number)| (monomial.clone(), number.clone()))
-                .collect(),
+            terms: terms.map(|(monomial, number)| (monomial.clone(), number.clone())).collect(),
             rounded,
             digits: 6,
         }
@@ -38,9 +36,7 @@ impl Sum {
 
     /// The terms and the numbers before them.
     pub fn terms(&self) -> impl Iterator<Item = (&Monomial, &Rational)> {
-        self.terms
-            .iter()
-            .map(|(monomial, number)| (monomial, number))
+        self.terms.iter().map(|(monomial, number)| (monomial, number))
     }
 
     /// The sum of its terms, each written by `exact`; a rounded number by `decimal`, from its six

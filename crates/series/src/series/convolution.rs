@@ -35,11 +35,7 @@ pub struct Convolutions<R: Ring> {
 impl<R: Ring> Convolutions<R> {
     /// No series yet; those to come are over `ring`.
     pub fn new(ring: R) -> Self {
-        Self {
-            ring,
-            nodes: vec![],
-            products: HashMap::new(),
-        }
+        Self { ring, nodes: vec![], products: HashMap::new() }
     }
 
     /// A new series whose orders the caller supplies.
@@ -65,11 +61,7 @@ impl<R: Ring> Convolutions<R> {
             return base;
         }
         let square = self.product(base, base);
-        let start = if exponent.is_multiple_of(2) {
-            square
-        } else {
-            base
-        };
+        let start = if exponent.is_multiple_of(2) { square } else { base };
         (1..exponent.div_ceil(2)).fold(start, |power, _| self.product(power, square))
     }
 
@@ -98,9 +90,7 @@ impl<R: Ring> Convolutions<R> {
 
     /// Order `order` of every series that is known that far.
     pub fn orders(&self, order: usize) -> impl Iterator<Item = &FourierSeries<R>> {
-        self.nodes
-            .iter()
-            .filter_map(move |entry| entry.known.get(order))
+        self.nodes.iter().filter_map(move |entry| entry.known.get(order))
     }
 
     /// How many series there are, the leaves among them.
@@ -118,25 +108,14 @@ impl<R: Ring> Convolutions<R> {
             if entry.needed.is_none_or(|needed| needed < order) {
                 continue;
             }
-            let (left, right, same) = (
-                &self.nodes[left.0].known,
-                &self.nodes[right.0].known,
-                left == right,
-            );
+            let (left, right, same) =
+                (&self.nodes[left.0].known, &self.nodes[right.0].known, left == right);
             let terms: Vec<_> = match same {
                 // A square: u_i u_j and u_j u_i are the same product.
                 true => (0..=order / 2)
-                    .map(|i| {
-                        (
-                            if 2 * i == order { 1 } else { 2 },
-                            &left[i],
-                            &left[order - i],
-                        )
-                    })
+                    .map(|i| (if 2 * i == order { 1 } else { 2 }, &left[i], &left[order - i]))
                     .collect(),
-                false => (0..=order)
-                    .map(|i| (1, &left[i], &right[order - i]))
-                    .collect(),
+                false => (0..=order).map(|i| (1, &left[i], &right[order - i])).collect(),
             };
             let product = sum_of_products(&self.ring, &terms);
             self.nodes[index].known.push(product);
@@ -190,11 +169,7 @@ impl<R: Ring> Convolutions<R> {
     }
 
     fn add(&mut self, factors: Option<(Node, Node)>) -> Node {
-        self.nodes.push(Orders {
-            factors,
-            known: vec![],
-            needed: None,
-        });
+        self.nodes.push(Orders { factors, known: vec![], needed: None });
         Node(self.nodes.len() - 1)
     }
 }

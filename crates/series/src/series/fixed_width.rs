@@ -64,10 +64,7 @@ impl ShortSeries {
         denominator: i128,
         numerators: Vec<i128>,
     ) -> Option<Self> {
-        let largest = numerators
-            .iter()
-            .map(|numerator| numerator.unsigned_abs())
-            .max();
+        let largest = numerators.iter().map(|numerator| numerator.unsigned_abs()).max();
         let largest = largest.unwrap_or(0) as f64;
         (largest < BOUND && denominator > 0).then_some(Self {
             wave,
@@ -119,9 +116,7 @@ impl ShortSeries {
 
     /// Minus it.
     pub fn negative(mut self) -> Self {
-        self.numerators
-            .iter_mut()
-            .for_each(|numerator| *numerator = -*numerator);
+        self.numerators.iter_mut().for_each(|numerator| *numerator = -*numerator);
         self
     }
 
@@ -137,10 +132,7 @@ impl ShortSeries {
     /// In lowest terms.
     pub fn reduced(mut self) -> Self {
         // Halvings first: mostly nothing else is left to look for.
-        let all = self
-            .numerators
-            .iter()
-            .fold(0, |all, numerator| all | numerator);
+        let all = self.numerators.iter().fold(0, |all, numerator| all | numerator);
         let halvings = self.denominator.trailing_zeros();
         let mut odd = self.denominator >> halvings;
         for numerator in &self.numerators {
@@ -289,23 +281,15 @@ pub fn combination(terms: &[(i128, i128, &ShortSeries)]) -> Option<ShortSeries> 
 /// `sum_i left_i right_(n-i)` over two lists of the same length, all products of the same waves.
 pub fn convolution(left: &[ShortSeries], right: &[ShortSeries]) -> Option<ShortSeries> {
     let last = right.len().checked_sub(1)?;
-    let terms = left
-        .iter()
-        .enumerate()
-        .map(|(i, left)| (1, left, &right[last - i]));
+    let terms = left.iter().enumerate().map(|(i, left)| (1, left, &right[last - i]));
     sum_of_products(terms)
 }
 
 /// `sum_i series_i series_(n-i)`, each pair once.
 pub fn square(series: &[ShortSeries]) -> Option<ShortSeries> {
     let last = series.len().checked_sub(1)?;
-    let terms = (0..=last / 2).map(|i| {
-        (
-            if 2 * i == last { 1 } else { 2 },
-            &series[i],
-            &series[last - i],
-        )
-    });
+    let terms =
+        (0..=last / 2).map(|i| (if 2 * i == last { 1 } else { 2 }, &series[i], &series[last - i]));
     sum_of_products(terms)
 }
 
@@ -319,11 +303,7 @@ fn sum_of_products<'a>(
     for (_, left, right) in terms.clone() {
         common = least_common_multiple(common, left.denominator.checked_mul(right.denominator)?)?;
         length = length.max(left.numerators.len() + right.numerators.len());
-        let wave = if left.wave == right.wave {
-            Wave::Cosine
-        } else {
-            Wave::Sine
-        };
+        let wave = if left.wave == right.wave { Wave::Cosine } else { Wave::Sine };
         kind = (wave, left.harmonics.times(right.harmonics));
     }
     let mut bound = 0.0;
@@ -376,20 +356,14 @@ fn add_doubled_product(
     // Of the sine of a difference, the sign of the difference.
     let (mixed, sine_is_left) = (left.wave != right.wave, left.wave == Wave::Sine);
     let signed = |negative: bool, product: i128| {
-        if negative {
-            product.wrapping_neg()
-        } else {
-            product
-        }
+        if negative { product.wrapping_neg() } else { product }
     };
     for (a, own) in left.numerators.iter().enumerate() {
         let own = own.wrapping_mul(factor);
         if own == 0 {
             continue;
         }
-        let (below, above) = right
-            .numerators
-            .split_at((a + 1).min(right.numerators.len()));
+        let (below, above) = right.numerators.split_at((a + 1).min(right.numerators.len()));
         for (b, other) in below.iter().enumerate() {
             let product = multiply(own, *other);
             let upper = &mut sums[a + b + usize::from(both_odd)];
@@ -453,10 +427,7 @@ mod tests {
         let mut products = 0;
         for left in examples() {
             assert_eq!(long(&left.clone().reduced()), long(&left));
-            assert_eq!(
-                long(&left.derivative().expect("short")),
-                long(&left).derivative()
-            );
+            assert_eq!(long(&left.derivative().expect("short")), long(&left).derivative());
             let second = left.second_derivative().expect("short");
             assert_eq!(long(&second), long(&left).derivative().derivative());
             assert_eq!(long(&left.clone().negative()), long(&left).times(-1));
@@ -475,16 +446,11 @@ mod tests {
                 assert_eq!(long(&product), expected, "{left:?} {right:?}");
                 let [left_right, right_left] =
                     [[left.clone(), right.clone()], [right.clone(), left.clone()]];
-                let sums = [
-                    convolution(&left_right, &left_right),
-                    convolution(&left_right, &right_left),
-                ];
+                let sums =
+                    [convolution(&left_right, &left_right), convolution(&left_right, &right_left)];
                 let expected = [
                     vec![(2, &long(&left), &long(&right))],
-                    vec![
-                        (1, &long(&left), &long(&left)),
-                        (1, &long(&right), &long(&right)),
-                    ],
+                    vec![(1, &long(&left), &long(&left)), (1, &long(&right), &long(&right))],
                 ]
                 .map(|terms| fourier::sum_of_products(&Integers, &terms));
                 let same_waves = (left.wave, left.harmonics) == (right.wave, right.harmonics);

@@ -98,12 +98,7 @@ impl<R: Ring> FourierSeries<R> {
     }
 
     fn raw(ring: R, cosine: Vec<R::Element>, sine: Vec<R::Element>) -> Self {
-        Self {
-            ring,
-            denominator: Integer::one(),
-            cosine,
-            sine,
-        }
+        Self { ring, denominator: Integer::one(), cosine, sine }
     }
 
     /// The ring of the coefficients.
@@ -119,8 +114,7 @@ impl<R: Ring> FourierSeries<R> {
     /// Whether nothing shows that the series is not zero: the same as [`FourierSeries::is_zero`]
     /// where coefficients are exact.
     pub fn may_be_zero(&self) -> bool {
-        self.numerators()
-            .all(|numerator| self.ring.may_be_zero(numerator))
+        self.numerators().all(|numerator| self.ring.may_be_zero(numerator))
     }
 
     /// Whether the ring could divide by everything it had to: over a field, whether no denominator
@@ -194,9 +188,7 @@ impl<R: Ring> FourierSeries<R> {
 
     /// The `exponent`-th power.
     pub fn power(&self, exponent: u32) -> Self {
-        (0..exponent).fold(Self::integer(self.ring.clone(), 1), |power, _| {
-            power.product(self)
-        })
+        (0..exponent).fold(Self::integer(self.ring.clone(), 1), |power, _| power.product(self))
     }
 
     /// The product with an integer.
@@ -261,10 +253,7 @@ impl<R: Ring> FourierSeries<R> {
     /// The periodic solution of `u'' + u = self` without first harmonic, and the resonant part left
     /// over: `u_k = r_k / (1 - k^2)` for `k != 1`.
     pub fn solve_oscillator(&self) -> (Self, Resonance<R>) {
-        let resonance = Resonance {
-            cosine: self.cosine(1),
-            sine: self.sine(1),
-        };
+        let resonance = Resonance { cosine: self.cosine(1), sine: self.sine(1) };
         let mut solution = self.clone();
         for part in [&mut solution.cosine, &mut solution.sine] {
             if let Some(resonant) = part.get_mut(1) {
@@ -276,25 +265,19 @@ impl<R: Ring> FourierSeries<R> {
         for k in 2..=self.highest_harmonic() {
             let parts = [&mut solution.cosine, &mut solution.sine];
             let harmonic = parts.into_iter().filter_map(|part| part.get_mut(k));
-            let mut harmonic: Vec<_> = harmonic
-                .filter(|coefficient| !self.ring.is_certainly_zero(coefficient))
-                .collect();
+            let mut harmonic: Vec<_> =
+                harmonic.filter(|coefficient| !self.ring.is_certainly_zero(coefficient)).collect();
             let divisor = Integer::one() - Integer::from(k) * Integer::from(k);
             if harmonic.is_empty() {
                 continue;
             }
             if !R::FIELD
-                || self
-                    .ring
-                    .divide(harmonic.iter_mut().map(|c| &mut **c), &divisor)
-                    .is_err()
+                || self.ring.divide(harmonic.iter_mut().map(|c| &mut **c), &divisor).is_err()
             {
                 left.push((k, divisor));
             }
         }
-        let common = left
-            .iter()
-            .fold(Integer::one(), |lcm, (_, divisor)| lcm.lcm(divisor));
+        let common = left.iter().fold(Integer::one(), |lcm, (_, divisor)| lcm.lcm(divisor));
         if !left.is_empty() {
             let mut left = left.iter().peekable();
             for k in 0..=self.highest_harmonic() {
@@ -329,9 +312,7 @@ impl<R: Ring> FourierSeries<R> {
         change: impl Fn(&R::Element, &Integer) -> S::Element,
     ) -> FourierSeries<S> {
         let all = |part: &[R::Element]| {
-            part.iter()
-                .map(|coefficient| change(coefficient, &self.denominator))
-                .collect()
+            part.iter().map(|coefficient| change(coefficient, &self.denominator)).collect()
         };
         let (cosine, sine) = (all(&self.cosine), all(&self.sine));
         FourierSeries::from_parts(ring, cosine, sine)
@@ -432,9 +413,7 @@ pub fn linear_combination<R: Ring>(
     ring: &R,
     terms: &[(i64, &FourierSeries<R>)],
 ) -> FourierSeries<R> {
-    let common = terms.iter().fold(Integer::one(), |lcm, (_, series)| {
-        lcm.lcm(&series.denominator)
-    });
+    let common = terms.iter().fold(Integer::one(), |lcm, (_, series)| lcm.lcm(&series.denominator));
     let mut result = FourierSeries::zero(ring.clone());
     for (weight, series) in terms {
         let factor = Factor::new(*weight, &common, &series.denominator);
@@ -468,9 +447,7 @@ pub fn sum_of_products<R: Ring>(
         .filter(|(_, left, right)| !left.is_zero() && !right.is_zero())
         .map(|&(weight, left, right)| (weight, left, right, &left.denominator * &right.denominator))
         .collect();
-    let common = terms
-        .iter()
-        .fold(Integer::one(), |lcm, term| lcm.lcm(&term.3));
+    let common = terms.iter().fold(Integer::one(), |lcm, term| lcm.lcm(&term.3));
     let highest = terms
         .iter()
         .map(|(_, left, right, _)| left.highest_harmonic() + right.highest_harmonic())
@@ -496,9 +473,7 @@ impl<R: Ring> FourierSeries<R> {
     /// Adds `2 * left * right` of the numerators, so that the halves of
     /// `2 cos i cos j = cos(i+j) + cos(i-j)` stay whole.
     fn add_doubled_product(&mut self, left: &Self, right: &Self) {
-        let Self {
-            ring, cosine, sine, ..
-        } = self;
+        let Self { ring, cosine, sine, .. } = self;
         for_each_product(ring, &left.cosine, &right.cosine, |i, j, product| {
             ring.accumulate(&mut cosine[i + j], &product);
             ring.add(&mut cosine[i.abs_diff(j)], product);
@@ -516,9 +491,7 @@ impl<R: Ring> FourierSeries<R> {
             ring.add(&mut sine[i.abs_diff(j)], product);
         };
         for_each_product(ring, &left.cosine, &right.sine, &mut mixed);
-        for_each_product(ring, &left.sine, &right.cosine, |i, j, product| {
-            mixed(j, i, product)
-        });
+        for_each_product(ring, &left.sine, &right.cosine, |i, j, product| mixed(j, i, product));
         if let Some(first) = sine.first_mut() {
             *first = ring.zero();
         }
@@ -585,12 +558,8 @@ impl FourierSeries<Polynomials> {
 impl FourierSeries<Doubles> {
     /// Every coefficient changed by a function of its harmonic.
     pub fn by_harmonic(&self, change: impl Fn(usize, f64) -> f64) -> Self {
-        let all = |part: &[f64]| {
-            part.iter()
-                .enumerate()
-                .map(|(k, &value)| change(k, value))
-                .collect()
-        };
+        let all =
+            |part: &[f64]| part.iter().enumerate().map(|(k, &value)| change(k, value)).collect();
         Self::from_parts(Doubles, all(&self.cosine), all(&self.sine))
     }
 
@@ -605,10 +574,7 @@ impl FourierSeries<Doubles> {
     pub fn evaluate_at(&self, cosine: f64, sine: f64) -> f64 {
         let (mut c, mut s, mut sum) = (1.0, 0.0, 0.0);
         for k in 0..self.cosine.len().max(self.sine.len()) {
-            sum += self
-                .cosine
-                .get(k)
-                .map_or(0.0, |coefficient| coefficient * c);
+            sum += self.cosine.get(k).map_or(0.0, |coefficient| coefficient * c);
             sum += self.sine.get(k).map_or(0.0, |coefficient| coefficient * s);
             (c, s) = (c * cosine - s * sine, s * cosine + c * sine);
         }

@@ -82,10 +82,7 @@ pub struct GuardUse {
 impl Guards {
     /// No guards yet; `values` are those of the symbols that count as numbers.
     pub fn new(values: &BTreeMap<Symbol, f64>) -> Self {
-        Self {
-            values: values.clone(),
-            known: vec![],
-        }
+        Self { values: values.clone(), known: vec![] }
     }
 
     /// The guard of an argument.
@@ -95,18 +92,10 @@ impl Guards {
         if let Some((index, ratio)) =
             ratios.find_map(|(index, known)| Some((index, guard.ratio_to(known)?)))
         {
-            return GuardUse {
-                index,
-                is_new: false,
-                is_aligned: ratio > 0.0,
-            };
+            return GuardUse { index, is_new: false, is_aligned: ratio > 0.0 };
         }
         self.known.push(guard);
-        GuardUse {
-            index: self.known.len() - 1,
-            is_new: true,
-            is_aligned: true,
-        }
+        GuardUse { index: self.known.len() - 1, is_new: true, is_aligned: true }
     }
 }
 
@@ -133,11 +122,7 @@ mod tests {
             ("2*sin(x)", 5, true, true),
             ("-sin(x)/k", 5, false, true),
         ] {
-            let expected = GuardUse {
-                index,
-                is_new,
-                is_aligned,
-            };
+            let expected = GuardUse { index, is_new, is_aligned };
             assert_eq!(find(text), expected, "{text}");
         }
     }

@@ -63,11 +63,7 @@ impl<F: Field> HermitePade<F> {
         let combination = |(own, (remainder, degree)): (usize, (Vec<F::Element>, usize))| {
             let mut factors = vec![vec![]; count];
             factors[own] = vec![field.one()];
-            Combination {
-                factors,
-                remainder,
-                room: degree as i64,
-            }
+            Combination { factors, remainder, room: degree as i64 }
         };
         Self {
             combinations: series.into_iter().enumerate().map(combination).collect(),
@@ -83,31 +79,21 @@ impl<F: Field> HermitePade<F> {
 
     /// The combination with most room.
     pub fn best(&self) -> &Combination<F::Element> {
-        let best = self
-            .combinations
-            .iter()
-            .rev()
-            .max_by_key(|combination| combination.room);
+        let best = self.combinations.iter().rev().max_by_key(|combination| combination.room);
         best.expect("a series at least")
     }
 
     /// One order more; nothing where the series have no further coefficient.
     pub fn advance(&mut self) {
-        let leading: Vec<Option<i64>> = self
-            .combinations
-            .iter()
-            .map(|own| self.leading(own))
-            .collect();
+        let leading: Vec<Option<i64>> =
+            self.combinations.iter().map(|own| self.leading(own)).collect();
         let candidates = self.combinations.iter().zip(&leading).enumerate();
         let pivot = candidates
             .filter_map(|(place, (own, exponent))| Some((own.room, (*exponent)?, place)))
             .max_by_key(|(room, exponent, place)| (*room, *exponent, std::cmp::Reverse(*place)));
         self.order += 1;
         let Some((_, _, pivot)) = pivot else {
-            for combination in self
-                .combinations
-                .iter_mut()
-                .filter(|own| !own.remainder.is_empty())
+            for combination in self.combinations.iter_mut().filter(|own| !own.remainder.is_empty())
             {
                 combination.remainder.remove(0);
             }
@@ -118,9 +104,7 @@ impl<F: Field> HermitePade<F> {
         leading.remove(pivot);
         for (combination, leading) in self.combinations.iter_mut().zip(leading) {
             if leading.is_some() {
-                let factor = self
-                    .field
-                    .quotient(&combination.remainder[0], &chosen.remainder[0]);
+                let factor = self.field.quotient(&combination.remainder[0], &chosen.remainder[0]);
                 let pairs = combination.factors.iter_mut().zip(&chosen.factors);
                 for (own, other) in pairs {
                     own.resize(own.len().max(other.len()), self.field.zero());
@@ -128,11 +112,7 @@ impl<F: Field> HermitePade<F> {
                         self.field.subtract(number, &factor, other);
                     }
                 }
-                let pairs = combination
-                    .remainder
-                    .iter_mut()
-                    .zip(&chosen.remainder)
-                    .skip(1);
+                let pairs = combination.remainder.iter_mut().zip(&chosen.remainder).skip(1);
                 for (number, other) in pairs {
                     self.field.subtract(number, &factor, other);
                 }
@@ -141,11 +121,7 @@ impl<F: Field> HermitePade<F> {
         }
         // The factor s moves the remainder up by one place, and the order has moved with it.
         chosen.remainder.pop();
-        for factor in chosen
-            .factors
-            .iter_mut()
-            .filter(|factor| !factor.is_empty())
-        {
+        for factor in chosen.factors.iter_mut().filter(|factor| !factor.is_empty()) {
             factor.insert(0, self.field.zero());
         }
         chosen.room -= 1;
@@ -159,9 +135,7 @@ impl<F: Field> HermitePade<F> {
             return Some(exponent);
         };
         let numbers = combination.factors.iter().flatten();
-        let largest = numbers
-            .filter_map(|number| self.field.exponent(number))
-            .max()?;
+        let largest = numbers.filter_map(|number| self.field.exponent(number)).max()?;
         (exponent > largest - noise).then_some(exponent)
     }
 }

@@ -138,10 +138,7 @@ impl Recurrences {
 
     /// A sum of series, each times a factor.
     fn weighted(&mut self, terms: &[(f64, usize)]) -> usize {
-        let terms = terms
-            .iter()
-            .map(|(factor, place)| (self.constant(*factor), *place))
-            .collect();
+        let terms = terms.iter().map(|(factor, place)| (self.constant(*factor), *place)).collect();
         self.emit(Operation::Sum(terms))
     }
 
@@ -152,9 +149,7 @@ impl Recurrences {
     fn slope(&mut self, mut of: usize) -> usize {
         // A number beside it makes no difference.
         while let Operation::Sum(terms) = self.tape.operation(of) {
-            let mut changing = terms
-                .iter()
-                .filter(|(_, place)| !self.tape.is_number(*place));
+            let mut changing = terms.iter().filter(|(_, place)| !self.tape.is_number(*place));
             match (changing.next(), changing.next()) {
                 (Some((weight, place)), None) if self.tape.is_one(*weight) => of = *place,
                 _ => break,
@@ -202,11 +197,7 @@ impl Recurrences {
     }
 
     fn symbol(&mut self, symbol: Symbol) -> Result<usize, RecurrenceError> {
-        if let Some(place) = self
-            .variables
-            .iter()
-            .position(|variable| *variable == symbol)
-        {
+        if let Some(place) = self.variables.iter().position(|variable| *variable == symbol) {
             return Ok(place);
         }
         match self.numbers.get(&symbol) {
@@ -236,41 +227,24 @@ impl Recurrences {
     fn product(&mut self, coefficient: &Rational, factors: &[Expr], places: &[usize]) -> usize {
         // A step gates the others: where it is zero they need no value.
         let is_gate = |expr: &Expr| matches!(expr.node(), Node::Function(Function::Step, _));
-        let open = factors
-            .iter()
-            .zip(places)
-            .filter(|(factor, _)| !is_gate(factor));
+        let open = factors.iter().zip(places).filter(|(factor, _)| !is_gate(factor));
         // Numbers first and by themselves: what changes may be shared with another product.
-        let (numbers, changing): (Vec<usize>, Vec<usize>) = open
-            .map(|(_, place)| *place)
-            .partition(|place| self.tape.is_number(*place));
+        let (numbers, changing): (Vec<usize>, Vec<usize>) =
+            open.map(|(_, place)| *place).partition(|place| self.tape.is_number(*place));
         let mut of = |places: Vec<usize>| {
-            places
-                .into_iter()
-                .reduce(|product, place| self.multiply(product, place))
+            places.into_iter().reduce(|product, place| self.multiply(product, place))
         };
         let parts = [of(numbers), of(changing)];
-        let product = parts
-            .into_iter()
-            .flatten()
-            .reduce(|number, changing| self.multiply(number, changing));
+        let product =
+            parts.into_iter().flatten().reduce(|number, changing| self.multiply(number, changing));
         let coefficient = to_f64(coefficient);
         let mut product = match product {
             None => self.constant(coefficient),
             Some(product) if coefficient == 1.0 => product,
             Some(product) => self.scale(coefficient, product),
         };
-        for (_, place) in factors
-            .iter()
-            .zip(places)
-            .filter(|(factor, _)| is_gate(factor))
-        {
-            if let Operation::Choose {
-                corner,
-                positive,
-                negative,
-            } = *self.tape.operation(*place)
-            {
+        for (_, place) in factors.iter().zip(places).filter(|(factor, _)| is_gate(factor)) {
+            if let Operation::Choose { corner, positive, negative } = *self.tape.operation(*place) {
                 product = self.emit(Operation::Choose {
                     corner,
                     positive: positive.map(|_| product),
@@ -282,10 +256,7 @@ impl Recurrences {
     }
 
     fn power(&mut self, base: usize, exponent: &Rational) -> usize {
-        let whole = exponent
-            .is_integer()
-            .then(|| exponent.numer().abs().to_u64())
-            .flatten();
+        let whole = exponent.is_integer().then(|| exponent.numer().abs().to_u64()).flatten();
         if let Some(mut left) = whole {
             let (mut square, mut result) = (base, None);
             while left > 0 {
@@ -312,11 +283,7 @@ impl Recurrences {
             (true, false) => even,
             (false, _) => f64::powf,
         };
-        self.emit(Operation::Power {
-            base,
-            exponent: to_f64(exponent),
-            first,
-        })
+        self.emit(Operation::Power { base, exponent: to_f64(exponent), first })
     }
 
     /// `y' = u' g`, where `g` is the place that this many operations come behind `y`.
@@ -335,14 +302,7 @@ impl Recurrences {
     fn quotient(&mut self, of: usize, over: usize, sign: f64, first: fn(f64) -> f64) -> usize {
         let slope = self.slope(of);
         let place = self.tape.size();
-        self.emit(Operation::Quotient {
-            of,
-            slope,
-            own: place + 1,
-            over,
-            sign,
-            first,
-        });
+        self.emit(Operation::Quotient { of, slope, own: place + 1, over, sign, first });
         self.slope(place);
         place
     }
@@ -362,13 +322,8 @@ impl Recurrences {
         };
         let sign = if hyperbolic { 1.0 } else { -1.0 };
         let slope = self.slope(of);
-        let place = self.emit(Operation::Waves {
-            of,
-            slope,
-            degree: self.tape.degree(slope),
-            sign,
-            first,
-        });
+        let place =
+            self.emit(Operation::Waves { of, slope, degree: self.tape.degree(slope), sign, first });
         let places = [place, self.emit(Operation::SecondWave)];
         self.waves.insert((of, hyperbolic), places);
         places
@@ -399,11 +354,7 @@ impl Recurrences {
         first: fn(f64) -> f64,
     ) -> usize {
         let base = self.one_and_square(of, square);
-        let root = self.emit(Operation::Power {
-            base,
-            exponent: 0.5,
-            first: f64::powf,
-        });
+        let root = self.emit(Operation::Power { base, exponent: 0.5, first: f64::powf });
         self.quotient(of, root, sign, first)
     }
 
@@ -411,20 +362,13 @@ impl Recurrences {
     fn choose(&mut self, argument: &Expr, place: usize, sides: [Option<usize>; 2]) -> usize {
         let guard = self.guards.find_or_add(argument);
         if guard.is_new {
-            self.tape.corners.push(Corner {
-                argument: place,
-                side: 1.0,
-            });
+            self.tape.corners.push(Corner { argument: place, side: 1.0 });
         }
         let [positive, negative] = match guard.is_aligned {
             true => sides,
             false => [sides[1], sides[0]],
         };
-        self.emit(Operation::Choose {
-            corner: guard.index,
-            positive,
-            negative,
-        })
+        self.emit(Operation::Choose { corner: guard.index, positive, negative })
     }
 
     /// A function with a corner, by its arguments and the places of their series; `None` for any
@@ -553,24 +497,14 @@ mod tests {
             }
         }
         // Among them what has no value, so that no side can be taken.
-        for text in [
-            "abs(x)",
-            "x^(1/3)",
-            "log(x)",
-            "1/x",
-            "k*x",
-            "x*H(log(x) + 3)",
-            "max(x, 1/x)",
-        ] {
+        for text in ["abs(x)", "x^(1/3)", "log(x)", "1/x", "k*x", "x*H(log(x) + 3)", "max(x, 1/x)"]
+        {
             let expression = parse_expression(text).expect(text);
             assert_eq!(numeric_taylor(&expression, x, 0.0, 1.0, 4), None, "{text}");
         }
         // Powers beyond the degree, where the base is zero.
         let high = parse_expression("x + x^10000").expect("powers");
-        assert_eq!(
-            numeric_taylor(&high, x, 0.0, 1.0, 2),
-            Some(vec![0.0, 1.0, 0.0])
-        );
+        assert_eq!(numeric_taylor(&high, x, 0.0, 1.0, 2), Some(vec![0.0, 1.0, 0.0]));
     }
 
     /// What occurs twice is computed once, and sine and cosine come together.
@@ -579,16 +513,11 @@ mod tests {
         let count = |texts: &[&str]| {
             let mut recurrences = Recurrences::new(&[("x".into(), None)], &BTreeMap::new(), 1);
             for text in texts {
-                recurrences
-                    .add(&parse_expression(text).expect(text))
-                    .expect(text);
+                recurrences.add(&parse_expression(text).expect(text)).expect(text);
             }
             recurrences.tape.size()
         };
         assert_eq!(count(&["sin(x)"]), count(&["sin(x)", "cos(x)", "sin(x)"]));
-        assert_eq!(
-            count(&["sgn(x)*exp(x^2)", "exp(x^2)"]),
-            count(&["sgn(x)*exp(x^2)"])
-        );
+        assert_eq!(count(&["sgn(x)*exp(x^2)", "exp(x^2)"]), count(&["sgn(x)*exp(x^2)"]));
     }
 }

@@ -151,9 +151,7 @@ impl Growth {
         let largest = |from: f64, to: f64| {
             let within = self.sizes.iter().map(|(k, size)| (*k as f64, size));
             let within = within.filter(|(k, _)| *k > from * highest && *k <= to * highest);
-            within
-                .map(|(k, size)| (k, size + k * radius.ln()))
-                .max_by(|a, b| a.1.total_cmp(&b.1))
+            within.map(|(k, size)| (k, size + k * radius.ln())).max_by(|a, b| a.1.total_cmp(&b.1))
         };
         let (before, last) = (largest(0.4, 0.7)?, largest(0.7, 1.0)?);
         Some((last.1 - before.1) / (last.0 / before.0).ln())
@@ -211,11 +209,8 @@ fn steepens_evenly(coefficients: &[Rational]) -> bool {
         Some((first.1 - last.1) / (last.0 - first.0) as f64)
     };
     let count = coefficients.len();
-    let slopes = [
-        slope(count / 8, count / 4),
-        slope(count / 4, count / 2),
-        slope(count / 2, count),
-    ];
+    let slopes =
+        [slope(count / 8, count / 4), slope(count / 4, count / 2), slope(count / 2, count)];
     match slopes {
         [Some(first), Some(second), Some(third)] => {
             let (before, after) = (second - first, third - second);
@@ -255,10 +250,7 @@ struct Complex {
 
 impl Complex {
     fn of(value: Complex64, bits: usize) -> Self {
-        Self {
-            re: BigFloat::of_f64(value.re, bits),
-            im: BigFloat::of_f64(value.im, bits),
-        }
+        Self { re: BigFloat::of_f64(value.re, bits), im: BigFloat::of_f64(value.im, bits) }
     }
 
     fn to_f64(&self) -> Complex64 {
@@ -272,24 +264,14 @@ impl Complex {
     /// How far away another number is; in doubles, which reach down to where nothing matters any
     /// more.
     fn distance(&self, other: &Self) -> f64 {
-        (self - other)
-            .squared_size()
-            .sqrt()
-            .map_or(0.0, |size| size.to_f64())
+        (self - other).squared_size().sqrt().map_or(0.0, |size| size.to_f64())
     }
 
     /// The quotient; zero where the divisor is.
     fn over(&self, divisor: &Self) -> Self {
         let size = divisor.squared_size();
-        let above = self
-            * &Self {
-                re: divisor.re.clone(),
-                im: -&divisor.im,
-            };
-        Self {
-            re: &above.re / &size,
-            im: &above.im / &size,
-        }
+        let above = self * &Self { re: divisor.re.clone(), im: -&divisor.im };
+        Self { re: &above.re / &size, im: &above.im / &size }
     }
 }
 
@@ -297,10 +279,7 @@ impl Add for &Complex {
     type Output = Complex;
 
     fn add(self, other: Self) -> Complex {
-        Complex {
-            re: &self.re + &other.re,
-            im: &self.im + &other.im,
-        }
+        Complex { re: &self.re + &other.re, im: &self.im + &other.im }
     }
 }
 
@@ -308,10 +287,7 @@ impl Sub for &Complex {
     type Output = Complex;
 
     fn sub(self, other: Self) -> Complex {
-        Complex {
-            re: &self.re - &other.re,
-            im: &self.im - &other.im,
-        }
+        Complex { re: &self.re - &other.re, im: &self.im - &other.im }
     }
 }
 
@@ -381,9 +357,9 @@ fn approximants(
     };
     let last = match kind {
         Kind::Quadratic => product(&own, &own, length),
-        Kind::Differential | Kind::OfInverseRoot => (1..=length)
-            .map(|k| &own[k] * &BigFloat::of_f64(k as f64, bits))
-            .collect(),
+        Kind::Differential | Kind::OfInverseRoot => {
+            (1..=length).map(|k| &own[k] * &BigFloat::of_f64(k as f64, bits)).collect()
+        }
     };
     own.truncate(length);
     let mut work = HermitePade::new(field, vec![(constant, 0), (own, 0), (last, 0)]);
@@ -403,15 +379,11 @@ fn approximants(
                         zero.resize(zero.len().max(place + 1), BigFloat::zero(bits));
                         zero[place] = &zero[place] - &(&four * value);
                     }
-                    Approximant {
-                        zero,
-                        beside: vec![],
-                    }
+                    Approximant { zero, beside: vec![] }
                 }
-                Kind::Differential | Kind::OfInverseRoot => Approximant {
-                    zero: r.clone(),
-                    beside: q.clone(),
-                },
+                Kind::Differential | Kind::OfInverseRoot => {
+                    Approximant { zero: r.clone(), beside: q.clone() }
+                }
             };
             found.push((length - work.order(), approximant));
         }
@@ -437,9 +409,8 @@ fn inverse_root(coefficients: &[BigFloat]) -> Vec<BigFloat> {
 
 /// The product, of at most so many coefficients.
 fn product(left: &[BigFloat], right: &[BigFloat], most: usize) -> Vec<BigFloat> {
-    let Some(length) = (left.len() + right.len())
-        .checked_sub(1)
-        .filter(|_| !left.is_empty() && !right.is_empty())
+    let Some(length) =
+        (left.len() + right.len()).checked_sub(1).filter(|_| !left.is_empty() && !right.is_empty())
     else {
         return vec![];
     };
@@ -494,10 +465,7 @@ impl Followed {
                 let place = self.place.to_f64();
                 let here =
                     |zero: &&(Complex64, f64)| (zero.0 - place).norm() <= MOVES * place.norm();
-                zeros
-                    .iter()
-                    .filter(here)
-                    .any(|(_, order)| (value - order).abs() <= WORST_POWER)
+                zeros.iter().filter(here).any(|(_, order)| (value - order).abs() <= WORST_POWER)
             }
             _ => false,
         }
@@ -549,20 +517,13 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Vec<Follo
         let (_, end) = zeros.pop()?;
         let error_of = |distance: &dyn Fn(&Zero, &Zero) -> f64| {
             let farthest = |from: usize, to: usize| {
-                let some = zeros
-                    .iter()
-                    .filter(|(below, _)| (from..=to).contains(below));
-                some.map(|(_, zero)| distance(zero, &end))
-                    .fold(0.0, f64::max)
+                let some = zeros.iter().filter(|(below, _)| (from..=to).contains(below));
+                some.map(|(_, zero)| distance(zero, &end)).fold(0.0, f64::max)
             };
             let (recent, before) = (farthest(0, window), farthest(window + 1, 2 * window));
             // What converges slowly is farther away than its last steps by how much longer the way
             // is.
-            if 8.0 * recent <= before {
-                FAST * recent
-            } else {
-                SLOW * recent
-            }
+            if 8.0 * recent <= before { FAST * recent } else { SLOW * recent }
         };
         let exponent = end.exponent.map(|value| {
             let distance = |one: &Zero, other: &Zero| match (one.exponent, other.exponent) {
@@ -584,18 +545,14 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Vec<Follo
             continue;
         };
         for candidate in candidates_of(&approximant.zero, growth) {
-            if candidates
-                .iter()
-                .all(|other| (other - candidate).norm() > MOVES * candidate.norm())
+            if candidates.iter().all(|other| (other - candidate).norm() > MOVES * candidate.norm())
             {
                 candidates.push(candidate);
             }
         }
     }
     let found = candidates.into_iter().filter_map(follow);
-    found
-        .filter(|found| growth.allows(found.place.to_f64().norm()))
-        .collect()
+    found.filter(|found| growth.allows(found.place.to_f64().norm())).collect()
 }
 
 /// The factors on the last step of a slow convergence, of which a step is an eighth of the way, and
@@ -644,10 +601,7 @@ impl Approximant {
                 -value.over(&slope).to_f64()
             }),
             place: if start.im.is_zero() {
-                Complex {
-                    im: BigFloat::zero(bits),
-                    ..place
-                }
+                Complex { im: BigFloat::zero(bits), ..place }
             } else {
                 place
             },
@@ -677,18 +631,14 @@ fn candidates_of(polynomial: &[BigFloat], growth: &Growth) -> Vec<Complex64> {
     let Some(largest) = polynomial.iter().filter_map(BigFloat::exponent).max() else {
         return vec![];
     };
-    let numbers: Vec<f64> = polynomial
-        .iter()
-        .map(|value| value.shifted(-largest).to_f64())
-        .collect();
+    let numbers: Vec<f64> =
+        polynomial.iter().map(|value| value.shifted(-largest).to_f64()).collect();
     let evaluate = |z: Complex64| {
         let zero = Complex64::default();
         numbers
             .iter()
             .rev()
-            .fold((zero, zero), |(value, slope), number| {
-                (value * z + number, slope * z + value)
-            })
+            .fold((zero, zero), |(value, slope), number| (value * z + number, slope * z + value))
     };
     let mut found: Vec<Complex64> = vec![];
     for radius in 0..RADII {
@@ -716,11 +666,7 @@ fn candidates_of(polynomial: &[BigFloat], growth: &Growth) -> Vec<Complex64> {
             if !z.is_finite() || length > 1e-6 * size || !growth.allows(size) {
                 continue;
             }
-            z.im = if z.im.abs() < 1e-7 * size {
-                0.0
-            } else {
-                z.im.abs()
-            };
+            z.im = if z.im.abs() < 1e-7 * size { 0.0 } else { z.im.abs() };
             if found.iter().all(|other| (other - z).norm() > 1e-5 * size) {
                 found.push(z);
             }
@@ -789,16 +735,11 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
     if !found.iter().any(|(_, excess)| *excess <= 1.0) {
         return None;
     }
-    let nearest = found
-        .iter()
-        .map(|(own, _)| size_of(own) + own.error)
-        .fold(f64::INFINITY, f64::min);
+    let nearest =
+        found.iter().map(|(own, _)| size_of(own) + own.error).fold(f64::INFINITY, f64::min);
     let on_circle = |own: &Followed| size_of(own) - own.error <= nearest * (1.0 + MOVES);
-    let mut found: Vec<Followed> = found
-        .into_iter()
-        .map(|(own, _)| own)
-        .filter(on_circle)
-        .collect();
+    let mut found: Vec<Followed> =
+        found.into_iter().map(|(own, _)| own).filter(on_circle).collect();
     let exponent_by = |found: &[Followed], wanted: Kind| {
         let own = found.iter().filter(|own| own.kind == wanted);
         let best = own.min_by(|a, b| a.error.total_cmp(&b.error))?;
@@ -835,10 +776,7 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
     }
     // Of few coefficients a singularity of no power that could be told may be one of several,
     // unless all kinds have found that one alone.
-    let few = growth
-        .sizes
-        .last()
-        .is_none_or(|(highest, _)| *highest < MANY);
+    let few = growth.sizes.last().is_none_or(|(highest, _)| *highest < MANY);
     if exponent.is_none() && few && !all_agree(&found, &seen) {
         return None;
     }
@@ -877,10 +815,7 @@ impl Singularity {
     /// pair.
     pub fn sign(&self) -> Option<Ordering> {
         let [real, imaginary] = &self.place;
-        imaginary
-            .value
-            .is_zero()
-            .then(|| real.value.cmp(&Rational::zero()))
+        imaginary.value.is_zero().then(|| real.value.cmp(&Rational::zero()))
     }
 }
 
@@ -911,10 +846,7 @@ impl Estimate {
             true => error + to_f64(&(value - &rounded)).abs(),
             false => error,
         };
-        Self {
-            value: rounded,
-            error,
-        }
+        Self { value: rounded, error }
     }
 }
 
@@ -956,37 +888,21 @@ mod tests {
     fn the_error_is_what_is_said() {
         let (near, far) = (ratio(-7, 5), ratio(9, 4));
         for degree in [16, 21, 27, 36, 50] {
-            for exponent in [
-                ratio(1, 2),
-                ratio(-1, 1),
-                ratio(-1, 2),
-                ratio(1, 3),
-                ratio(-3, 2),
-            ] {
+            for exponent in [ratio(1, 2), ratio(-1, 1), ratio(-1, 2), ratio(1, 3), ratio(-3, 2)] {
                 // A singular part that is more than a power, a regular part, and a second
                 // singularity beyond.
-                let singular = times(
-                    &power(&near, &exponent, degree),
-                    &exponential(&ratio(1, 3), degree),
-                );
-                let beyond = times(
-                    &power(&far, &ratio(1, 4), degree),
-                    &exponential(&ratio(-1, 2), degree),
-                );
+                let singular =
+                    times(&power(&near, &exponent, degree), &exponential(&ratio(1, 3), degree));
+                let beyond =
+                    times(&power(&far, &ratio(1, 4), degree), &exponential(&ratio(-1, 2), degree));
                 let Some(found) = nearest(&plus(&singular, &beyond)) else {
                     assert!(degree < 30, "{degree} {exponent}");
                     continue;
                 };
                 let error = to_f64(&(&found.radius.value + &near)).abs();
-                assert!(
-                    error <= found.radius.error,
-                    "{degree} {exponent}: {found:?}"
-                );
+                assert!(error <= found.radius.error, "{degree} {exponent}: {found:?}");
                 assert_eq!(found.sign(), Some(Ordering::Less));
-                assert!(
-                    degree < 36 || error < 1e-6,
-                    "{degree} {exponent}: {found:?}"
-                );
+                assert!(degree < 36 || error < 1e-6, "{degree} {exponent}: {found:?}");
             }
         }
     }
@@ -998,11 +914,7 @@ mod tests {
         let (cosine, radius) = (ratio(3, 5), ratio(5, 2));
         let mut root = vec![ratio(1, 1)];
         // The square of the series is the polynomial.
-        let square = [
-            ratio(1, 1),
-            ratio(-2, 1) * &cosine / &radius,
-            (&radius * &radius).recip(),
-        ];
+        let square = [ratio(1, 1), ratio(-2, 1) * &cosine / &radius, (&radius * &radius).recip()];
         for n in 1..=60 {
             let own = square.get(n).cloned().unwrap_or_else(Rational::zero);
             let others: Rational = (1..n).map(|k| &root[k] * &root[n - k]).sum();
@@ -1010,19 +922,10 @@ mod tests {
         }
         let found = nearest(&times(&root, &exponential(&ratio(1, 2), 60))).expect("a pair");
         assert!(found.radius.error < 1e-12, "{found:?}");
-        assert!(
-            to_f64(&(&found.radius.value - &radius)).abs() <= found.radius.error,
-            "{found:?}"
-        );
+        assert!(to_f64(&(&found.radius.value - &radius)).abs() <= found.radius.error, "{found:?}");
         let angle = to_f64(&found.angle.value);
-        assert!(
-            (angle.cos() - 0.6).abs() < 1e-12 && found.sign().is_none(),
-            "{found:?}"
-        );
-        assert!(
-            to_f64(&(&found.place[0].value - ratio(3, 2))).abs() < 1e-12,
-            "{found:?}"
-        );
+        assert!((angle.cos() - 0.6).abs() < 1e-12 && found.sign().is_none(), "{found:?}");
+        assert!(to_f64(&(&found.place[0].value - ratio(3, 2))).abs() < 1e-12, "{found:?}");
         // The root of the series is that of the root.
         assert_eq!(found.exponent.expect("a power").value, ratio(-1, 4));
     }

@@ -34,47 +34,20 @@ pub(super) enum Operation {
     Slope(usize),
     /// A power that is no whole number, of what is not zero; its value, which is negative where the
     /// base may be.
-    Power {
-        base: usize,
-        exponent: f64,
-        first: fn(f64, f64) -> f64,
-    },
+    Power { base: usize, exponent: f64, first: fn(f64, f64) -> f64 },
     /// `y' = u' g`, with a function of the value of `u` to begin with: the place of `u`, that of
     /// its slope, which is zero beyond an order, and that of `g`.
-    Integral {
-        of: usize,
-        slope: usize,
-        degree: usize,
-        rate: usize,
-        first: fn(f64) -> f64,
-    },
+    Integral { of: usize, slope: usize, degree: usize, rate: usize, first: fn(f64) -> f64 },
     /// `y' = u'/v`, times a sign: the place of `u`, those of the slopes of `u` and of `y` itself,
     /// and that of `v`.
-    Quotient {
-        of: usize,
-        slope: usize,
-        own: usize,
-        over: usize,
-        sign: f64,
-        first: fn(f64) -> f64,
-    },
+    Quotient { of: usize, slope: usize, own: usize, over: usize, sign: f64, first: fn(f64) -> f64 },
     /// Sine and cosine, or their hyperbolic sisters, in this place and the next: `y' = u' z`,
     /// `z' = sign u' y`.
-    Waves {
-        of: usize,
-        slope: usize,
-        degree: usize,
-        sign: f64,
-        first: [fn(f64) -> f64; 2],
-    },
+    Waves { of: usize, slope: usize, degree: usize, sign: f64, first: [fn(f64) -> f64; 2] },
     /// The second of the waves in the place before.
     SecondWave,
     /// One of two series, by the side of a corner; zero where there is none.
-    Choose {
-        corner: usize,
-        positive: Option<usize>,
-        negative: Option<usize>,
-    },
+    Choose { corner: usize, positive: Option<usize>, negative: Option<usize> },
 }
 
 impl Operation {
@@ -82,28 +55,19 @@ impl Operation {
     fn operands(&self, place: usize) -> Vec<usize> {
         match self {
             Self::Given => vec![],
-            Self::Sum(terms) => terms
-                .iter()
-                .flat_map(|(weight, place)| [*weight, *place])
-                .collect(),
+            Self::Sum(terms) => {
+                terms.iter().flat_map(|(weight, place)| [*weight, *place]).collect()
+            }
             Self::Multiply(a, b, _) | Self::Divide(a, b, _) => vec![*a, *b],
             Self::Slope(a) => vec![*a],
             Self::Power { base, .. } => vec![*base],
-            Self::Integral {
-                of, slope, rate, ..
-            } => vec![*of, *slope, *rate],
-            Self::Quotient {
-                of,
-                slope,
-                own,
-                over,
-                ..
-            } => vec![*of, *slope, *own, *over],
+            Self::Integral { of, slope, rate, .. } => vec![*of, *slope, *rate],
+            Self::Quotient { of, slope, own, over, .. } => vec![*of, *slope, *own, *over],
             Self::Waves { of, slope, .. } => vec![*of, *slope],
             Self::SecondWave => place.checked_sub(1).into_iter().collect(),
-            Self::Choose {
-                positive, negative, ..
-            } => positive.iter().chain(negative).copied().collect(),
+            Self::Choose { positive, negative, .. } => {
+                positive.iter().chain(negative).copied().collect()
+            }
         }
     }
 }
@@ -275,13 +239,7 @@ impl Tape {
         let inverse = self.inverse[order];
         for &place in numbers.iter().chain(&self.changing) {
             let operation = &self.operations[place];
-            compute_at(
-                operation,
-                place,
-                &mut self.series,
-                &self.corners,
-                (order, inverse),
-            );
+            compute_at(operation, place, &mut self.series, &self.corners, (order, inverse));
         }
     }
 
@@ -322,11 +280,7 @@ fn compute_at(
             (at(*a, n) - known) / at(*b, 0)
         }
         Operation::Slope(a) => n as f64 * at(*a, n),
-        Operation::Power {
-            base,
-            exponent,
-            first,
-        } if n == 0 => first(at(*base, 0), *exponent),
+        Operation::Power { base, exponent, first } if n == 0 => first(at(*base, 0), *exponent),
         // What is zero altogether, as behind a closed corner, has zero for its roots.
         Operation::Power { base, exponent, .. }
             if *exponent > 0.0 && row(*base)[..=n].iter().all(|c| *c == 0.0) =>
@@ -335,37 +289,20 @@ fn compute_at(
         }
         Operation::Power { base, exponent, .. } => {
             let weight = |k: usize| exponent * k as f64 - (n - k) as f64;
-            let sum: f64 = (1..=n)
-                .map(|k| weight(k) * at(*base, k) * at(place, n - k))
-                .sum();
+            let sum: f64 = (1..=n).map(|k| weight(k) * at(*base, k) * at(place, n - k)).sum();
             sum / (n as f64 * at(*base, 0))
         }
         Operation::Integral { of, first, .. } | Operation::Quotient { of, first, .. } if n == 0 => {
             first(at(*of, 0))
         }
-        Operation::Integral {
-            slope,
-            degree,
-            rate,
-            ..
-        } => inverse * products(row(*slope), row(*rate), 1..n.min(*degree) + 1, n),
-        Operation::Quotient {
-            slope,
-            own,
-            over,
-            sign,
-            ..
-        } => {
+        Operation::Integral { slope, degree, rate, .. } => {
+            inverse * products(row(*slope), row(*rate), 1..n.min(*degree) + 1, n)
+        }
+        Operation::Quotient { slope, own, over, sign, .. } => {
             let known = products(row(*own), row(*over), 1..n, n);
             (sign * at(*slope, n) - known) * inverse / at(*over, 0)
         }
-        Operation::Waves {
-            of,
-            slope,
-            degree,
-            sign,
-            first,
-        } => {
+        Operation::Waves { of, slope, degree, sign, first } => {
             let [one, other] = match n {
                 0 => first.map(|first| first(at(*of, 0))),
                 _ => {
@@ -377,11 +314,7 @@ fn compute_at(
             series[place + 1][n] = other;
             one
         }
-        Operation::Choose {
-            corner,
-            positive,
-            negative,
-        } => {
+        Operation::Choose { corner, positive, negative } => {
             let Corner { argument, side } = &corners[*corner];
             let chosen = if *side > 0.0 { positive } else { negative };
             match at(*argument, 0).is_finite() {
@@ -413,10 +346,8 @@ impl Tape {
         let mut changed = false;
         for index in 0..self.corners.len() {
             let Corner { argument, side } = self.corners[index];
-            let first = self
-                .series(argument)
-                .iter()
-                .find(|value| value.is_finite() && **value != 0.0);
+            let first =
+                self.series(argument).iter().find(|value| value.is_finite() && **value != 0.0);
             if let Some(first) = first.filter(|first| first.signum() != side) {
                 self.corners[index].side = first.signum();
                 changed = true;
@@ -432,10 +363,7 @@ fn products(a: &[f64], b: &[f64], orders: Range<usize>, n: usize) -> f64 {
     if orders.is_empty() {
         return 0.0;
     }
-    let (a, b) = (
-        &a[orders.clone()],
-        &b[n + 1 - orders.end..=n - orders.start],
-    );
+    let (a, b) = (&a[orders.clone()], &b[n + 1 - orders.end..=n - orders.start]);
     let (mut even, mut odd) = (0.0, 0.0);
     let (pairs, backwards) = (a.chunks_exact(2), b.rchunks_exact(2));
     let last = pairs.remainder().iter().zip(backwards.remainder());
@@ -457,14 +385,8 @@ fn products_with(a: &[f64], [b, c]: [&[f64]; 2], orders: Range<usize>, n: usize)
     let a = &a[orders.clone()];
     let [b, c] = [b, c].map(|other| &other[n + 1 - orders.end..=n - orders.start]);
     let (mut even, mut odd) = ([0.0; 2], [0.0; 2]);
-    let (pairs, [of_b, of_c]) = (
-        a.chunks_exact(2),
-        [b, c].map(|other| other.rchunks_exact(2)),
-    );
-    let last = pairs
-        .remainder()
-        .iter()
-        .zip(of_b.remainder().iter().zip(of_c.remainder()));
+    let (pairs, [of_b, of_c]) = (a.chunks_exact(2), [b, c].map(|other| other.rchunks_exact(2)));
+    let last = pairs.remainder().iter().zip(of_b.remainder().iter().zip(of_c.remainder()));
     for (a, (b, c)) in pairs.zip(of_b.zip(of_c)) {
         even[0] += a[0] * b[1];
         odd[0] += a[1] * b[0];

@@ -55,10 +55,8 @@ pub enum TaylorError {
 
 /// `x = 0, x' = 0`
 fn in_words(point: &[(Symbol, Expr)]) -> String {
-    let places: Vec<String> = point
-        .iter()
-        .map(|(variable, centre)| format!("{variable} = {centre}"))
-        .collect();
+    let places: Vec<String> =
+        point.iter().map(|(variable, centre)| format!("{variable} = {centre}")).collect();
     places.join(", ")
 }
 
@@ -108,11 +106,7 @@ fn known_to(
     const ATTEMPTS: usize = 6;
     let mut length = count.max(2);
     for _ in 0..ATTEMPTS {
-        let expansion = Expansion {
-            point,
-            length,
-            too_short: Cell::new(false),
-        };
+        let expansion = Expansion { point, length, too_short: Cell::new(false) };
         match expansion.of(expression) {
             Ok(found) if found.pole > 0 && found.known > 0 => {
                 return Err(expansion.not_analytic(&pole_of(expression, point)));
@@ -126,11 +120,7 @@ fn known_to(
             Err(_) => length += 4,
         }
     }
-    let expansion = Expansion {
-        point,
-        length,
-        too_short: Cell::new(false),
-    };
+    let expansion = Expansion { point, length, too_short: Cell::new(false) };
     Err(expansion.not_analytic(expression))
 }
 
@@ -140,22 +130,15 @@ fn pole_of(expression: &Expr, point: &[(Symbol, Rational)]) -> Expr {
     let visited = expression.fold(|expr, _: &[()]| {
         if first.is_none()
             && matches!(expr.node(), Node::Power(..))
-            && let Ok(found) = (Expansion {
-                point,
-                length: 8,
-                too_short: Cell::new(false),
-            })
-            .of(expr)
+            && let Ok(found) =
+                (Expansion { point, length: 8, too_short: Cell::new(false) }).of(expr)
             && found.pole > 0
         {
             first = Some(expr.clone());
         }
         Ok::<(), std::convert::Infallible>(())
     });
-    visited
-        .ok()
-        .and(first)
-        .unwrap_or_else(|| expression.clone())
+    visited.ok().and(first).unwrap_or_else(|| expression.clone())
 }
 
 /// The Maclaurin coefficient of `u^k` (NIST Digital Library of Mathematical Functions
@@ -167,23 +150,12 @@ fn special_coefficient(function: Function, k: usize) -> Expr {
     let (half, odd) = (k / 2, k % 2 == 1);
     match function {
         Function::BesselJ0 | Function::BesselI0 if !odd => {
-            let sign = if function == Function::BesselJ0 {
-                -1
-            } else {
-                1
-            };
+            let sign = if function == Function::BesselJ0 { -1 } else { 1 };
             fraction(quarter(sign, half), num_traits::pow(factorial(half), 2))
         }
         Function::BesselJ1 | Function::BesselI1 if odd => {
-            let sign = if function == Function::BesselJ1 {
-                -1
-            } else {
-                1
-            };
-            fraction(
-                quarter(sign, half),
-                factorial(half) * factorial(half + 1) * integer(2),
-            )
+            let sign = if function == Function::BesselJ1 { -1 } else { 1 };
+            fraction(quarter(sign, half), factorial(half) * factorial(half + 1) * integer(2))
         }
         Function::EllipticK => {
             let choose = factorial(2 * k) / num_traits::pow(factorial(k), 2);
@@ -222,29 +194,21 @@ impl Expansion<'_> {
 
     /// The series of one node from the series of its children.
     fn node(&self, expression: &Expr, children: &[Laurent]) -> Result<Laurent, TaylorError> {
-        let known = children
-            .iter()
-            .map(|child| child.known)
-            .min()
-            .unwrap_or(self.length);
+        let known = children.iter().map(|child| child.known).min().unwrap_or(self.length);
         let is_constant =
             |child: &Laurent| child.pole == 0 && child.coefficients[1..].iter().all(Expr::is_zero);
         let is_power =
             |expr: &Expr| matches!(expr.node(), Node::Power(..)) && self.depends_on_variables(expr);
         // What vanishes so far may be no constant at a greater length.
         let may_vanish = is_power(expression)
-            && children
-                .first()
-                .is_some_and(|base| base.coefficients[0].is_zero());
+            && children.first().is_some_and(|base| base.coefficients[0].is_zero());
         if known == self.length
             && !may_vanish
             && children.iter().all(is_constant)
             && expression.as_symbol().is_none()
         {
-            let constants: Vec<Expr> = children
-                .iter()
-                .map(|child| child.coefficients[0].clone())
-                .collect();
+            let constants: Vec<Expr> =
+                children.iter().map(|child| child.coefficients[0].clone()).collect();
             // sgn(0) has a value, but no series goes through it.
             if !self.depends_on_variables(expression)
                 || !matches!(expression.node(), Node::Function(..))
@@ -257,13 +221,11 @@ impl Expansion<'_> {
         match (expression.node(), children) {
             (Node::Sum(_), terms) => return Ok(self.sum(terms)),
             (Node::Product(coefficient, _), factors) => {
-                let start = self.regular(
-                    self.constant(Expr::number(coefficient.clone())),
-                    self.length,
-                );
-                return factors.iter().try_fold(start, |product, factor| {
-                    self.laurent_product(&product, factor)
-                });
+                let start =
+                    self.regular(self.constant(Expr::number(coefficient.clone())), self.length);
+                return factors
+                    .iter()
+                    .try_fold(start, |product, factor| self.laurent_product(&product, factor));
             }
             (Node::Power(_, exponent), [base, _]) => {
                 if let Some(exponent) = exponent.as_number() {
@@ -272,10 +234,8 @@ impl Expansion<'_> {
             }
             _ => {}
         }
-        if let Some((term, _)) = expression
-            .children()
-            .zip(children)
-            .find(|(_, child)| child.pole > 0)
+        if let Some((term, _)) =
+            expression.children().zip(children).find(|(_, child)| child.pole > 0)
         {
             return Err(self.not_analytic(term));
         }
@@ -295,11 +255,7 @@ impl Expansion<'_> {
     }
 
     fn regular(&self, coefficients: Series, known: usize) -> Laurent {
-        Laurent {
-            pole: 0,
-            known,
-            coefficients,
-        }
+        Laurent { pole: 0, known, coefficients }
     }
 
     fn sum(&self, terms: &[Laurent]) -> Laurent {
@@ -328,10 +284,7 @@ impl Expansion<'_> {
     /// A pole that is none taken off: leading zeros.
     fn reduced(&self, mut series: Laurent) -> Laurent {
         let known = &series.coefficients[..series.known];
-        let zeros = known
-            .iter()
-            .take_while(|coefficient| coefficient.is_zero())
-            .count();
+        let zeros = known.iter().take_while(|coefficient| coefficient.is_zero()).count();
         let removable = zeros.min(series.pole);
         series.coefficients.drain(..removable);
         series.coefficients.resize(self.length, Expr::zero());
@@ -355,9 +308,7 @@ impl Expansion<'_> {
     }
 
     fn depends_on_variables(&self, expression: &Expr) -> bool {
-        self.point
-            .iter()
-            .any(|(variable, _)| expression.contains(*variable))
+        self.point.iter().any(|(variable, _)| expression.contains(*variable))
     }
 
     fn constant(&self, value: Expr) -> Series {
@@ -374,11 +325,7 @@ impl Expansion<'_> {
                 // One variable alone is put back at the end: until then `sqrt(x^4)` is the square
                 // root of a number.
                 if let Some(first) = series.get_mut(1) {
-                    *first = if self.point.len() == 1 {
-                        Expr::one()
-                    } else {
-                        itself.clone()
-                    };
+                    *first = if self.point.len() == 1 { Expr::one() } else { itself.clone() };
                 }
                 series
             }
@@ -386,9 +333,7 @@ impl Expansion<'_> {
     }
 
     fn product(&self, left: &Series, right: &Series) -> Result<Series, TaylorError> {
-        (0..self.length)
-            .map(|k| convolution(left, right, k, |_| Rational::one()))
-            .collect()
+        (0..self.length).map(|k| convolution(left, right, k, |_| Rational::one())).collect()
     }
 
     fn times(&self, series: &Series, factor: &Expr) -> Result<Series, TaylorError> {
@@ -440,11 +385,7 @@ impl Expansion<'_> {
             return Err(self.not_analytic(term));
         }
         let size = shift.abs().to_integer().to_usize().unwrap_or(usize::MAX);
-        let (zeros, pole) = if shift.is_negative() {
-            (0, size)
-        } else {
-            (size, 0)
-        };
+        let (zeros, pole) = if shift.is_negative() { (0, size) } else { (size, 0) };
         let mut result = vec![Expr::zero(); self.length.min(zeros)];
         if zeros >= self.length {
             return Ok(self.regular(result, self.length));
@@ -452,10 +393,8 @@ impl Expansion<'_> {
         let reduced = &known[lowest..];
         // Divided by a sum that stays below the line, (c + s)^3 would not be 1 in its last term.
         let whole = exponent.is_positive() && exponent.is_integer() && reduced[0].terms().len() > 1;
-        if let Some(times) = exponent
-            .to_integer()
-            .to_usize()
-            .filter(|times| whole && *times <= self.length)
+        if let Some(times) =
+            exponent.to_integer().to_usize().filter(|times| whole && *times <= self.length)
         {
             let mut padded = reduced.to_vec();
             padded.resize(self.length, Expr::zero());
@@ -486,11 +425,7 @@ impl Expansion<'_> {
         result.extend(powers);
         let known = result.len();
         result.resize(self.length, Expr::zero());
-        Ok(Laurent {
-            pole,
-            known,
-            coefficients: result,
-        })
+        Ok(Laurent { pole, known, coefficients: result })
     }
 
     fn exponential(&self, of: &Series) -> Result<Series, TaylorError> {
@@ -526,10 +461,8 @@ impl Expansion<'_> {
         let mut cosines = vec![Expr::function(cosine, vec![of[0].clone()])?];
         for k in 1..self.length {
             let of = of[1..=k].to_vec();
-            let next_sine = Expr::divide(
-                &convolution(&of, &cosines, k - 1, |j| integer(j + 1))?,
-                &number(k),
-            )?;
+            let next_sine =
+                Expr::divide(&convolution(&of, &cosines, k - 1, |j| integer(j + 1))?, &number(k))?;
             let next_cosine = Expr::divide(
                 &convolution(&of, &sines, k - 1, |j| integer(j + 1) * integer_sign(sign))?,
                 &number(k),
@@ -707,17 +640,10 @@ mod tests {
 
     /// The coefficients up to x^degree as text.
     fn coefficients(text: &str, degree: u32) -> Result<Vec<String>, TaylorError> {
-        let parts = taylor(
-            &parse_expression(text).unwrap(),
-            &[("x".into(), Zero::zero())],
-            degree,
-        )?;
+        let parts =
+            taylor(&parse_expression(text).unwrap(), &[("x".into(), Zero::zero())], degree)?;
         assert_eq!(parts.len(), degree as usize + 1);
-        let one = |part: &Expr| {
-            part.substitute("x".into(), &Expr::one())
-                .unwrap()
-                .to_string()
-        };
+        let one = |part: &Expr| part.substitute("x".into(), &Expr::one()).unwrap().to_string();
         Ok(parts.iter().map(one).collect())
     }
 

@@ -28,11 +28,7 @@ pub fn sum(terms: impl IntoIterator<Item = String>) -> String {
             (false, None) => text.extend([" + ", &term]),
         }
     }
-    if text.is_empty() {
-        "0".to_owned()
-    } else {
-        text
-    }
+    if text.is_empty() { "0".to_owned() } else { text }
 }
 
 /// The terms of a polynomial in the order of `key`.

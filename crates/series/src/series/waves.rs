@@ -42,11 +42,7 @@ impl Grid {
         while count >> (halvings + 1) >= LEAF {
             halvings += 1;
         }
-        Self {
-            half_wave,
-            halvings,
-            leaf: count.max(1).div_ceil(1 << halvings),
-        }
+        Self { half_wave, halvings, leaf: count.max(1).div_ceil(1 << halvings) }
     }
 
     /// The number of points.
@@ -118,18 +114,12 @@ impl Waves {
         let levels: Vec<usize> = (0..grid.halvings).map(|halving| size >> halving).collect();
         // Angles, in parts of the circle, of which twice the cosine is divided by.
         let mut angles = Vec::new();
-        let thetas = points
-            .iter()
-            .map(|k| (2 * k + 1) * unit / if grid.half_wave { 2 } else { 1 });
+        let thetas = points.iter().map(|k| (2 * k + 1) * unit / if grid.half_wave { 2 } else { 1 });
         angles.extend(thetas.clone());
         angles.extend(thetas.map(|theta| circle + circle / 4 - theta));
         for level in &levels {
-            angles.extend(
-                points
-                    .iter()
-                    .take(level / 2)
-                    .map(|k| (2 * k + 1) * circle / (4 * level)),
-            );
+            angles
+                .extend(points.iter().take(level / 2).map(|k| (2 * k + 1) * circle / (4 * level)));
         }
         let mut inverses = vec![residues.one(); angles.len() + 2];
         for (place, (inverse, angle)) in inverses.iter_mut().zip(&angles).enumerate() {
@@ -146,10 +136,8 @@ impl Waves {
         let mut cosines = vec![half; 4 * grid.leaf];
         let step = circle / cosines.len();
         for (place, cosine) in cosines.iter_mut().enumerate() {
-            let twice = residues.sum(
-                powers[place * step],
-                powers[(circle - place * step) % circle],
-            );
+            let twice =
+                residues.sum(powers[place * step], powers[(circle - place * step) % circle]);
             *cosine = residues.product(twice, half);
         }
         let mut rest = &inverses[..];
@@ -225,11 +213,7 @@ fn cosine_sums<A: Arithmetic>(
     let arithmetic = residues.arithmetic;
     let next = |angle: usize, step: usize| {
         let angle = angle + step;
-        if angle >= cosines.len() {
-            angle - cosines.len()
-        } else {
-            angle
-        }
+        if angle >= cosines.len() { angle - cosines.len() } else { angle }
     };
     let (mut of_left_sum, mut of_right_sum) = (arithmetic.none(), arithmetic.none());
     for (left, right) in left.iter().zip(right) {
@@ -244,13 +228,7 @@ fn cosine_sums<A: Arithmetic>(
     (residues.reduce(of_left_sum), residues.reduce(of_right_sum))
 }
 
-struct Values<'a, A>(
-    &'a mut Waves,
-    &'a Residues<A>,
-    Wave,
-    &'a [Lanes],
-    &'a mut [Lanes],
-);
+struct Values<'a, A>(&'a mut Waves, &'a Residues<A>, Wave, &'a [Lanes], &'a mut [Lanes]);
 
 impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
     type Output = ();
@@ -258,11 +236,7 @@ impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
     #[inline(always)]
     fn call(self) {
         let Self(waves, residues, wave, given, values) = self;
-        let Grid {
-            half_wave,
-            halvings,
-            leaf,
-        } = waves.grid;
+        let Grid { half_wave, halvings, leaf } = waves.grid;
         let size = waves.grid.size();
         let mut scratch = std::mem::take(&mut waves.scratch);
         let (cosines, rest) = scratch.split_at_mut(size);
@@ -287,11 +261,7 @@ impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
             (false, Wave::Sine) => {
                 for i in 0..length {
                     let above = given.get(i + 1).copied().unwrap_or_default();
-                    let below = if i > 1 {
-                        given[i - 1]
-                    } else {
-                        Lanes::default()
-                    };
+                    let below = if i > 1 { given[i - 1] } else { Lanes::default() };
                     cosines[i] = residues.difference(above, below);
                 }
             }
@@ -314,16 +284,9 @@ impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
         let used = ((length >> halvings) + 3).min(leaf);
         let (even, odd) = rest[..leaf].split_at_mut(leaf.div_ceil(2));
         let (even, odd) = (&mut even[..used.div_ceil(2)], &mut odd[..used / 2]);
-        for (part, values) in cosines
-            .chunks_exact(leaf)
-            .zip(values.chunks_exact_mut(leaf))
-        {
+        for (part, values) in cosines.chunks_exact(leaf).zip(values.chunks_exact_mut(leaf)) {
             for (place, own) in part[..used].iter().enumerate() {
-                let half = if place % 2 == 0 {
-                    &mut *even
-                } else {
-                    &mut *odd
-                };
+                let half = if place % 2 == 0 { &mut *even } else { &mut *odd };
                 half[place / 2] = *own;
             }
             // At the mirror image of a point the odd ones have the other sign.
@@ -345,10 +308,7 @@ impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
                 let (even, odd) = part.split_at_mut(level / 2);
                 for ((even, odd), over) in even.iter_mut().zip(odd).zip(&waves.halving[halving]) {
                     let value = residues.product(*odd, *over);
-                    (*even, *odd) = (
-                        residues.sum(*even, value),
-                        residues.difference(*even, value),
-                    );
+                    (*even, *odd) = (residues.sum(*even, value), residues.difference(*even, value));
                 }
             }
         }
@@ -359,13 +319,7 @@ impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
     }
 }
 
-struct Coefficients<'a, A>(
-    &'a mut Waves,
-    &'a Residues<A>,
-    Wave,
-    &'a mut [Lanes],
-    &'a mut [Lanes],
-);
+struct Coefficients<'a, A>(&'a mut Waves, &'a Residues<A>, Wave, &'a mut [Lanes], &'a mut [Lanes]);
 
 impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
     type Output = ();
@@ -373,11 +327,7 @@ impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
     #[inline(always)]
     fn call(self) {
         let Self(waves, residues, wave, values, out) = self;
-        let Grid {
-            half_wave,
-            halvings,
-            leaf,
-        } = waves.grid;
+        let Grid { half_wave, halvings, leaf } = waves.grid;
         let size = waves.grid.size();
         let mut scratch = std::mem::take(&mut waves.scratch);
         if let Some(over) = waves.over(wave) {
@@ -389,10 +339,7 @@ impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
                 let (sums, odd) = part.split_at_mut(level / 2);
                 for ((sum, odd), over) in sums.iter_mut().zip(odd).zip(&waves.halving[halving]) {
                     let difference = residues.difference(*sum, *odd);
-                    (*sum, *odd) = (
-                        residues.sum(*sum, *odd),
-                        residues.product(difference, *over),
-                    );
+                    (*sum, *odd) = (residues.sum(*sum, *odd), residues.product(difference, *over));
                 }
             }
         }
@@ -403,11 +350,7 @@ impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
         for part in values.chunks_exact_mut(leaf) {
             for k in 0..half {
                 let mirrored = part[leaf - 1 - k];
-                sums[k] = if 2 * k + 1 == leaf {
-                    part[k]
-                } else {
-                    residues.sum(part[k], mirrored)
-                };
+                sums[k] = if 2 * k + 1 == leaf { part[k] } else { residues.sum(part[k], mirrored) };
                 differences[k] = residues.difference(part[k], mirrored);
             }
             part.fill(Lanes::default());
@@ -483,10 +426,7 @@ mod tests {
                 .take(WIDTH)
                 .map(|prime| Modulus::new(prime, A::RADIX))
                 .collect();
-            let residues = &Residues {
-                arithmetic,
-                moduli: Moduli::of(&moduli),
-            };
+            let residues = &Residues { arithmetic, moduli: Moduli::of(&moduli) };
             let mut waves = Waves::new(residues, grid).expect("roots of unity");
             let values = |waves: &mut Waves, wave, coefficients: &[Lanes]| {
                 let mut values = vec![Lanes::default(); grid.size()];
@@ -500,15 +440,9 @@ mod tests {
                 // Once there and back.
                 let mut own = values(&mut waves, wave, &given);
                 let mut back = vec![Lanes::default(); self.count + 1];
-                let square: Vec<Lanes> = own
-                    .iter()
-                    .map(|value| residues.product(*value, *value))
-                    .collect();
-                let second = values(
-                    &mut waves,
-                    Wave::Cosine,
-                    &[Lanes::default(), residues.one()],
-                );
+                let square: Vec<Lanes> =
+                    own.iter().map(|value| residues.product(*value, *value)).collect();
+                let second = values(&mut waves, Wave::Cosine, &[Lanes::default(), residues.one()]);
                 waves.coefficients(residues, wave, &mut own, &mut back);
                 let mut expected = given.clone();
                 if wave == Wave::Sine && !self.half_wave {
@@ -518,11 +452,8 @@ mod tests {
                 assert_eq!(back[self.count], Lanes::default());
                 // The square times the second cosine: u^2 cos = sum of cosines with harmonics i +
                 // j + k and their differences.
-                let mut product: Vec<Lanes> = square
-                    .iter()
-                    .zip(second)
-                    .map(|(u, v)| residues.product(*u, v))
-                    .collect();
+                let mut product: Vec<Lanes> =
+                    square.iter().zip(second).map(|(u, v)| residues.product(*u, v)).collect();
                 let mut found = vec![Lanes::default(); 2 * self.count + 1];
                 waves.coefficients(residues, Wave::Cosine, &mut product, &mut found);
                 let quarter = residues.inverse(residues.small(4));
@@ -532,11 +463,7 @@ mod tests {
                     for (j, right) in expected.iter().enumerate() {
                         let (m, n) = (self.harmonic(i) as i64, self.harmonic(j) as i64);
                         let term = residues.product(residues.product(*left, *right), quarter);
-                        let upper = if wave == Wave::Sine {
-                            residues.negative(term)
-                        } else {
-                            term
-                        };
+                        let upper = if wave == Wave::Sine { residues.negative(term) } else { term };
                         for (harmonic, term) in [(m + n, upper), (m - n, term)] {
                             for harmonic in [harmonic + cosine, harmonic - cosine] {
                                 let index = harmonic.unsigned_abs() as usize

@@ -96,29 +96,19 @@ impl<'a> Writer<'a> {
     fn new(equations: &'a Equations) -> Result<Self, String> {
         // Time itself is no series of unknown length.
         let grows = |state: &str| equations.lines.contains(&format!("{state}' = 1").as_str());
-        let states = equations
-            .states
-            .iter()
-            .map(|[name, ..]| (*name, grows(name).then_some(1)));
-        let parameters = equations
-            .parameters
-            .iter()
-            .map(|[name, _]| (*name, Some(0)));
+        let states = equations.states.iter().map(|[name, ..]| (*name, grows(name).then_some(1)));
+        let parameters = equations.parameters.iter().map(|[name, _]| (*name, Some(0)));
         let variables = states.chain(parameters);
-        let variables: Vec<_> = variables
-            .map(|(name, degree)| (Symbol::from(name), degree))
-            .collect();
+        let variables: Vec<_> =
+            variables.map(|(name, degree)| (Symbol::from(name), degree)).collect();
         let mut recurrences = Recurrences::new(&variables, &BTreeMap::new(), 0);
         let (mut rates, mut names, mut functions) = (Vec::new(), BTreeMap::new(), BTreeMap::new());
         for line in equations.lines {
-            let (left, right) = line
-                .split_once(" = ")
-                .ok_or_else(|| format!("no equation: {line}"))?;
+            let (left, right) =
+                line.split_once(" = ").ok_or_else(|| format!("no equation: {line}"))?;
             let mut add = |text: &str| {
                 let expression = parse_expression(text).map_err(|error| error.to_string())?;
-                let place = recurrences
-                    .add(&expression)
-                    .map_err(|error| error.to_string())?;
+                let place = recurrences.add(&expression).map_err(|error| error.to_string())?;
                 Ok::<_, String>((expression, place))
             };
             let (expression, place) = add(right)?;
@@ -130,17 +120,12 @@ impl<'a> Writer<'a> {
                 recurrences.define(left.into(), place);
                 continue;
             };
-            let sum = left
-                .strip_prefix('(')
-                .and_then(|left| left.strip_suffix(')'));
+            let sum = left.strip_prefix('(').and_then(|left| left.strip_suffix(')'));
             let (state, beside) = match sum.and_then(|sum| sum.split_once(" + ")) {
                 None => (left, None),
                 Some((state, beside)) => (state, Some(add(beside)?.1)),
             };
-            let known = equations
-                .states
-                .iter()
-                .position(|[name, ..]| *name == state);
+            let known = equations.states.iter().position(|[name, ..]| *name == state);
             rates.push(Rate {
                 state: known.ok_or_else(|| format!("no state: {line}"))?,
                 beside,
@@ -210,9 +195,7 @@ impl<'a> Writer<'a> {
         let plain = |places: &[usize]| places.iter().map(|place| (*place, None)).collect();
         match self.tape.operation(place) {
             Operation::Sum(terms) => {
-                let terms = terms
-                    .iter()
-                    .filter(|(_, place)| !self.tape.is_number(*place));
+                let terms = terms.iter().filter(|(_, place)| !self.tape.is_number(*place));
                 terms.map(|term| (term.1, self.switch(*term))).collect()
             }
             Operation::Multiply(a, b, _) => plain(&[*a, *b]),
@@ -227,10 +210,7 @@ impl<'a> Writer<'a> {
     }
 
     fn find_flags(&mut self) {
-        let roots = self
-            .rates
-            .iter()
-            .flat_map(|rate| rate.beside.iter().chain([&rate.rate]));
+        let roots = self.rates.iter().flat_map(|rate| rate.beside.iter().chain([&rate.rate]));
         self.flags = roots.map(|root| (*root, None)).collect();
         // A place reads only those before it.
         for place in (0..self.tape.size()).rev() {
@@ -296,12 +276,7 @@ impl<'a> Writer<'a> {
         self.number(weight, &mut factors).ok()?;
         let scaled = self.scaled(place).ok()?;
         factors.extend(scaled.factors);
-        let parameter = |name: &str| {
-            self.equations
-                .parameters
-                .iter()
-                .find(|[own, _]| *own == name)
-        };
+        let parameter = |name: &str| self.equations.parameters.iter().find(|[own, _]| *own == name);
         let mut switches = self.equations.switches.iter();
         let found = switches.find(|[name, _]| {
             parameter(name).is_some_and(|[_, text]| factors.iter().any(|own| own == text))
@@ -314,9 +289,8 @@ impl<'a> Writer<'a> {
         let states = self.equations.states.len();
         match self.tape.operation(place) {
             Operation::Given => {
-                if let Some([_, text]) = place
-                    .checked_sub(states)
-                    .and_then(|place| self.equations.parameters.get(place))
+                if let Some([_, text]) =
+                    place.checked_sub(states).and_then(|place| self.equations.parameters.get(place))
                 {
                     factors.push((*text).to_owned());
                     return Ok(false);
@@ -330,10 +304,7 @@ impl<'a> Writer<'a> {
             Operation::Sum(terms) if terms.len() == 1 => {
                 Ok(self.number(terms[0].0, factors)? != self.number(terms[0].1, factors)?)
             }
-            _ => Err(format!(
-                "a number that is no product: {:?}",
-                self.tape.operation(place)
-            )),
+            _ => Err(format!("a number that is no product: {:?}", self.tape.operation(place))),
         }
     }
 
@@ -347,11 +318,7 @@ impl<'a> Writer<'a> {
             is_negative ^= self.number(weight, &mut factors)?;
             place = inner;
         }
-        Ok(Scaled {
-            is_negative,
-            factors,
-            place,
-        })
+        Ok(Scaled { is_negative, factors, place })
     }
 
     /// What the series of a place is called.
@@ -412,20 +379,14 @@ impl<'a> Writer<'a> {
     /// The conditions of a place, and others.
     fn conditions(&self, place: usize, more: &[&str]) -> Vec<String> {
         let flag = self.flags.get(&place).copied().flatten();
-        flag.iter()
-            .chain(more)
-            .map(|&condition| condition.to_owned())
-            .collect()
+        flag.iter().chain(more).map(|&condition| condition.to_owned()).collect()
     }
 
     /// What computes the coefficient of this order of a place; none of what is not stored.
     fn statements(&self, place: usize, order: &str) -> Result<Vec<Statement>, String> {
         let name = self.name(place);
         let one = |more: &[&str], text: String| {
-            Ok(vec![Statement {
-                conditions: self.conditions(place, more),
-                text,
-            }])
+            Ok(vec![Statement { conditions: self.conditions(place, more), text }])
         };
         if self.is_state(place) || self.tape.is_number(place) || !self.stored.contains(&place) {
             return Ok(vec![]);
@@ -451,23 +412,11 @@ impl<'a> Writer<'a> {
                 let of = self.term(None, *of, order)?;
                 let of = of.strip_prefix("+ ").ok_or("a slope of what is negative")?;
                 match order {
-                    "n + 1" => one(
-                        &[],
-                        format!("{name}[n] = each(|lane| (n + 1) as f64 * {of});"),
-                    ),
-                    _ => one(
-                        &["n > 0"],
-                        format!("{name}[n - 1] = each(|lane| n as f64 * {of});"),
-                    ),
+                    "n + 1" => one(&[], format!("{name}[n] = each(|lane| (n + 1) as f64 * {of});")),
+                    _ => one(&["n > 0"], format!("{name}[n - 1] = each(|lane| n as f64 * {of});")),
                 }
             }
-            Operation::Waves {
-                of,
-                slope,
-                degree,
-                sign,
-                ..
-            } => {
+            Operation::Waves { of, slope, degree, sign, .. } => {
                 if *sign > 0.0 {
                     return Err("hyperbolic functions have no kernel".to_owned());
                 }
@@ -488,10 +437,7 @@ impl<'a> Writer<'a> {
                 }
                 one(
                     &["n > 0"],
-                    format!(
-                        "sine_and_cosine({waves}, {}, n, {sine}_ahead);",
-                        self.name(*slope)
-                    ),
+                    format!("sine_and_cosine({waves}, {}, n, {sine}_ahead);", self.name(*slope)),
                 )
             }
             Operation::SecondWave => Ok(vec![]),
@@ -502,17 +448,13 @@ impl<'a> Writer<'a> {
                     other => return Err(format!("no kernel for {other:?}")),
                 };
                 let (value, slope) = (self.term(None, *of, "0")?, self.term(None, *of, "n")?);
-                let (Some(value), Some(slope), true) = (
-                    value.strip_prefix("+ "),
-                    slope.strip_prefix("+ "),
-                    *sign > 0.0,
-                ) else {
+                let (Some(value), Some(slope), true) =
+                    (value.strip_prefix("+ "), slope.strip_prefix("+ "), *sign > 0.0)
+                else {
                     return Err("a quotient of what is negative".to_owned());
                 };
-                let mut both = one(
-                    &["n == 0"],
-                    format!("{name}[0] = each(|lane| ({value}).{function}());"),
-                )?;
+                let mut both =
+                    one(&["n == 0"], format!("{name}[0] = each(|lane| ({value}).{function}());"))?;
                 let slope = format!("&each(|lane| n as f64 * {slope})");
                 let series = format!("[&mut *{name}, &mut *{name}_slope]");
                 both.extend(one(
@@ -528,27 +470,18 @@ impl<'a> Writer<'a> {
     /// A sum: the terms that are always there, numbers, and those that need a flag.
     fn sum(&self, place: usize, terms: &[(usize, usize)]) -> Result<Vec<Statement>, String> {
         if self.ahead.contains(&place) {
-            return Err(format!(
-                "a sum cannot stand beside a state: `{}`",
-                self.name(place)
-            ));
+            return Err(format!("a sum cannot stand beside a state: `{}`", self.name(place)));
         }
         let name = self.name(place);
         let own = self.flags.get(&place).copied().flatten();
         let flag = |term: &(usize, usize)| self.switch(*term).filter(|flag| Some(*flag) != own);
-        let (numbers, changing): (Vec<_>, Vec<_>) = terms
-            .iter()
-            .copied()
-            .partition(|(_, place)| self.tape.is_number(*place));
+        let (numbers, changing): (Vec<_>, Vec<_>) =
+            terms.iter().copied().partition(|(_, place)| self.tape.is_number(*place));
         let (always, sometimes): (Vec<_>, Vec<_>) =
             changing.into_iter().partition(|term| flag(term).is_none());
         // It grows in a variable of its own, and is stored once.
         let is_local = self.local.contains(&place);
-        let sum = if is_local {
-            name.clone()
-        } else {
-            format!("{name}_n")
-        };
+        let sum = if is_local { name.clone() } else { format!("{name}_n") };
         let mut statements = vec![];
         let mut text = String::new();
         for (weight, term) in always {
@@ -560,11 +493,8 @@ impl<'a> Writer<'a> {
             "-",
             usize::from(text.starts_with(" -")),
         );
-        let text = if text.is_empty() {
-            "[0.0; L]".to_owned()
-        } else {
-            format!("each(|lane| {text})")
-        };
+        let text =
+            if text.is_empty() { "[0.0; L]".to_owned() } else { format!("each(|lane| {text})") };
         let conditions = self.conditions(place, &[]);
         let is_whole = numbers.is_empty() && sometimes.is_empty();
         statements.push(Statement {
@@ -592,10 +522,7 @@ impl<'a> Writer<'a> {
             });
         }
         if !is_whole && !is_local {
-            statements.push(Statement {
-                text: format!("{name}[n] = {sum};"),
-                conditions,
-            });
+            statements.push(Statement { text: format!("{name}[n] = {sum};"), conditions });
         }
         Ok(statements)
     }
@@ -612,16 +539,9 @@ impl<'a> Writer<'a> {
     /// What hands a rate back to its state.
     fn feed(&self, rate: &Rate) -> Result<Vec<Statement>, String> {
         let name = self.name(rate.state);
-        let Scaled {
-            is_negative,
-            mut factors,
-            place,
-        } = self.scaled(rate.rate)?;
+        let Scaled { is_negative, mut factors, place } = self.scaled(rate.rate)?;
         let sign = if is_negative { "-" } else { "" };
-        let plain = |text: String| Statement {
-            conditions: vec![],
-            text,
-        };
+        let plain = |text: String| Statement { conditions: vec![], text };
         let of = self.name(place);
         let mut statements = vec![plain(match self.local.contains(&place) {
             true => {
@@ -635,19 +555,14 @@ impl<'a> Writer<'a> {
                 let beside = self.term(None, beside, "n + 1")?;
                 format!(
                     " - {}",
-                    beside
-                        .strip_prefix("+ ")
-                        .ok_or("what is negative beside a state")?
+                    beside.strip_prefix("+ ").ok_or("what is negative beside a state")?
                 )
             }
         };
         match self.slope_of(rate.state) {
             Some(slope) if beside.is_empty() => {
                 let slope = self.name(slope);
-                factors.extend([
-                    "inputs.unit[lane]".to_owned(),
-                    format!("{of}_stretched[lane]"),
-                ]);
+                factors.extend(["inputs.unit[lane]".to_owned(), format!("{of}_stretched[lane]")]);
                 statements.push(plain(format!(
                     "{slope}[n] = each(|lane| {sign}{});",
                     factors.join(" * ")
@@ -670,18 +585,12 @@ impl<'a> Writer<'a> {
 
     /// The places that are computed, in their order.
     fn places(&self) -> impl Iterator<Item = usize> {
-        self.flags
-            .keys()
-            .copied()
-            .filter(|place| !self.is_state(*place))
+        self.flags.keys().copied().filter(|place| !self.is_state(*place))
     }
 
     /// What is there before the first step of the recurrences: where states and parts begin.
     fn before(&self) -> Result<Vec<Statement>, String> {
-        let plain = |text: String| Statement {
-            conditions: vec![],
-            text,
-        };
+        let plain = |text: String| Statement { conditions: vec![], text };
         let mut before = vec![];
         for (place, [state, _, start]) in self.equations.states.iter().enumerate() {
             before.push(plain(format!("{state}[0] = {start};")));
@@ -699,11 +608,7 @@ impl<'a> Writer<'a> {
         }
         // A slope has no coefficient of order zero.
         let has_value = |place: &usize| !matches!(self.tape.operation(*place), Operation::Slope(_));
-        for place in self
-            .places()
-            .filter(|place| self.ahead.contains(place))
-            .filter(has_value)
-        {
+        for place in self.places().filter(|place| self.ahead.contains(place)).filter(has_value) {
             before.extend(self.statements(place, "0")?);
         }
         Ok(before)
@@ -713,11 +618,7 @@ impl<'a> Writer<'a> {
     /// ahead, everything else, the other states.
     fn step(&self) -> Result<Vec<Statement>, String> {
         let (mut step, mut last) = (vec![], vec![]);
-        for rate in self
-            .rates
-            .iter()
-            .filter(|rate| self.tape.degree(rate.state) != 1)
-        {
+        for rate in self.rates.iter().filter(|rate| self.tape.degree(rate.state) != 1) {
             let list = match self.is_state(self.scaled(rate.rate)?.place) {
                 true => &mut step,
                 false => &mut last,
@@ -762,14 +663,9 @@ impl<'a> Writer<'a> {
             }
         }
         let states = self.equations.states.iter();
-        let states: String = states
-            .map(|[state, field, _]| format!("{field}: {state}, "))
-            .collect();
-        let lists = [
-            ("scratch", scratch),
-            ("ahead", ahead),
-            ("ahead_of_waves", ahead_of_waves),
-        ];
+        let states: String =
+            states.map(|[state, field, _]| format!("{field}: {state}, ")).collect();
+        let lists = [("scratch", scratch), ("ahead", ahead), ("ahead_of_waves", ahead_of_waves)];
         let lists = lists.map(|(all, names)| format!("let [{}, ..] = {all};\n", names.join(", ")));
         format!(
             "let Coefficients {{ {states}scratch, ahead, ahead_of_waves }} = series;\n{}{rates}",
@@ -778,13 +674,7 @@ impl<'a> Writer<'a> {
     }
 
     fn function(&self) -> Result<String, String> {
-        let Equations {
-            name,
-            about,
-            lines,
-            stretch,
-            ..
-        } = self.equations;
+        let Equations { name, about, lines, stretch, .. } = self.equations;
         let lines: String = lines.iter().map(|line| format!("/// {line}\n")).collect();
         Ok(format!(
             "/// {about}
@@ -819,17 +709,11 @@ fn block(statements: &[Statement], depth: usize) -> String {
     let mut out = String::new();
     for run in statements.chunk_by(|one, other| first(one) == first(other)) {
         let shared = |depth: &usize| {
-            run.iter()
-                .all(|own| own.conditions.get(*depth) == run[0].conditions.get(*depth))
+            run.iter().all(|own| own.conditions.get(*depth) == run[0].conditions.get(*depth))
         };
         let end = (depth..run[0].conditions.len()).take_while(shared).count() + depth;
         match &run[0].conditions[depth..end] {
-            [] => {
-                out += &run
-                    .iter()
-                    .map(|own| own.text.clone() + "\n")
-                    .collect::<String>()
-            }
+            [] => out += &run.iter().map(|own| own.text.clone() + "\n").collect::<String>(),
             conditions => {
                 out += &format!("if {} {{\n{}}}\n", conditions.join(" && "), block(run, end))
             }
@@ -845,16 +729,8 @@ mod tests {
     const PENDULUM: Equations = Equations {
         name: "pendulum",
         about: "A pendulum.",
-        lines: &[
-            "x' = v",
-            "sine = sin(x)",
-            "cosine = cos(x)",
-            "v' = -sine - damping*v^3",
-        ],
-        states: &[
-            ["x", "place", "inputs.place"],
-            ["v", "velocity", "inputs.velocity"],
-        ],
+        lines: &["x' = v", "sine = sin(x)", "cosine = cos(x)", "v' = -sine - damping*v^3"],
+        states: &[["x", "place", "inputs.place"], ["v", "velocity", "inputs.velocity"]],
         starts: &[["sine", "inputs.sine"], ["cosine", "inputs.cosine"]],
         parameters: &[["damping", "inputs.damping[lane]"]],
         switches: &[["damping", "terms.damped"]],
@@ -903,12 +779,8 @@ v[n + 1] = each(|lane| factor[lane] * v_rate_stretched[lane]);
             ("(v + sine)' = x", "`sine` cannot stand beside a state"),
             ("(v + (1 + x)^2)' = x", "a sum cannot stand beside a state"),
         ] {
-            let lines: &'static [&'static str] = Box::leak(Box::new([
-                "x' = v",
-                "sine = sin(x)",
-                "cosine = cos(x)",
-                line,
-            ]));
+            let lines: &'static [&'static str] =
+                Box::leak(Box::new(["x' = v", "sine = sin(x)", "cosine = cos(x)", line]));
             let refused = Equations { lines, ..PENDULUM }.to_rust();
             assert!(
                 refused.as_ref().is_err_and(|error| error.contains(reason)),
@@ -916,13 +788,7 @@ v[n + 1] = each(|lane| factor[lane] * v_rate_stretched[lane]);
             );
         }
         let phase = Equations {
-            lines: &[
-                "x' = v",
-                "t' = 1",
-                "sine = sin(1 + t)",
-                "cosine = cos(1 + t)",
-                "v' = -sine",
-            ],
+            lines: &["x' = v", "t' = 1", "sine = sin(1 + t)", "cosine = cos(1 + t)", "v' = -sine"],
             states: &[
                 ["x", "place", "inputs.place"],
                 ["v", "velocity", "inputs.velocity"],
@@ -932,9 +798,7 @@ v[n + 1] = each(|lane| factor[lane] * v_rate_stretched[lane]);
         };
         let refused = phase.to_rust();
         assert!(
-            refused
-                .as_ref()
-                .is_err_and(|error| error.contains("no multiple of the time")),
+            refused.as_ref().is_err_and(|error| error.contains("no multiple of the time")),
             "{refused:?}"
         );
     }

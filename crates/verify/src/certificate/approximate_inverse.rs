@@ -33,19 +33,13 @@ impl Inverse {
                 |row: &Vec<Integer>| row.iter().map(|entry| balls.dyadic(entry, bits)).collect();
             entries.iter().map(row).collect()
         };
-        Self {
-            entries: rows(WORKING),
-            short: rows(SHORT),
-            sigma: Bound::power_of_two(sigma),
-        }
+        Self { entries: rows(WORKING), short: rows(SHORT), sigma: Bound::power_of_two(sigma) }
     }
 
     /// The norm of a vector on the number and the harmonics of the block.
     pub(super) fn norm(&self, vector: &[Ball], balls: Balls) -> Bound {
         let sizes = vector.iter().enumerate();
-        sizes
-            .map(|(row, ball)| self.weight(row) * balls.magnitude(ball))
-            .sum()
+        sizes.map(|(row, ball)| self.weight(row) * balls.magnitude(ball)).sum()
     }
 
     /// The norm of a column.
@@ -65,11 +59,7 @@ impl Inverse {
     }
 
     fn weight(&self, row: usize) -> Bound {
-        if row == 0 {
-            self.sigma
-        } else {
-            Bound::exactly(1.0)
-        }
+        if row == 0 { self.sigma } else { Bound::exactly(1.0) }
     }
 }
 
@@ -77,11 +67,7 @@ impl Inverse {
 pub(super) fn image(matrix: &[Vec<Ball>], vector: &[Ball], balls: Balls) -> Vec<Ball> {
     let row = |row: &Vec<Ball>| {
         let (mut units, mut radius) = (Integer::default(), Bound::ZERO);
-        for (entry, number) in row
-            .iter()
-            .zip(vector)
-            .filter(|(_, number)| !number.is_zero())
-        {
+        for (entry, number) in row.iter().zip(vector).filter(|(_, number)| !number.is_zero()) {
             units += &entry.middle * &number.middle;
             radius += balls.radius_of_product(entry, number);
         }

@@ -132,10 +132,7 @@ impl NotCertified {
             Self::NotConservative(_) => {
                 "a limit cycle is the motion of a formula by lindstedt-poincare or multiple-scales; `simulate` and the verdict of `derive` follow other motions in numbers"
             }
-            Self::NotLienard {
-                of_velocity: Some(equation),
-                ..
-            } => {
+            Self::NotLienard { of_velocity: Some(equation), .. } => {
                 return Some(format!(
                     "the velocity is a motion on the limit cycle of `{equation}`, of the same frequency: certify that"
                 ));
@@ -224,18 +221,13 @@ fn certified_motion(
         true => Some(judged(solution, at, BITS)?),
         false => None,
     };
-    if judged
-        .as_ref()
-        .is_some_and(|formula| !formula.sines.is_empty())
-    {
+    if judged.as_ref().is_some_and(|formula| !formula.sines.is_empty()) {
         return Err(NotCertified::Sines);
     }
     let samples = verify::true_motion(oscillator, solution, at)?;
     let (mu, harmonics) = from_samples(&samples, question.odd);
     let mut certificate = question.certificate(mu, &harmonics, judged);
-    certificate
-        .well_formed_formula()
-        .map_err(NotCertified::Formula)?;
+    certificate.well_formed_formula().map_err(NotCertified::Formula)?;
     // Many harmonics bring it near in few steps; how many a proof needs is another question.
     certificate.highest = (2 * harmonics.len()).clamp(15, HIGHEST_HARMONIC / 2) | 1;
     refine(&mut certificate, Bound::ZERO)
@@ -293,10 +285,8 @@ impl Question {
         let amplitude = amplitude.into_values().next().unwrap_or_else(Expr::one);
         let equilibrium = solution.equilibrium.substitute_all(&values)?;
         let start = &equilibrium + &amplitude;
-        let start = start
-            .as_number()
-            .ok_or_else(|| NotCertified::Start(start.to_string()))?
-            .clone();
+        let start =
+            start.as_number().ok_or_else(|| NotCertified::Start(start.to_string()))?.clone();
         let force =
             written_out(force.substitute(oscillator.coordinate, &Expr::from(coordinate()))?)?;
         // In one of two wells beside each other a motion has all harmonics, whatever the symmetry
@@ -330,18 +320,15 @@ impl Question {
 
 /// A polynomial written out, as it is in a document; anything else as it is.
 pub(super) fn written_out(force: Expr) -> Result<Expr, ExprError> {
-    let written = force.to_polynomial(&mut |_| None)?.filter(|sum| {
-        sum.exponent_range(coordinate())
-            .is_none_or(|range| range.0 >= 0)
-    });
+    let written = force
+        .to_polynomial(&mut |_| None)?
+        .filter(|sum| sum.exponent_range(coordinate()).is_none_or(|range| range.0 >= 0));
     Ok(written.as_ref().map_or(force, Expr::from))
 }
 
 /// The nearest number of units of `2^-bits`, or below it.
 pub(super) fn units(value: f64, bits: usize) -> Integer {
-    from_f64(value).map_or_else(Integer::zero, |value| {
-        Balls { bits }.fraction(&value).middle
-    })
+    from_f64(value).map_or_else(Integer::zero, |value| Balls { bits }.fraction(&value).middle)
 }
 
 /// The formula with its numbers; nothing is claimed yet. Where it is one of cosines alone it has no
@@ -354,14 +341,8 @@ pub(super) fn judged(
     let motion = solution.motion_at(at)?;
     let displacement = motion.displacement();
     let harmonics = 0..=displacement.highest_harmonic();
-    let sines: Vec<f64> = harmonics
-        .clone()
-        .map(|k| displacement.sine(k).mean().0)
-        .collect();
-    let length = sines
-        .iter()
-        .rposition(|sine| *sine != 0.0)
-        .map_or(0, |last| last + 1);
+    let sines: Vec<f64> = harmonics.clone().map(|k| displacement.sine(k).mean().0).collect();
+    let length = sines.iter().rposition(|sine| *sine != 0.0).map_or(0, |last| last + 1);
     let cosines: Vec<f64> = harmonics.map(|k| displacement.cosine(k).mean().0).collect();
     let mut formula = unclaimed([&cosines, &sines[..length]], bits);
     (formula.law, formula.values) = law::of_frequency(solution, at);
@@ -410,22 +391,15 @@ fn from_samples(samples: &[verify::Sample], odd: bool) -> (f64, Vec<f64>) {
     let count = samples.len() - 1;
     let period = samples[count].0;
     let places: Vec<f64> = samples[..count].iter().map(|(_, x, _)| *x).collect();
-    let mut harmonics = Transform::new(count)
-        .harmonics(&places, HIGHEST_HARMONIC.min(count / 2))
-        .cosines;
+    let mut harmonics =
+        Transform::new(count).harmonics(&places, HIGHEST_HARMONIC.min(count / 2)).cosines;
     // Of the constant twice the mean.
     harmonics[0] /= 2.0;
     if odd {
         harmonics.iter_mut().step_by(2).for_each(|even| *even = 0.0);
     }
-    let largest = harmonics
-        .iter()
-        .fold(0.0_f64, |most, value| most.max(value.abs()));
-    while harmonics.len() > 2
-        && harmonics
-            .last()
-            .is_some_and(|last| last.abs() < NOISE * largest)
-    {
+    let largest = harmonics.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    while harmonics.len() > 2 && harmonics.last().is_some_and(|last| last.abs() < NOISE * largest) {
         harmonics.pop();
     }
     ((period / TAU).powi(2), harmonics)
@@ -493,14 +467,9 @@ pub(super) fn inverse(certificate: &Certificate) -> Result<Vec<Vec<Integer>>, No
 /// The inverse of a matrix, in units.
 pub(super) fn inverted(derivative: DMatrix<f64>) -> Result<Vec<Vec<Integer>>, NotProved> {
     let size = derivative.nrows();
-    let inverse = derivative
-        .try_inverse()
-        .ok_or(NotProved::NoContraction(Bound::UNKNOWN))?;
-    let row = |row: usize| {
-        (0..size)
-            .map(|column| units(inverse[(row, column)], INVERSE_BITS))
-            .collect()
-    };
+    let inverse = derivative.try_inverse().ok_or(NotProved::NoContraction(Bound::UNKNOWN))?;
+    let row =
+        |row: usize| (0..size).map(|column| units(inverse[(row, column)], INVERSE_BITS)).collect();
     Ok((0..size).map(row).collect())
 }
 
@@ -509,21 +478,16 @@ pub(super) fn inverted(derivative: DMatrix<f64>) -> Result<Vec<Vec<Integer>>, No
 pub(super) fn refine(certificate: &mut Certificate, near: Bound) -> Result<(), NotProved> {
     let bits = certificate.bits;
     certificate.inverse = inverse(certificate)?;
-    iterate(
-        certificate,
-        near.max(few_units(bits)),
-        correction,
-        |certificate, step| {
-            let short = |ball| Balls { bits }.converted(ball, WORKING).middle;
-            certificate.mu -= short(&step.block[0]);
-            let block = certificate.block();
-            let corrections = block.iter().zip(&step.block[1..]);
-            for (k, ball) in corrections.chain(step.beyond.iter().map(|(k, ball)| (k, ball))) {
-                subtract(&mut certificate.coefficients, *k, short(ball));
-            }
-            shorten(&mut certificate.coefficients);
-        },
-    )
+    iterate(certificate, near.max(few_units(bits)), correction, |certificate, step| {
+        let short = |ball| Balls { bits }.converted(ball, WORKING).middle;
+        certificate.mu -= short(&step.block[0]);
+        let block = certificate.block();
+        let corrections = block.iter().zip(&step.block[1..]);
+        for (k, ball) in corrections.chain(step.beyond.iter().map(|(k, ball)| (k, ball))) {
+            subtract(&mut certificate.coefficients, *k, short(ball));
+        }
+        shorten(&mut certificate.coefficients);
+    })
 }
 
 /// So near that the digits of the numbers end.
@@ -543,10 +507,7 @@ pub(super) fn iterate<Candidate, Place>(
     let mut before = Bound::UNKNOWN;
     for _ in 0..STEPS {
         let step = correction(candidate)?;
-        let all = step
-            .block
-            .iter()
-            .chain(step.beyond.iter().map(|(_, ball)| ball));
+        let all = step.block.iter().chain(step.beyond.iter().map(|(_, ball)| ball));
         let size: Bound = all.map(|ball| WORKING.magnitude(ball)).sum();
         if size >= before || size == Bound::UNKNOWN {
             break;

@@ -40,9 +40,7 @@ pub(super) fn along_all(
 ) -> Result<FourierSeries, NoValue> {
     force.fold(|node, parts: &[FourierSeries]| {
         let value = value(node, letters, parts);
-        value
-            .filter(|value| value.norm() < Bound::UNKNOWN)
-            .ok_or_else(|| NoValue(node.to_string()))
+        value.filter(|value| value.norm() < Bound::UNKNOWN).ok_or_else(|| NoValue(node.to_string()))
     })
 }
 
@@ -54,16 +52,12 @@ fn value(
     match node.node() {
         Node::Number(value) => Some(FourierSeries::constant(WORKING.fraction(value))),
         Node::Pi => Some(FourierSeries::constant(WORKING.pi())),
-        Node::Symbol(symbol) => letters
-            .iter()
-            .find(|(letter, _)| letter == symbol)
-            .map(|(_, series)| (*series).clone()),
+        Node::Symbol(symbol) => {
+            letters.iter().find(|(letter, _)| letter == symbol).map(|(_, series)| (*series).clone())
+        }
         Node::Sum(_) => parts.iter().cloned().reduce(|sum, part| sum.sum(&part)),
         Node::Product(coefficient, _) => {
-            let product = parts
-                .iter()
-                .cloned()
-                .reduce(|product, part| product.product(&part))?;
+            let product = parts.iter().cloned().reduce(|product, part| product.product(&part))?;
             Some(times(product, coefficient))
         }
         Node::Power(_, exponent) => power(parts.first()?, exponent.as_number()?),
@@ -82,24 +76,16 @@ fn times(series: FourierSeries, coefficient: &Rational) -> FourierSeries {
 const HIGHEST_POWER: u32 = 200;
 
 fn power(base: &FourierSeries, exponent: &Rational) -> Option<FourierSeries> {
-    let times = exponent
-        .numer()
-        .abs()
-        .to_u32()
-        .filter(|times| *times <= HIGHEST_POWER)?;
-    let degree = exponent
-        .denom()
-        .to_u32()
-        .filter(|degree| *degree <= HIGHEST_POWER)?;
+    let times = exponent.numer().abs().to_u32().filter(|times| *times <= HIGHEST_POWER)?;
+    let degree = exponent.denom().to_u32().filter(|degree| *degree <= HIGHEST_POWER)?;
     match (degree, exponent.is_negative()) {
         (1, false) => Some(base.power(times)),
         (1, true) => Some(base.inverse()?.power(times)),
         (_, true) => Some(base.inverse_root(degree)?.power(times)),
         // u^(1/n) = u (u^(-1/n))^(n - 1).
-        (_, false) => Some(
-            base.product(&base.inverse_root(degree)?.power(degree - 1))
-                .power(times),
-        ),
+        (_, false) => {
+            Some(base.product(&base.inverse_root(degree)?.power(degree - 1)).power(times))
+        }
     }
 }
 
@@ -153,8 +139,5 @@ fn mirrored(force: &Expr, letters: &[Symbol]) -> Result<Expr, ExprError> {
 }
 
 fn is_nothing(expression: &Expr) -> bool {
-    expression.is_zero()
-        || expression
-            .expand()
-            .is_ok_and(|expression| expression.is_zero())
+    expression.is_zero() || expression.expand().is_ok_and(|expression| expression.is_zero())
 }

@@ -37,32 +37,22 @@ pub struct Enclosure {
 
 impl Enclosure {
     pub(super) fn of(ball: &Ball) -> Self {
-        Self {
-            middle: WORKING.middle(ball),
-            radius: ball.radius,
-        }
+        Self { middle: WORKING.middle(ball), radius: ball.radius }
     }
 
     /// The relative error of a number that stands for what is enclosed, `|number/truth - 1|`; all
     /// that is known where it is no number.
     pub fn relative_error(&self, number: f64) -> Range {
         let Some(exact) = from_f64(number) else {
-            return Range {
-                lower: 0.0,
-                upper: f64::INFINITY,
-            };
+            return Range { lower: 0.0, upper: f64::INFINITY };
         };
         let (truth, radius) = (Bound::of_fraction(&self.middle), self.radius);
         let apart = Bound::of_fraction(&(exact - &self.middle));
-        let (closest, farthest) = (
-            (below(apart) - radius.value()).next_down().max(0.0),
-            apart + radius,
-        );
+        let (closest, farthest) =
+            ((below(apart) - radius.value()).next_down().max(0.0), apart + radius);
         Range {
             lower: (closest / (truth + radius).value()).next_down().max(0.0),
-            upper: farthest
-                .over((below(truth) - radius.value()).next_down())
-                .value(),
+            upper: farthest.over((below(truth) - radius.value()).next_down()).value(),
         }
     }
 }
@@ -139,21 +129,14 @@ impl JudgedFormula {
                 "a formula of more than 800 harmonics",
             ),
             (
-                lists
-                    .into_iter()
-                    .flatten()
-                    .chain([&self.frequency])
-                    .all(small),
+                lists.into_iter().flatten().chain([&self.frequency]).all(small),
                 "a formula with a number of more than 200 digits",
             ),
             (
                 is_driven || self.frequency.is_positive(),
                 "a formula whose frequency is not positive",
             ),
-            (
-                is_driven || first != [false; 2],
-                "a formula without a first harmonic",
-            ),
+            (is_driven || first != [false; 2], "a formula without a first harmonic"),
         ];
         match demands.into_iter().find(|(holds, _)| !holds) {
             Some((_, reason)) => Err(reason),
@@ -168,12 +151,8 @@ impl JudgedFormula {
 
     /// The motion, likewise.
     pub(super) fn motion(&self, bits: usize) -> FourierSeries {
-        let balls = |units: &[Integer]| {
-            units
-                .iter()
-                .map(|units| WORKING.dyadic(units, bits))
-                .collect()
-        };
+        let balls =
+            |units: &[Integer]| units.iter().map(|units| WORKING.dyadic(units, bits)).collect();
         FourierSeries::exactly(balls(&self.coefficients), balls(&self.sines))
     }
 }
@@ -195,9 +174,7 @@ pub(super) struct Truth<'a> {
 /// A frequency without a value.
 pub(super) fn certified(certificate: &Certificate, proof: Proof) -> Result<Certified, NotProved> {
     let mut mu = certificate.mu_ball();
-    mu.radius += proof
-        .radius
-        .over(Bound::power_of_two(certificate.sigma).value());
+    mu.radius += proof.radius.over(Bound::power_of_two(certificate.sigma).value());
     let inverse = WORKING.quotient(&WORKING.integer(1), &mu);
     let frequency = inverse.and_then(|inverse| WORKING.root(&inverse, 2));
     let frequency = frequency.ok_or(NotProved::TooLarge(proof.radius))?;
@@ -291,9 +268,7 @@ fn apart(own: &Ball, truth: &Ball) -> (Range, Range) {
     };
     let smallest = WORKING.distance_from_zero(truth);
     let relative = Range {
-        lower: (error.lower / WORKING.magnitude(truth).value())
-            .next_down()
-            .max(0.0),
+        lower: (error.lower / WORKING.magnitude(truth).value()).next_down().max(0.0),
         upper: match smallest > 0.0 {
             true => Bound::exactly(error.upper).over(smallest).value(),
             false => f64::INFINITY,
@@ -307,11 +282,7 @@ fn below_mean(series: &FourierSeries) -> f64 {
     /// More than what the roundings of so short a sum make.
     const ROUNDING: f64 = 1e-12;
     let square = |ball: &Ball| WORKING.distance_from_zero(ball).max(0.0).powi(2);
-    let waves = series
-        .cosines
-        .iter()
-        .skip(1)
-        .chain(series.sines.iter().skip(1));
+    let waves = series.cosines.iter().skip(1).chain(series.sines.iter().skip(1));
     let mean = square(&series.cosine(0)) + 0.5 * waves.map(square).sum::<f64>();
     (mean.sqrt() * (1.0 - ROUNDING) - series.tail.value()).max(0.0)
 }
@@ -333,19 +304,14 @@ fn largest(series: &FourierSeries) -> (f64, Bound) {
         false => points + 1,
     };
     let short = parts.map(|balls| {
-        balls
-            .iter()
-            .map(|ball| BALLS.converted(ball, WORKING))
-            .collect::<Vec<Ball>>()
+        balls.iter().map(|ball| BALLS.converted(ball, WORKING)).collect::<Vec<Ball>>()
     });
     let (mut lower, mut upper) = (0.0_f64, Bound::ZERO);
     for j in 0..all {
         let (mut units, mut radius) = (Integer::zero(), Bound::ZERO);
         for (wave, coefficients) in short.iter().enumerate() {
-            for (k, coefficient) in coefficients
-                .iter()
-                .enumerate()
-                .filter(|(_, ball)| !ball.is_zero())
+            for (k, coefficient) in
+                coefficients.iter().enumerate().filter(|(_, ball)| !ball.is_zero())
             {
                 let value = &table[j * k % (2 * points)][wave];
                 units += &coefficient.middle * &value.middle;
@@ -359,10 +325,7 @@ fn largest(series: &FourierSeries) -> (f64, Bound) {
     // cos y >= 1 - y^2/2.
     let half_step = Bound::of_nearest(PI) * Bound::exactly(degree as f64) / (2 * points as u32);
     let between = (half_step * half_step / 2).below_complement();
-    (
-        (lower - series.tail.value()).next_down().max(0.0),
-        upper.over(between) + series.tail,
-    )
+    ((lower - series.tail.value()).next_down().max(0.0), upper.over(between) + series.tail)
 }
 
 /// Cosine and sine of the angles `pi j/points`, `j` below twice their number.
@@ -372,9 +335,7 @@ pub(super) fn waves(points: usize, balls: Balls) -> Vec<[Ball; 2]> {
         let all = FourierSeries::exactly(vec![], vec![]).widened(Bound::exactly(1.0));
         (all.clone(), all)
     };
-    let (sine, cosine) = FourierSeries::constant(step)
-        .sine_and_cosine()
-        .unwrap_or_else(unknown);
+    let (sine, cosine) = FourierSeries::constant(step).sine_and_cosine().unwrap_or_else(unknown);
     let turn = [cosine.at_zero(), sine.at_zero()];
     let mut at = [WORKING.integer(1), Ball::zero()];
     let mut table = Vec::with_capacity(2 * points);
@@ -410,17 +371,9 @@ pub(super) fn hold_claims(
     if let (Some(claimed), Some(errors)) = (formula, &certified.formula) {
         let amplitude = errors.amplitude.unwrap_or_default();
         let both = [
-            (
-                "the error of the amplitude",
-                amplitude,
-                &claimed.amplitude_error,
-            ),
+            ("the error of the amplitude", amplitude, &claimed.amplitude_error),
             ("the deviation", errors.deviation, &claimed.deviation),
-            (
-                "the error of the frequency",
-                errors.frequency,
-                &claimed.frequency_error,
-            ),
+            ("the error of the frequency", errors.frequency, &claimed.frequency_error),
             ("the drift", errors.drift, &claimed.drift),
         ];
         for (what, proved, claim) in both {

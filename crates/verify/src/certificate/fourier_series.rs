@@ -94,12 +94,7 @@ impl FourierSeries {
 
     /// Of these cosines and sines and nothing else.
     pub(super) fn exactly(cosines: Vec<Ball>, sines: Vec<Ball>) -> Self {
-        Self {
-            cosines,
-            sines,
-            tail: Bound::ZERO,
-            negligible: NEGLIGIBLE,
-        }
+        Self { cosines, sines, tail: Bound::ZERO, negligible: NEGLIGIBLE }
     }
 
     /// The same, of which so many binary digits count.
@@ -123,10 +118,7 @@ impl FourierSeries {
     /// All that it may be at the angle 0, which is all where it is a constant.
     pub(super) fn at_zero(&self) -> Ball {
         let zero = Ball::zero();
-        let mut value = self
-            .cosines
-            .iter()
-            .fold(zero, |sum, ball| WORKING.sum(&sum, ball));
+        let mut value = self.cosines.iter().fold(zero, |sum, ball| WORKING.sum(&sum, ball));
         value.radius += self.tail;
         value
     }
@@ -153,10 +145,7 @@ impl FourierSeries {
 
     /// The coefficient of a cosine.
     pub(super) fn cosine(&self, harmonic: usize) -> Ball {
-        self.cosines
-            .get(harmonic)
-            .cloned()
-            .unwrap_or_else(Ball::zero)
+        self.cosines.get(harmonic).cloned().unwrap_or_else(Ball::zero)
     }
 
     /// The coefficient of a sine.
@@ -186,30 +175,19 @@ impl FourierSeries {
                 .push(WORKING.difference(&WORKING.product(&b, cosine), &WORKING.product(&a, sine)));
             angle = sum_of_angles(&angle, by);
         }
-        Self {
-            cosines,
-            sines,
-            tail: self.tail,
-            negligible: self.negligible,
-        }
+        Self { cosines, sines, tail: self.tail, negligible: self.negligible }
     }
 
     /// The derivative by the angle; nothing is known of that of a tail.
     pub(super) fn derivative(&self) -> Self {
         let by_harmonic = |balls: &[Ball], sign: i64| {
             let scaled = balls.iter().enumerate();
-            scaled
-                .map(|(k, ball)| WORKING.scaled(ball, sign * k as i64))
-                .collect()
+            scaled.map(|(k, ball)| WORKING.scaled(ball, sign * k as i64)).collect()
         };
         Self {
             cosines: by_harmonic(&self.sines, 1),
             sines: by_harmonic(&self.cosines, -1),
-            tail: if self.tail == Bound::ZERO {
-                self.tail
-            } else {
-                Bound::UNKNOWN
-            },
+            tail: if self.tail == Bound::ZERO { self.tail } else { Bound::UNKNOWN },
             negligible: self.negligible,
         }
     }
@@ -446,10 +424,7 @@ impl FourierSeries {
     pub(super) fn logarithm(&self) -> Option<Self> {
         let mut guess = self.sampled(f64::ln)?;
         let beyond = |guess: &Self| {
-            Some(
-                self.product(&guess.negated().exponential()?)
-                    .difference(&Self::integer(1)),
-            )
+            Some(self.product(&guess.negated().exponential()?).difference(&Self::integer(1)))
         };
         let mut rest = beyond(&guess)?;
         for _ in 0..STEPS {
@@ -499,13 +474,7 @@ impl FourierSeries {
     fn start(&self) -> Option<f64> {
         let value = self.at_zero();
         let distance = WORKING.distance_from_zero(&value);
-        (distance > 0.0).then(|| {
-            if value.middle.is_negative() {
-                -distance
-            } else {
-                distance
-            }
-        })
+        (distance > 0.0).then(|| if value.middle.is_negative() { -distance } else { distance })
     }
 
     /// The middles alone: a guess of an iteration needs no more.
@@ -525,11 +494,7 @@ impl FourierSeries {
             .map(|k| [&self.cosine(k), &self.sine(k)].map(|ball| WORKING.nearest(ball)));
         let count = (8 * self.length()).next_power_of_two().clamp(64, 4096);
         let transform = Transform::new(count);
-        let samples: Vec<f64> = transform
-            .sum_of_waves(waves)
-            .into_iter()
-            .map(function)
-            .collect();
+        let samples: Vec<f64> = transform.sum_of_waves(waves).into_iter().map(function).collect();
         if samples.iter().any(|value| !value.is_finite()) {
             return None;
         }
@@ -549,16 +514,10 @@ impl FourierSeries {
                     *coefficient = 0.0;
                 }
             }
-            let length = coefficients
-                .iter()
-                .rposition(|c| *c != 0.0)
-                .map_or(0, |last| last + 1);
+            let length = coefficients.iter().rposition(|c| *c != 0.0).map_or(0, |last| last + 1);
             coefficients.truncate(length);
             let ball = |value| Some(WORKING.fraction(&from_f64(value)?));
-            coefficients
-                .into_iter()
-                .map(ball)
-                .collect::<Option<Vec<Ball>>>()
+            coefficients.into_iter().map(ball).collect::<Option<Vec<Ball>>>()
         };
         Some(Self {
             cosines: balls(harmonics.cosines)?,
@@ -577,17 +536,12 @@ fn add_products(
     right: &[Ball],
     waves: impl Fn(usize, usize) -> [(usize, bool); 2],
 ) {
-    let right: Vec<(usize, &Ball)> = right
-        .iter()
-        .enumerate()
-        .filter(|(_, ball)| !ball.is_zero())
-        .collect();
+    let right: Vec<(usize, &Ball)> =
+        right.iter().enumerate().filter(|(_, ball)| !ball.is_zero()).collect();
     for (i, left) in left.iter().enumerate().filter(|(_, left)| !left.is_zero()) {
         for &(j, right) in &right {
-            let (product, radius) = (
-                &left.middle * &right.middle,
-                WORKING.radius_of_product(left, right),
-            );
+            let (product, radius) =
+                (&left.middle * &right.middle, WORKING.radius_of_product(left, right));
             for (harmonic, negative) in waves(i, j) {
                 match negative {
                     true => doubled[harmonic].0 -= &product,
@@ -622,22 +576,15 @@ mod tests {
     fn series() -> impl Strategy<Value = (FourierSeries, [Vec<f64>; 2])> {
         let coefficients = || proptest::collection::vec(-0.25..0.25_f64, 1..4);
         let disturbance = prop_oneof![Just(0.0), Just(0.01), Just(-0.01), -0.01..0.01_f64];
-        (
-            coefficients(),
-            coefficients(),
-            any::<bool>(),
-            disturbance,
-            0_usize..7,
-        )
-            .prop_map(|(cosines, mut sines, even, disturbance, harmonic)| {
+        (coefficients(), coefficients(), any::<bool>(), disturbance, 0_usize..7).prop_map(
+            |(cosines, mut sines, even, disturbance, harmonic)| {
                 sines[0] = 0.0;
                 if even {
                     sines.clear();
                 }
                 let balls = |numbers: &[f64]| {
-                    let balls = numbers
-                        .iter()
-                        .filter_map(|c| Some(WORKING.fraction(&from_f64(*c)?)));
+                    let balls =
+                        numbers.iter().filter_map(|c| Some(WORKING.fraction(&from_f64(*c)?)));
                     balls.collect()
                 };
                 let series = FourierSeries::exactly(balls(&cosines), balls(&sines))
@@ -647,7 +594,8 @@ mod tests {
                 disturbed.resize(disturbed.len().max(harmonic + 1), 0.0);
                 disturbed[harmonic] += disturbance;
                 (series, numbers)
-            })
+            },
+        )
     }
 
     fn value([cosines, sines]: &[Vec<f64>; 2], angle: f64) -> f64 {
@@ -662,12 +610,7 @@ mod tests {
     fn holds(series: &FourierSeries, angle: f64, number: f64) -> bool {
         let numbers = [&series.cosines, &series.sines]
             .map(|balls| balls.iter().map(|ball| WORKING.nearest(ball)).collect());
-        let radii: Bound = series
-            .cosines
-            .iter()
-            .chain(&series.sines)
-            .map(|ball| ball.radius)
-            .sum();
+        let radii: Bound = series.cosines.iter().chain(&series.sines).map(|ball| ball.radius).sum();
         (value(&numbers, angle) - number).abs() <= (series.tail + radii).value() + 1e-12
     }
 

@@ -37,9 +37,9 @@ pub(super) fn of_frequency(solution: &Solution, at: &Values) -> (String, Values)
         _ => None,
     };
     let law = match exactly {
-        Some((name, value)) => with_definitions(solution, name, &value, |definition| {
-            definition.meaning.to_string()
-        }),
+        Some((name, value)) => {
+            with_definitions(solution, name, &value, |definition| definition.meaning.to_string())
+        }
         None => solution.formula(),
     };
     let values = values_in(&law, at);
@@ -56,24 +56,20 @@ pub(super) fn with_definitions(
     let definitions = solution.definitions_behind(value.symbols()).into_iter();
     let definitions =
         definitions.map(|definition| format!(", {} = {}", definition.symbol, meaning(definition)));
-    std::iter::once(format!("{name} = {value}"))
-        .chain(definitions)
-        .collect()
+    std::iter::once(format!("{name} = {value}")).chain(definitions).collect()
 }
 
 /// Selects the values whose letters stand in a law; none for words.
 pub(super) fn values_in(law: &str, at: &Values) -> Values {
-    let letters = read(law)
-        .map(|(_, value)| value.symbols())
-        .unwrap_or_default();
-    at.split(&letters.into_iter().collect::<Vec<Symbol>>())
-        .0
-        .into_iter()
-        .fold(Values::default(), |mut values, (name, value)| {
+    let letters = read(law).map(|(_, value)| value.symbols()).unwrap_or_default();
+    at.split(&letters.into_iter().collect::<Vec<Symbol>>()).0.into_iter().fold(
+        Values::default(),
+        |mut values, (name, value)| {
             // A value is one.
             let _ = values.insert(name, value);
             values
-        })
+        },
+    )
 }
 
 /// The left side of a law, and its right side with the definitions put in.
@@ -118,10 +114,8 @@ fn equations_of(law: &str) -> Vec<&str> {
 /// words.
 pub(super) fn with_values(law: &str, values: &Values) -> Option<(String, Expr)> {
     let (name, value) = read(law)?;
-    let values: BTreeMap<Symbol, Expr> = values
-        .iter()
-        .map(|(name, value)| (name, value.clone()))
-        .collect();
+    let values: BTreeMap<Symbol, Expr> =
+        values.iter().map(|(name, value)| (name, value.clone())).collect();
     Some((name, value.substitute_all(&values).ok()?))
 }
 

@@ -203,10 +203,7 @@ impl Certificate {
 
     /// The approximate motion.
     fn motion(&self) -> FourierSeries {
-        let balls = self
-            .coefficients
-            .iter()
-            .map(|units| WORKING.dyadic(units, self.bits));
+        let balls = self.coefficients.iter().map(|units| WORKING.dyadic(units, self.bits));
         FourierSeries::exactly(balls.collect(), vec![]).of_digits(self.bits)
     }
 
@@ -284,10 +281,7 @@ impl Certificate {
             let near = amplitude.abs()
                 / Rational::from_integer(Integer::from(1) << ROUNDING_OF_EQUILIBRIUM);
             let force = |place: Rational| {
-                let value = self
-                    .force
-                    .substitute(coordinate(), &Expr::number(place))
-                    .ok();
+                let value = self.force.substitute(coordinate(), &Expr::number(place)).ok();
                 value.and_then(|value| law::number(&value))
             };
             let is_zero = |ball: &Ball| WORKING.distance_from_zero(ball) <= 0.0;
@@ -337,18 +331,10 @@ impl Sizes<'_> {
             force.symbols().iter().all(|name| letters.contains(name))
         };
         let coefficients = self.coefficients.iter().copied().flatten();
-        let all = coefficients
-            .chain([self.number])
-            .chain(self.inverse.iter().flatten());
+        let all = coefficients.chain([self.number]).chain(self.inverse.iter().flatten());
         let demands = [
-            (
-                self.bits.iter().all(|bits| *bits <= MOST_BITS),
-                "more than 224 bits",
-            ),
-            (
-                (-64..=64).contains(&self.sigma),
-                "a weight of mu beyond 2^64",
-            ),
+            (self.bits.iter().all(|bits| *bits <= MOST_BITS), "more than 224 bits"),
+            ((-64..=64).contains(&self.sigma), "a weight of mu beyond 2^64"),
             (
                 (1..=HIGHEST_HARMONIC).contains(&self.highest),
                 "a block that ends beyond harmonic 400, or has none",
@@ -358,15 +344,10 @@ impl Sizes<'_> {
                 "odd harmonics, and a block that ends with an even one",
             ),
             (
-                self.coefficients
-                    .iter()
-                    .all(|list| list.len() <= 2 * HIGHEST_HARMONIC),
+                self.coefficients.iter().all(|list| list.len() <= 2 * HIGHEST_HARMONIC),
                 "more than 800 harmonics",
             ),
-            (
-                self.expressions.iter().all(has_values),
-                "a force with letters that have no value",
-            ),
+            (self.expressions.iter().all(has_values), "a force with letters that have no value"),
             (
                 all.into_iter().all(|integer| integer.bits() <= 700),
                 "a number of more than 200 digits",

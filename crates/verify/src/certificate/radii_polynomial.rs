@@ -68,21 +68,15 @@ impl fmt::Display for NotProved {
             Self::NotOdd => {
                 formatter.write_str("the equation is not odd, or there are even harmonics")
             }
-            Self::NoContraction(bound) => write!(
-                formatter,
-                "Z1 <= {} is not below 1",
-                rounded_up(bound.value(), 4)
-            ),
-            Self::TooFar(bound) => write!(
-                formatter,
-                "Y0 <= {} is too large",
-                rounded_up(bound.value(), 4)
-            ),
-            Self::TooLarge(bound) => write!(
-                formatter,
-                "the radius {} is too large",
-                rounded_up(bound.value(), 4)
-            ),
+            Self::NoContraction(bound) => {
+                write!(formatter, "Z1 <= {} is not below 1", rounded_up(bound.value(), 4))
+            }
+            Self::TooFar(bound) => {
+                write!(formatter, "Y0 <= {} is too large", rounded_up(bound.value(), 4))
+            }
+            Self::TooLarge(bound) => {
+                write!(formatter, "the radius {} is too large", rounded_up(bound.value(), 4))
+            }
         }
     }
 }
@@ -137,12 +131,7 @@ pub(super) fn radius(
         let radius = (defect + defect).over(divisor);
         let contracts = (contraction + curvature * radius) < Bound::exactly(1.0);
         if radius <= within && contracts && distinct(radius) {
-            return Ok(Proof {
-                radius,
-                defect,
-                contraction,
-                curvature,
-            });
+            return Ok(Proof { radius, defect, contraction, curvature });
         }
         reason = NotProved::TooLarge(radius);
     }

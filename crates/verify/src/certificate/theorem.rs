@@ -69,10 +69,8 @@ pub(super) fn prove_around(
     let theorem = Theorem::of(certificate)?;
     let [of_middle, of_all] = [theorem.proof(Bound::ZERO)?, theorem.proof(spread)?];
     let sigma = theorem.system.inverse.sigma.value();
-    let widened = |ball: &Ball, by: Bound| Ball {
-        middle: ball.middle.clone(),
-        radius: ball.radius + by,
-    };
+    let widened =
+        |ball: &Ball, by: Bound| Ball { middle: ball.middle.clone(), radius: ball.radius + by };
     let (direction, left) = theorem.system.slope_by_start(&theorem.slope);
     let turned = of_all.curvature * of_all.radius;
     let contracts = (of_all.contraction + turned).below_complement();
@@ -170,16 +168,9 @@ struct Slope {
 impl Slope {
     fn of(series: FourierSeries) -> Self {
         let halved = |(k, ball): (usize, &Ball)| {
-            if k == 0 {
-                ball.clone()
-            } else {
-                WORKING.divided(ball, 2)
-            }
+            if k == 0 { ball.clone() } else { WORKING.divided(ball, 2) }
         };
-        Self {
-            halves: series.cosines.iter().enumerate().map(halved).collect(),
-            series,
-        }
+        Self { halves: series.cosines.iter().enumerate().map(halved).collect(), series }
     }
 
     /// `M_kj`: the coefficient of `cos k theta` in `f'(c) cos j theta`.
@@ -213,11 +204,8 @@ impl<'a> System<'a> {
     fn of(certificate: &'a Certificate) -> Result<Self, NotProved> {
         let motion = certificate.motion();
         let force = along(&certificate.force, &motion)?;
-        let inverse = Inverse::of(
-            &certificate.inverse,
-            certificate.inverse_bits,
-            certificate.sigma,
-        );
+        let inverse =
+            Inverse::of(&certificate.inverse, certificate.inverse_bits, certificate.sigma);
         let block = certificate.block();
         let start = inverse.norm_of_column(0);
         let columns = (1..=block.len()).map(|column| inverse.norm_of_column(column));
@@ -288,19 +276,12 @@ impl<'a> System<'a> {
         }
         let mut vector = vec![start];
         vector.extend(self.block.iter().map(|&k| equation(k)));
-        Correction {
-            block: image(&self.inverse.entries, &vector, WORKING),
-            beyond,
-        }
+        Correction { block: image(&self.inverse.entries, &vector, WORKING), beyond }
     }
 
     /// The norm of `mu` and harmonics.
     fn norm(&self, vector: &Correction<usize>) -> Bound {
-        let beyond: Bound = vector
-            .beyond
-            .iter()
-            .map(|(_, y)| WORKING.magnitude(y))
-            .sum();
+        let beyond: Bound = vector.beyond.iter().map(|(_, y)| WORKING.magnitude(y)).sum();
         self.inverse.norm(&vector.block, WORKING) + beyond
     }
 
@@ -310,20 +291,13 @@ impl<'a> System<'a> {
         /// Steps of Newton's iteration, each of which gains the digits of Z1.
         const STEPS: usize = 6;
         let one = WORKING.integer(1);
-        let mut direction = Direction {
-            mu: Ball::zero(),
-            harmonics: FourierSeries::exactly(vec![], vec![]),
-        };
+        let mut direction =
+            Direction { mu: Ball::zero(), harmonics: FourierSeries::exactly(vec![], vec![]) };
         let mut step = 0;
         loop {
             let waves = &direction.harmonics;
             let bent = slope.series.product(waves);
-            let last = self
-                .force
-                .cosines
-                .len()
-                .max(bent.cosines.len())
-                .max(waves.cosines.len());
+            let last = self.force.cosines.len().max(bent.cosines.len()).max(waves.cosines.len());
             let left = self.image(WORKING.difference(&one, &waves.at_zero()), last, |k| {
                 let inertia = WORKING.scaled(&waves.cosine(k), i64::from(Self::square(k)));
                 let moved = WORKING.sum(

@@ -103,9 +103,7 @@ pub fn validity(
 ) -> Result<Validity, NotCertified> {
     let mut family = Family::of(oscillator, solution, at, from)?;
     let tolerance = not_above_typed(tolerance);
-    let finer = (1..=4)
-        .take_while(|finer| tolerance < 0.01 / f64::from(1 << (finer - 1)))
-        .count();
+    let finer = (1..=4).take_while(|finer| tolerance < 0.01 / f64::from(1 << (finer - 1))).count();
     let finest = PLACES << finer;
     let ends = [from, to].map(to_f64);
     let place = |position: u32| match position {
@@ -114,10 +112,8 @@ pub fn validity(
         _ => {
             let part = f64::from(position) / f64::from(finest);
             let place = ends[0] * (ends[1] / ends[0]).powf(part);
-            from_f64(place).map_or_else(
-                || from.clone(),
-                |place| place.max(from.clone()).min(to.clone()),
-            )
+            from_f64(place)
+                .map_or_else(|| from.clone(), |place| place.max(from.clone()).min(to.clone()))
         }
     };
     let (mut position, mut width, mut intervals, mut within) = (0, finest / 64, 0, 0.0_f64);
@@ -150,13 +146,7 @@ pub fn validity(
             }
         }
     };
-    Ok(Validity {
-        from: from.clone(),
-        to: place(position),
-        within,
-        intervals,
-        beyond,
-    })
+    Ok(Validity { from: from.clone(), to: place(position), within, intervals, beyond })
 }
 
 /// The motions of one equation and their law, amplitude by amplitude.
@@ -187,10 +177,7 @@ impl<'a> Family<'a> {
         let (mut certificate, _) = certify(oscillator, solution, &with(&at, solution, from))?;
         certificate.formula = None;
         certificate.shorten(BITS);
-        let law = solution
-            .law
-            .closed_form()
-            .map(|form| (form.value.clone(), form.squared));
+        let law = solution.law.closed_form().map(|form| (form.value.clone(), form.squared));
         let law = law.or_else(|| Some((Expr::from(solution.law.frequency_squared()?), true)));
         let law = law.or_else(|| Some((Expr::from(solution.law.frequency()?), false)));
         let (mut value, is_squared) = law.ok_or_else(|| NotCertified::Law(solution.formula()))?;
@@ -198,9 +185,8 @@ impl<'a> Family<'a> {
             value = value.substitute(definition.symbol, &definition.meaning)?;
         }
         let (values, _) = at.split(&oscillator.parameters);
-        let value = value
-            .substitute_all(&values)?
-            .substitute(amplitude, &Expr::from(coordinate()))?;
+        let value =
+            value.substitute_all(&values)?.substitute(amplitude, &Expr::from(coordinate()))?;
         let squared = if is_squared { value } else { &value * &value };
         Ok(Self {
             equilibrium: &certificate.start - from,
@@ -236,27 +222,18 @@ impl<'a> Family<'a> {
         ratio.radius += spread * WORKING.magnitude(&slope);
         let root = WORKING.root(&ratio, 2).ok_or(NotProved::TooLarge(spread))?;
         self.certificate = certificate;
-        Ok(WORKING
-            .magnitude(&WORKING.difference(&root, &WORKING.integer(1)))
-            .value())
+        Ok(WORKING.magnitude(&WORKING.difference(&root, &WORKING.integer(1))).value())
     }
 
     /// The first of these amplitudes at which the formula is proved to be off by more, or what is
     /// known of the very first.
     fn beyond(&self, amplitudes: &[Rational; 5], tolerance: f64) -> Beyond {
         let is_further = |amplitude: &Rational| {
-            let (_, certified) = certify(
-                self.oscillator,
-                self.solution,
-                &with(&self.at, self.solution, amplitude),
-            )?;
-            Ok(certified
-                .formula
-                .is_some_and(|errors| errors.relative.lower > tolerance))
+            let (_, certified) =
+                certify(self.oscillator, self.solution, &with(&self.at, self.solution, amplitude))?;
+            Ok(certified.formula.is_some_and(|errors| errors.relative.lower > tolerance))
         };
-        let further = amplitudes
-            .iter()
-            .find(|amplitude| is_further(amplitude) == Ok(true));
+        let further = amplitudes.iter().find(|amplitude| is_further(amplitude) == Ok(true));
         match (further, is_further(&amplitudes[0])) {
             (Some(further), _) => Beyond::Further(further.clone()),
             (None, Ok(_)) => Beyond::Open(amplitudes[0].clone()),

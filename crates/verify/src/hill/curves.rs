@@ -140,10 +140,7 @@ fn mixed(hill: &Hill, tongue: usize, order: u32) -> Vec<TransitionCurve> {
     // What opens the tongue enters Q squared: with the power 2 n.
     let beyond = order.max(2 * tongue as u32);
     let further = effective_matrix(hill, tongue, beyond);
-    let power = Powers {
-        hill,
-        order: beyond,
-    };
+    let power = Powers { hill, order: beyond };
     let (middle, root) = middle_and_square(&power, tongue, &further);
     let middle = power.cut(&middle, order.into());
     let shown = i64::from(order.max(beyond - 1)) + 1;
@@ -151,11 +148,7 @@ fn mixed(hill: &Hill, tongue: usize, order: u32) -> Vec<TransitionCurve> {
     let curve = |upper: bool| {
         let (middle, under_root) = match &exact_root {
             Some(root) => {
-                let curve = if upper {
-                    middle.sum_with(root)
-                } else {
-                    middle.less(root)
-                };
+                let curve = if upper { middle.sum_with(root) } else { middle.less(root) };
                 (power.cut(&curve, order.into()), None)
             }
             None => (middle.clone(), Some(power.cut(&root, shown))),
@@ -187,9 +180,7 @@ fn middle_and_square(
         .into_iter()
         .filter_map(|entry| power.least_degree(entry));
     let known = i64::from(power.order) + least.min().unwrap_or(0);
-    let root = difference
-        .product(&difference)
-        .sum_with(&upper_right.product(lower_left));
+    let root = difference.product(&difference).sum_with(&upper_right.product(lower_left));
     let root = power.cut(&root, known);
     match hill.unknown {
         Unknown::Stiffness { .. } => {
@@ -223,12 +214,8 @@ fn effective_matrix(hill: &Hill, tongue: usize, order: u32) -> [[Polynomial; 2];
             .collect(),
     ];
     let at_rest = quarter.scaled(&fraction(tongue * tongue, 1));
-    let zero = || {
-        [
-            [Polynomial::zero(), Polynomial::zero()],
-            [Polynomial::zero(), Polynomial::zero()],
-        ]
-    };
+    let zero =
+        || [[Polynomial::zero(), Polynomial::zero()], [Polynomial::zero(), Polynomial::zero()]];
     let mut orders = vec![zero()];
     orders[0][0][0] = at_rest.clone();
     orders[0][1][1] = at_rest;
@@ -242,12 +229,7 @@ fn effective_matrix(hill: &Hill, tongue: usize, order: u32) -> [[Polynomial; 2];
                 image = image.difference(&stiffness.product(wave));
                 image = image.difference(&half.product(&damping.product(&wave.derivative())));
             }
-            let entry = |k: usize| {
-                (
-                    image.cosine(k).constant_term(),
-                    image.sine(k).constant_term(),
-                )
-            };
+            let entry = |k: usize| (image.cosine(k).constant_term(), image.sine(k).constant_term());
             let (cosine, sine) = entry(tongue);
             matrix[0][*column] = cosine;
             matrix[1][*column] = sine;
@@ -267,11 +249,7 @@ fn effective_matrix(hill: &Hill, tongue: usize, order: u32) -> [[Polynomial; 2];
             let highest = rest.highest_harmonic();
             let cosines = (0..=highest).map(|k| divided(rest.cosine(k).constant_term(), k));
             let sines = (0..=highest).map(|k| divided(rest.sine(k).constant_term(), k));
-            next.push(FourierSeries::from_parts(
-                POLYNOMIALS,
-                cosines.collect(),
-                sines.collect(),
-            ));
+            next.push(FourierSeries::from_parts(POLYNOMIALS, cosines.collect(), sines.collect()));
         }
         waves.push(next);
         orders.push(matrix);
@@ -317,18 +295,11 @@ struct Powers<'a> {
 
 impl Powers<'_> {
     fn degree(&self, monomial: &Monomial) -> i64 {
-        self.hill
-            .small
-            .iter()
-            .map(|name| i64::from(monomial.exponent(*name)))
-            .sum()
+        self.hill.small.iter().map(|name| i64::from(monomial.exponent(*name))).sum()
     }
 
     fn least_degree(&self, polynomial: &Polynomial) -> Option<i64> {
-        polynomial
-            .terms()
-            .map(|(monomial, _)| self.degree(monomial))
-            .min()
+        polynomial.terms().map(|(monomial, _)| self.degree(monomial)).min()
     }
 
     fn kept(&self, polynomial: &Polynomial, keep: impl Fn(i64) -> bool) -> Polynomial {
@@ -351,9 +322,7 @@ impl Powers<'_> {
             return false;
         };
         let leading = self.kept(&difference, |degree| degree == least);
-        leading
-            .evaluate(|_| Some(1.0))
-            .is_ok_and(|value| value > 0.0)
+        leading.evaluate(|_| Some(1.0)).is_ok_and(|value| value > 0.0)
     }
 
     /// Whether what a curve gives falls where the eigenvalue grows.
@@ -379,9 +348,9 @@ impl Powers<'_> {
     /// The curve on which the mean stiffness is `eigenvalue`.
     fn solved(&self, eigenvalue: &Polynomial, tongue: usize) -> Polynomial {
         match self.hill.unknown {
-            Unknown::Stiffness { .. } => eigenvalue
-                .less(&self.hill.constant)
-                .product(&self.inverse_factor()),
+            Unknown::Stiffness { .. } => {
+                eigenvalue.less(&self.hill.constant).product(&self.inverse_factor())
+            }
             Unknown::Frequency(name) => {
                 // constant = n^2 w/4 + rest(w): from the right side of the order before.
                 let scale = self.first_square(tongue);
@@ -391,10 +360,8 @@ impl Powers<'_> {
                 for order in 1..=self.order {
                     let round = Powers { order, ..*self };
                     let rest = round.with_square(&rest, name, &square);
-                    square = self.cut(
-                        &scale.product(&self.hill.constant.less(&rest)),
-                        order.into(),
-                    );
+                    square =
+                        self.cut(&scale.product(&self.hill.constant.less(&rest)), order.into());
                 }
                 square
             }
@@ -415,18 +382,9 @@ impl Powers<'_> {
         name: Symbol,
         square: &Polynomial,
     ) -> Polynomial {
-        let exponents = || {
-            polynomial
-                .terms()
-                .map(|(monomial, _)| monomial.exponent(name) / 2)
-        };
-        let highest = |sign: i32| {
-            exponents()
-                .map(|exponent| sign * exponent)
-                .max()
-                .unwrap_or(0)
-                .max(0)
-        };
+        let exponents = || polynomial.terms().map(|(monomial, _)| monomial.exponent(name) / 2);
+        let highest =
+            |sign: i32| exponents().map(|exponent| sign * exponent).max().unwrap_or(0).max(0);
         let inverse = self.inverse(square);
         let [above, below] = [(square, highest(1)), (&inverse, highest(-1))]
             .map(|(base, highest)| self.powers(base, highest));
@@ -446,9 +404,7 @@ impl Powers<'_> {
         let by_degree = |polynomial: &Polynomial| {
             let mut parts: BTreeMap<i64, Polynomial> = BTreeMap::new();
             for (monomial, number) in polynomial.terms() {
-                let part = parts
-                    .entry(self.degree(monomial))
-                    .or_insert_with(Polynomial::zero);
+                let part = parts.entry(self.degree(monomial)).or_insert_with(Polynomial::zero);
                 part.add_term(monomial.clone(), number.clone());
             }
             parts
@@ -509,18 +465,13 @@ impl Powers<'_> {
         let rest = series.less(&first);
         let mut correction = Polynomial::zero();
         for _ in 0..=self.order {
-            let right = rest
-                .less(&correction.product(&correction))
-                .product(&inverse)
-                .scaled(&ratio(1, 2));
+            let right =
+                rest.less(&correction.product(&correction)).product(&inverse).scaled(&ratio(1, 2));
             correction = self.cut(&right, self.order.into());
         }
-        let whole = correction.terms().all(|(monomial, _)| {
-            self.hill
-                .small
-                .iter()
-                .all(|name| monomial.exponent(*name) >= 0)
-        });
+        let whole = correction
+            .terms()
+            .all(|(monomial, _)| self.hill.small.iter().all(|name| monomial.exponent(*name) >= 0));
         whole.then(|| root.sum_with(&correction))
     }
 
@@ -551,15 +502,9 @@ impl Powers<'_> {
             highest_harmonic: self.hill.highest_harmonic,
         };
         let highest = i64::from(self.order) + 2;
-        let power = Powers {
-            hill: &extended,
-            order: self.order,
-        };
+        let power = Powers { hill: &extended, order: self.order };
         let square = first.sum_with(&Polynomial::symbol(v));
-        let distance = self
-            .hill
-            .constant
-            .less(&power.with_square(middle, name, &square));
+        let distance = self.hill.constant.less(&power.with_square(middle, name, &square));
         let function = power
             .product(&distance, &distance, highest)
             .less(&power.with_square(root, name, &square));
@@ -592,9 +537,8 @@ impl Powers<'_> {
         let [remainder, _] = split(&v_squared.less(&power.product(&quotient, &function, highest)));
         let at = |exponent: i32| {
             let mut part = Polynomial::zero();
-            for (monomial, number) in remainder
-                .terms()
-                .filter(|term| term.0.exponent(v) == exponent)
+            for (monomial, number) in
+                remainder.terms().filter(|term| term.0.exponent(v) == exponent)
             {
                 part.add_term(monomial.without(v), number.clone());
             }

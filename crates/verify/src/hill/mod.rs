@@ -55,12 +55,7 @@ pub struct Options {
 impl Default for Options {
     /// Order 6, the tongues 0 to 3.
     fn default() -> Self {
-        Self {
-            order: 6,
-            tongues: 3,
-            small: vec![],
-            solve_for: None,
-        }
+        Self { order: 6, tongues: 3, small: vec![], solve_for: None }
     }
 }
 
@@ -96,10 +91,7 @@ impl Unknown {
 
     /// The left side of a curve: `delta`, `Omega^2`.
     pub fn given(self) -> Polynomial {
-        Polynomial::term(
-            Monomial::power_of(self.symbol(), self.power()),
-            Rational::one(),
-        )
+        Polynomial::term(Monomial::power_of(self.symbol(), self.power()), Rational::one())
     }
 }
 
@@ -143,8 +135,7 @@ impl TransitionCurves {
     /// The frequency of the coefficients in the time of the equation.
     pub fn driving_frequency(&self) -> Expr {
         let frequency = Expr::from(&self.frequency.polynomial());
-        self.time_scale
-            .map_or(frequency.clone(), |name| &frequency * &Expr::from(name))
+        self.time_scale.map_or(frequency.clone(), |name| &frequency * &Expr::from(name))
     }
 
     /// T, the period of the coefficients, in the time of the equation.
@@ -174,11 +165,7 @@ impl TransitionCurve {
             return Ok(middle);
         };
         let root = Expr::from(root).sqrt()?;
-        Ok(if self.upper {
-            &middle + &root
-        } else {
-            &middle - &root
-        })
+        Ok(if self.upper { &middle + &root } else { &middle - &root })
     }
 }
 
@@ -365,23 +352,13 @@ fn linear_coefficients(oscillator: &Oscillator) -> Result<[Expr; 2], HillError> 
     let bent = |expression: &Expr| expression.contains(x) || expression.contains(v);
     if bent(&damping) || bent(&stiffness) {
         let bent_term = |term: &&Expr| {
-            [x, v]
-                .iter()
-                .any(|name| term.differentiate(*name).is_ok_and(|slope| bent(&slope)))
+            [x, v].iter().any(|name| term.differentiate(*name).is_ok_and(|slope| bent(&slope)))
         };
         let term = force.terms().iter().find(bent_term).unwrap_or(&force);
-        return Err(HillError::NotLinear(as_typed(
-            oscillator,
-            &|typed| bent_term(&typed),
-            term,
-        )));
+        return Err(HillError::NotLinear(as_typed(oscillator, &|typed| bent_term(&typed), term)));
     }
     let free = |term: &Expr| !term.contains(x) && !term.contains(v);
-    if let Some(term) = force
-        .terms()
-        .iter()
-        .find(|term| free(term) && !term.is_zero())
-    {
+    if let Some(term) = force.terms().iter().find(|term| free(term) && !term.is_zero()) {
         let acceleration = v.derivative();
         let drives =
             |typed: &Expr| free(typed) && !typed.contains(acceleration) && !typed.is_zero();
@@ -403,22 +380,14 @@ fn time_scale(coefficients: &[Expr; 2], asked: Option<&str>) -> Option<Symbol> {
         series.push(periodic::series(coefficient, &frequency).ok()?);
     }
     let stands = |polynomial: &Polynomial| {
-        polynomial
-            .terms()
-            .any(|(monomial, _)| monomial.exponent(*name) != 0)
+        polynomial.terms().any(|(monomial, _)| monomial.exponent(*name) != 0)
     };
-    if !series
-        .iter()
-        .flat_map(FourierSeries::numerators)
-        .any(stands)
-    {
+    if !series.iter().flat_map(FourierSeries::numerators).any(stands) {
         return None;
     }
     let is_wanted = match asked {
         Some(asked) => asked == name.name(),
-        None => stiffness_letters(&series[1].constant_term())
-            .next()
-            .is_none(),
+        None => stiffness_letters(&series[1].constant_term()).next().is_none(),
     };
     is_wanted.then_some(*name)
 }
@@ -436,11 +405,10 @@ fn in_scaled_time([damping, stiffness]: &[Expr; 2], name: Symbol) -> Result<[Exp
 
 /// The letters that stand as a term of the mean stiffness by themselves.
 fn stiffness_letters(mean: &Polynomial) -> impl Iterator<Item = Symbol> {
-    mean.terms()
-        .filter_map(|(monomial, _)| match monomial.factors() {
-            [(name, 1)] => Some(*name),
-            _ => None,
-        })
+    mean.terms().filter_map(|(monomial, _)| match monomial.factors() {
+        [(name, 1)] => Some(*name),
+        _ => None,
+    })
 }
 
 /// The first typed term that answers to `is_meant`; else the term as it was understood.
@@ -481,9 +449,7 @@ impl Hill {
         let (frequency, [damping, stiffness]) =
             periodic::in_lowest_terms(frequency, [damping, stiffness]);
         let mean = stiffness.constant_term();
-        let asked = time_scale
-            .map(Symbol::name)
-            .or(options.solve_for.as_deref());
+        let asked = time_scale.map(Symbol::name).or(options.solve_for.as_deref());
         let unknown =
             unknown(&mean, [&damping, &stiffness], &frequency, asked).map_err(|error| {
                 match time_scale {
@@ -495,10 +461,7 @@ impl Hill {
             })?;
         let small = small(oscillator, [&damping, &stiffness], &frequency, options)?;
         let degree = |monomial: &Monomial| {
-            small
-                .iter()
-                .map(|name| i64::from(monomial.exponent(*name)))
-                .sum::<i64>()
+            small.iter().map(|name| i64::from(monomial.exponent(*name))).sum::<i64>()
         };
         let (mut constant, mut factor) = (Polynomial::zero(), Polynomial::zero());
         for (monomial, number) in mean.terms() {
@@ -512,9 +475,7 @@ impl Hill {
                 _ => {}
             }
         }
-        let positive = constant
-            .single_term()
-            .is_some_and(|(_, number)| *number > Rational::zero());
+        let positive = constant.single_term().is_some_and(|(_, number)| *number > Rational::zero());
         if matches!(unknown, Unknown::Frequency(_)) && !positive {
             return Err(HillError::Stiffness(constant.to_string()));
         }
@@ -523,12 +484,7 @@ impl Hill {
             .sum(&FourierSeries::constant(POLYNOMIALS, kept));
         let varying = stiffness.difference(&kept);
         let names: Vec<&str> = small.iter().map(|name| name.name()).collect();
-        let terms = || {
-            varying
-                .numerators()
-                .chain(damping.numerators())
-                .flat_map(Polynomial::terms)
-        };
+        let terms = || varying.numerators().chain(damping.numerators()).flat_map(Polynomial::terms);
         let enters_otherwise =
             |monomial: &Monomial| small.iter().any(|name| monomial.exponent(*name) < 0);
         if let Some((monomial, number)) =
@@ -571,10 +527,8 @@ fn unknown(
     asked: Option<&str>,
 ) -> Result<Unknown, HillError> {
     let mut seen = std::collections::BTreeMap::<Symbol, usize>::new();
-    let terms = coefficients
-        .iter()
-        .flat_map(|series| series.numerators())
-        .flat_map(Polynomial::terms);
+    let terms =
+        coefficients.iter().flat_map(|series| series.numerators()).flat_map(Polynomial::terms);
     for (monomial, _) in terms {
         for (name, _) in monomial.factors() {
             *seen.entry(*name).or_default() += 1;
@@ -590,10 +544,8 @@ fn unknown(
     };
     if let Some(asked) = asked {
         let name = Symbol::new(asked);
-        let power = mean
-            .terms()
-            .map(|(monomial, _)| monomial.exponent(name))
-            .find(|power| *power != 0);
+        let power =
+            mean.terms().map(|(monomial, _)| monomial.exponent(name)).find(|power| *power != 0);
         return match (power.filter(|_| alone(&name)), driving) {
             (Some(power), _) => Ok(Unknown::Stiffness { name, power }),
             (None, Some(frequency)) if frequency == name => Ok(Unknown::Frequency(name)),
@@ -602,14 +554,10 @@ fn unknown(
     }
     let delta = Symbol::new("delta");
     match (candidates.as_slice(), driving) {
-        ([only], _) => Ok(Unknown::Stiffness {
-            name: *only,
-            power: 1,
-        }),
-        (several, _) if several.contains(&delta) => Ok(Unknown::Stiffness {
-            name: delta,
-            power: 1,
-        }),
+        ([only], _) => Ok(Unknown::Stiffness { name: *only, power: 1 }),
+        (several, _) if several.contains(&delta) => {
+            Ok(Unknown::Stiffness { name: delta, power: 1 })
+        }
         ([], Some(frequency)) => Ok(Unknown::Frequency(frequency)),
         ([], None) => Err(HillError::NoUnknown),
         (several, _) => Err(HillError::SeveralUnknowns(listed(several))),
@@ -618,17 +566,12 @@ fn unknown(
 
 /// The terms of the coefficients in which a letter stands: `c/W`, `g/(l*W^2)`.
 fn terms_with(name: Symbol, coefficients: [&FourierSeries<Polynomials>; 2]) -> String {
-    let terms = coefficients
-        .into_iter()
-        .flat_map(FourierSeries::numerators)
-        .flat_map(Polynomial::terms);
+    let terms =
+        coefficients.into_iter().flat_map(FourierSeries::numerators).flat_map(Polynomial::terms);
     let mut terms: Vec<String> = terms
         .filter(|(monomial, _)| monomial.exponent(name) != 0)
         .map(|(monomial, number)| {
-            format!(
-                "`{}`",
-                Expr::from(&Polynomial::term(monomial.clone(), number.clone()))
-            )
+            format!("`{}`", Expr::from(&Polynomial::term(monomial.clone(), number.clone())))
         })
         .collect();
     terms.dedup();
@@ -661,21 +604,14 @@ fn small(
         }
         return Ok(known);
     }
-    let waves = stiffness
-        .harmonics()
-        .into_iter()
-        .filter(|(harmonic, ..)| *harmonic > 0);
+    let waves = stiffness.harmonics().into_iter().filter(|(harmonic, ..)| *harmonic > 0);
     let before_waves = waves.flat_map(|(_, cosine, sine)| [cosine, sine]);
-    let before_velocity = damping
-        .harmonics()
-        .into_iter()
-        .flat_map(|(_, cosine, sine)| [cosine, sine]);
+    let before_velocity =
+        damping.harmonics().into_iter().flat_map(|(_, cosine, sine)| [cosine, sine]);
     let coefficients: Vec<Polynomial> = before_waves.chain(before_velocity).collect();
     let letters = |monomial: &Monomial| -> Vec<Symbol> {
         let names = monomial.factors().iter().map(|factor| factor.0);
-        names
-            .filter(|name| name.name() != "pi" && frequency.unit.exponent(*name) == 0)
-            .collect()
+        names.filter(|name| name.name() != "pi" && frequency.unit.exponent(*name) == 0).collect()
     };
     let terms: Vec<(Vec<Symbol>, String)> = coefficients
         .iter()
@@ -707,10 +643,7 @@ fn small(
     }
     // Of `amp/l` beside the mean stiffness `g/l` only the amplitude can vanish alone.
     let mean = stiffness.constant_term();
-    let in_mean = |name: &Symbol| {
-        mean.terms()
-            .any(|(monomial, _)| monomial.exponent(*name) != 0)
-    };
+    let in_mean = |name: &Symbol| mean.terms().any(|(monomial, _)| monomial.exponent(*name) != 0);
     for (letters, _) in &terms {
         if !letters.iter().any(|name| small.contains(name)) {
             let mut of_waves_alone = letters.iter().filter(|name| !in_mean(name));

@@ -41,9 +41,7 @@ impl Frequency {
     /// How often `rate` holds it.
     fn multiple(&self, rate: &Rational) -> Option<usize> {
         let multiple = rate / &self.number;
-        multiple
-            .is_integer()
-            .then(|| multiple.to_integer().to_usize())?
+        multiple.is_integer().then(|| multiple.to_integer().to_usize())?
     }
 }
 
@@ -77,10 +75,9 @@ pub fn frequency<'a>(
             let number = number.abs();
             found = Some(match found {
                 None => Frequency { number, unit },
-                Some(known) if known.unit == unit => Frequency {
-                    number: common(&known.number, &number),
-                    unit,
-                },
+                Some(known) if known.unit == unit => {
+                    Frequency { number: common(&known.number, &number), unit }
+                }
                 Some(_) => return Err(wave),
             });
         }
@@ -91,12 +88,8 @@ pub fn frequency<'a>(
 /// Every `sin` and `cos` of the time.
 fn waves(expression: &Expr) -> Vec<Expr> {
     let time = Symbol::new("t");
-    let is_wave = |part: &&Expr| {
-        matches!(
-            part.node(),
-            Node::Function(Function::Sin | Function::Cos, _)
-        )
-    };
+    let is_wave =
+        |part: &&Expr| matches!(part.node(), Node::Function(Function::Sin | Function::Cos, _));
     let waves = expression.unique_nodes().filter(is_wave);
     waves.filter(|wave| wave.contains(time)).cloned().collect()
 }
@@ -117,10 +110,7 @@ pub fn series(
         series.ok_or_else(|| term.clone())
     };
     let zero = FourierSeries::zero(POLYNOMIALS);
-    expression
-        .terms()
-        .iter()
-        .try_fold(zero, |sum, part| Ok(sum.sum(&term(part)?)))
+    expression.terms().iter().try_fold(zero, |sum, part| Ok(sum.sum(&term(part)?)))
 }
 
 /// The series of a part, given those of its own parts; none for what has no series, as the argument
@@ -132,27 +122,21 @@ fn series_of(
 ) -> Option<FourierSeries<Polynomials>> {
     let constant = |value: Polynomial| FourierSeries::constant(POLYNOMIALS, value);
     if !part.contains(Symbol::new("t")) {
-        return part
-            .to_polynomial(&mut |_| None)
-            .ok()
-            .flatten()
-            .map(constant);
+        return part.to_polynomial(&mut |_| None).ok().flatten().map(constant);
     }
     let mut all = parts.iter().map(Option::as_ref);
     let series = match part.node() {
-        Node::Sum(_) => all.try_fold(FourierSeries::zero(POLYNOMIALS), |sum, part| {
-            Some(sum.sum(part?))
-        })?,
+        Node::Sum(_) => {
+            all.try_fold(FourierSeries::zero(POLYNOMIALS), |sum, part| Some(sum.sum(part?)))?
+        }
         Node::Product(number, _) => {
             let number = constant(Polynomial::constant(number.clone()));
             all.try_fold(number, |product, part| Some(product.product(part?)))?
         }
         Node::Power(_, exponent) => {
             let exponent = exponent.as_number().filter(|number| number.is_integer())?;
-            let exponent = exponent
-                .to_integer()
-                .to_u32()
-                .filter(|power| *power <= HIGHEST_POWER)?;
+            let exponent =
+                exponent.to_integer().to_u32().filter(|power| *power <= HIGHEST_POWER)?;
             all.next()??.power(exponent)
         }
         Node::Function(function, arguments) => {
@@ -180,28 +164,21 @@ pub(super) fn in_lowest_terms(
     frequency: Frequency,
     series: [FourierSeries<Polynomials>; 2],
 ) -> (Frequency, [FourierSeries<Polynomials>; 2]) {
-    let harmonics = series
-        .iter()
-        .flat_map(FourierSeries::harmonics)
-        .map(|(harmonic, ..)| harmonic);
+    let harmonics = series.iter().flat_map(FourierSeries::harmonics).map(|(harmonic, ..)| harmonic);
     let common = harmonics.fold(0_usize, |common, harmonic| common.gcd(&harmonic)) / 2;
     if common < 2 {
         return (frequency, series);
     }
     let shortened = series.map(|series| {
         let part = |of: &dyn Fn(usize) -> Polynomial| {
-            (0..=series.highest_harmonic() / common)
-                .map(|k| of(k * common))
-                .collect()
+            (0..=series.highest_harmonic() / common).map(|k| of(k * common)).collect()
         };
         let cosines: Vec<Polynomial> = part(&|k| series.cosine(k).constant_term());
         let sines: Vec<Polynomial> = part(&|k| series.sine(k).constant_term());
         FourierSeries::from_parts(POLYNOMIALS, cosines, sines)
     });
-    let frequency = Frequency {
-        number: frequency.number * fraction(common, 1),
-        unit: frequency.unit,
-    };
+    let frequency =
+        Frequency { number: frequency.number * fraction(common, 1), unit: frequency.unit };
     (frequency, shortened)
 }
 

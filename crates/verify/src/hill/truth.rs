@@ -128,12 +128,8 @@ pub fn judge(
         }
     }
     let missing = |name: &&Symbol| **name != unknown && !numbers.contains_key(*name);
-    let missing: Vec<String> = curves
-        .parameters
-        .iter()
-        .filter(missing)
-        .map(|name| format!("`{name}`"))
-        .collect();
+    let missing: Vec<String> =
+        curves.parameters.iter().filter(missing).map(|name| format!("`{name}`")).collect();
     if !missing.is_empty() {
         return Err(TruthError::Missing(missing.join(", ")));
     }
@@ -150,13 +146,7 @@ pub fn judge(
             (None, None) => true,
             _ => false,
         };
-        Ok(JudgedCurve {
-            curve: index,
-            value,
-            truth,
-            relative_error,
-            passes,
-        })
+        Ok(JudgedCurve { curve: index, value, truth, relative_error, passes })
     };
     curves.curves.iter().enumerate().map(one).collect()
 }
@@ -182,11 +172,7 @@ pub fn chart(
             formulas.extend(formula(curves, curve, &numbers).map(|value| (value, size)));
             truths.extend(true_value(curves, curve, &numbers)?.map(|value| (value, size)));
         }
-        charts.push(Chart {
-            curve: index,
-            formula: formulas,
-            truth: truths,
-        });
+        charts.push(Chart { curve: index, formula: formulas, truth: truths });
     }
     Ok(charts)
 }
@@ -206,11 +192,7 @@ fn formula(
         None => 0.0,
         Some(root) => root.evaluate(value_of).ok()?.sqrt(),
     };
-    let value = if curve.upper {
-        middle + root
-    } else {
-        middle - root
-    };
+    let value = if curve.upper { middle + root } else { middle - root };
     letter_of_power(value, curves.unknown.power()).filter(|value| value.is_finite())
 }
 
@@ -231,10 +213,7 @@ fn is_upper(
     curve: &TransitionCurve,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> bool {
-    let other = curves
-        .curves
-        .iter()
-        .find(|other| other.tongue == curve.tongue && *other != curve);
+    let other = curves.curves.iter().find(|other| other.tongue == curve.tongue && *other != curve);
     let value = |curve| formula(curves, curve, numbers);
     match (value(curve), other.and_then(value)) {
         (Some(own), Some(other)) if own != other => own > other,
@@ -262,16 +241,13 @@ fn true_value(
             // and once more at what comes of it.
             let mut reference = match power {
                 1 => 0.0,
-                _ => formula(curves, curve, numbers)
-                    .filter(|value| *value != 0.0)
-                    .unwrap_or(1.0),
+                _ => formula(curves, curve, numbers).filter(|value| *value != 0.0).unwrap_or(1.0),
             };
             let mut value = None;
             for _ in 0..if power == 1 { 1 } else { 3 } {
                 // mu = r*(u - u_0) for the power u of the letter, that of the reference being u_0.
-                let by_letter = slope
-                    .evaluate(&with(reference))
-                    .map_err(|_| TruthError::Coefficients)?;
+                let by_letter =
+                    slope.evaluate(&with(reference)).map_err(|_| TruthError::Coefficients)?;
                 let slope = by_letter / (f64::from(power) * reference.powi(power - 1));
                 let above = is_upper(curves, curve, numbers) == (slope > 0.0);
                 let coefficients = Coefficients::of(curves, &with(reference))?;
@@ -282,11 +258,7 @@ fn true_value(
                 let mu = mu.map(|mu| if mu.abs() < rounding { 0.0 } else { mu / slope });
                 value = mu.and_then(|mu| {
                     letter_of_power(
-                        mu + if power == 1 {
-                            0.0
-                        } else {
-                            reference.powi(power)
-                        },
+                        mu + if power == 1 { 0.0 } else { reference.powi(power) },
                         power,
                     )
                 });
@@ -363,20 +335,11 @@ struct Coefficients {
 impl Coefficients {
     fn of(curves: &TransitionCurves, numbers: &BTreeMap<Symbol, f64>) -> Result<Self, TruthError> {
         let value_of = |name: Symbol| numbers.get(&name).copied();
-        let frequency = curves
-            .frequency
-            .polynomial()
-            .evaluate(value_of)
-            .unwrap_or(f64::NAN);
+        let frequency = curves.frequency.polynomial().evaluate(value_of).unwrap_or(f64::NAN);
         if !(frequency > 0.0 && frequency.is_finite()) {
             return Err(TruthError::Frequency(frequency));
         }
-        let most = curves
-            .curves
-            .iter()
-            .map(|curve| curve.tongue)
-            .max()
-            .unwrap_or(0);
+        let most = curves.curves.iter().map(|curve| curve.tongue).max().unwrap_or(0);
         let time = Symbol::new("t");
         let given = || numbers.iter().filter(|(name, _)| **name != time);
         let names: Vec<Symbol> = given().map(|(name, _)| *name).chain([time]).collect();
@@ -389,29 +352,20 @@ impl Coefficients {
             let sample = |index: usize| {
                 *point.last_mut()? = 2.0 * TAU / frequency * index as f64 / count as f64;
                 let sample = [damping.call(&point), stiffness.call(&point)];
-                sample
-                    .iter()
-                    .all(|value| value.is_finite())
-                    .then_some(sample)
+                sample.iter().all(|value| value.is_finite()).then_some(sample)
             };
             let samples: Option<Vec<[f64; 2]>> = (0..count).map(sample).collect();
             samples.ok_or(TruthError::Coefficients)
         };
         let rough = sample(64)?;
-        let largest = rough
-            .iter()
-            .fold(0.0_f64, |largest, [c, k]| largest.max(c * c).max(k.abs()));
+        let largest = rough.iter().fold(0.0_f64, |largest, [c, k]| largest.max(c * c).max(k.abs()));
         let spare = SPARE_HARMONICS.max(TIMES_TAKEN_ON * curves.highest_harmonic);
         let wanted = (most + spare) as f64 + 4.0 * largest.sqrt() / frequency;
         if wanted > MOST_HARMONICS as f64 {
             return Err(TruthError::Coefficients);
         }
         let harmonics = wanted.ceil() as usize;
-        Ok(Self {
-            frequency,
-            samples: sample((8 * harmonics).max(512))?,
-            harmonics,
-        })
+        Ok(Self { frequency, samples: sample((8 * harmonics).max(512))?, harmonics })
     }
 
     fn mean_stiffness(&self) -> f64 {
@@ -436,15 +390,10 @@ impl Coefficients {
         let count = self.samples.len();
         let half = self.frequency / 2.0;
         let norm = |k: usize| {
-            if k == 0 {
-                1.0
-            } else {
-                std::f64::consts::SQRT_2
-            }
+            if k == 0 { 1.0 } else { std::f64::consts::SQRT_2 }
         };
-        let round: Vec<(f64, f64)> = (0..count)
-            .map(|place| (TAU * place as f64 / count as f64).sin_cos())
-            .collect();
+        let round: Vec<(f64, f64)> =
+            (0..count).map(|place| (TAU * place as f64 / count as f64).sin_cos()).collect();
         let mut at_samples = DMatrix::zeros(count, waves.len());
         let mut images = DMatrix::zeros(count, waves.len());
         for (row, [c, k]) in self.samples.iter().enumerate() {
@@ -452,11 +401,8 @@ impl Coefficients {
                 // Reduced in whole numbers, so that the waves are orthogonal to the last digit.
                 let (sine, cosine) = round[(harmonic * row) % count];
                 let rate = *harmonic as f64 * half;
-                let (value, slope) = if *is_sine {
-                    (sine, rate * cosine)
-                } else {
-                    (cosine, -rate * sine)
-                };
+                let (value, slope) =
+                    if *is_sine { (sine, rate * cosine) } else { (cosine, -rate * sine) };
                 at_samples[(row, column)] = norm(*harmonic) * value;
                 images[(row, column)] =
                     norm(*harmonic) * (rate * rate * value - c * slope - k * value);
@@ -471,19 +417,11 @@ impl Coefficients {
         let mut values: Vec<(f64, f64)> = if undamped {
             let eigen = SymmetricEigen::try_new(matrix, f64::EPSILON, 10_000)
                 .ok_or(TruthError::Coefficients)?;
-            eigen
-                .eigenvalues
-                .iter()
-                .map(|value| (*value, 0.0))
-                .collect()
+            eigen.eigenvalues.iter().map(|value| (*value, 0.0)).collect()
         } else {
             let schur =
                 Schur::try_new(matrix, f64::EPSILON, 10_000).ok_or(TruthError::Coefficients)?;
-            schur
-                .complex_eigenvalues()
-                .iter()
-                .map(|value| (value.re, value.im))
-                .collect()
+            schur.complex_eigenvalues().iter().map(|value| (value.re, value.im)).collect()
         };
         values.sort_by(|a, b| a.0.total_cmp(&b.0));
         // Of both waves, that of tongue 0 stands before the pairs; of one, there is one for every
@@ -495,10 +433,7 @@ impl Coefficients {
             (WavesOfMotion::Both, tongue) => tongue - 1 + usize::from(above),
         };
         let (value, imaginary) = values.get(index).copied().ok_or(TruthError::Coefficients)?;
-        Ok(Eigenvalue {
-            value,
-            is_real: imaginary.abs() <= REAL * size,
-        })
+        Ok(Eigenvalue { value, is_real: imaginary.abs() <= REAL * size })
     }
 
     /// `|1 -+ tr Phi + det Phi|` of the integrated motion over the size of its terms.
@@ -508,28 +443,19 @@ impl Coefficients {
         curve: &TransitionCurve,
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Option<f64> {
-        let names = [
-            curves.equation.coordinate,
-            curves.equation.coordinate.derivative(),
-        ];
+        let names = [curves.equation.coordinate, curves.equation.coordinate.derivative()];
         let [x, v] = names.map(Expr::from);
         let rate = -(&(&curves.stiffness * &x) + &(&curves.damping * &v));
         let system = System::new(&names, "t".into(), &[v, rate], numbers).ok()?;
         let period = TAU / self.frequency;
         let column = |start: [f64; 2]| {
-            let path = system
-                .solve(0.0, &start, period, &[], &Options::default())
-                .ok()?;
+            let path = system.solve(0.0, &start, period, &[], &Options::default()).ok()?;
             path.at(period)
         };
         let (first, second) = (column([1.0, 0.0])?, column([0.0, 1.0])?);
         let trace = first.first()? + second.get(1)?;
         let determinant = first.first()? * second.get(1)? - first.get(1)? * second.first()?;
-        let sign = if curve.tongue.is_multiple_of(2) {
-            1.0
-        } else {
-            -1.0
-        };
+        let sign = if curve.tongue.is_multiple_of(2) { 1.0 } else { -1.0 };
         Some((1.0 - sign * trace + determinant).abs() / (1.0 + trace.abs() + determinant.abs()))
     }
 }

@@ -53,16 +53,9 @@ pub fn backbones(
     if force.contains(driven.parameter) {
         return Ok(vec![]);
     }
-    let free = Oscillator {
-        force,
-        ..oscillator.clone()
-    };
-    let free = Driven::of_frequency(
-        &free,
-        driven.frequency.clone(),
-        driven.parameter,
-        driven.periods,
-    )?;
+    let free = Oscillator { force, ..oscillator.clone() };
+    let free =
+        Driven::of_frequency(&free, driven.frequency.clone(), driven.parameter, driven.periods)?;
     let balance = Balance::new(&free, harmonics);
     let mut curves: Vec<Vec<BackbonePoint>> = Vec::new();
     for place in places_of_rest(&free, range[0], size) {
@@ -126,10 +119,7 @@ fn curve(balance: &Balance, place: f64, range: [f64; 2], size: f64) -> Vec<Backb
         };
         match solved(balance, guess, parameter) {
             Some((coefficients, parameter)) => {
-                points.push(BackbonePoint {
-                    parameter,
-                    amplitude,
-                });
+                points.push(BackbonePoint { parameter, amplitude });
                 last = Some((coefficients, parameter));
             }
             // A motion that leaves its well has no neighbour beyond.

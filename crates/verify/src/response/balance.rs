@@ -76,11 +76,7 @@ impl<'a> Balance<'a> {
         let harmonics = harmonics.max(1);
         let [each, least] = if driven.smooth { SMOOTH } else { CORNERED };
         let samples = (each * (harmonics + 1)).next_power_of_two().max(least);
-        Self {
-            driven,
-            harmonics,
-            transform: Transform::new(samples),
-        }
+        Self { driven, harmonics, transform: Transform::new(samples) }
     }
 
     /// The number of coefficients: 2 H + 1.
@@ -164,9 +160,7 @@ impl<'a> Balance<'a> {
         };
         let [positions, slopes, curvatures] = [0, 1, 2].map(derivative);
         let points = positions.into_iter().zip(slopes).zip(curvatures);
-        points
-            .map(|((position, slope), curvature)| [position, slope, curvature])
-            .collect()
+        points.map(|((position, slope), curvature)| [position, slope, curvature]).collect()
     }
 
     /// The coefficients of a motion that is known at any number of equal steps of a period, twice
@@ -199,10 +193,8 @@ impl<'a> Balance<'a> {
     /// The residual and its derivatives; nothing where the force has no finite value on the motion.
     pub fn linearised(&self, coefficients: &DVector<f64>, parameter: f64) -> Option<Linearised> {
         let driven = self.driven;
-        let (omega, omega_slope) = (
-            self.frequency(coefficients, parameter),
-            driven.frequency_slope(parameter),
-        );
+        let (omega, omega_slope) =
+            (self.frequency(coefficients, parameter), driven.frequency_slope(parameter));
         if omega.is_nan() || omega <= 0.0 {
             return None;
         }
@@ -230,25 +222,13 @@ impl<'a> Balance<'a> {
             slopes[2].push(by_parameter + omega_slope * by_frequency);
             slopes[3].push(by_frequency);
         }
-        let sum: Vec<f64> = inertia
-            .iter()
-            .zip(&force)
-            .map(|(one, other)| one + other)
-            .collect();
+        let sum: Vec<f64> = inertia.iter().zip(&force).map(|(one, other)| one + other).collect();
         let added = above.iter().flat_map(|part| part.values.iter());
-        if !sum
-            .iter()
-            .chain(slopes.iter().flatten())
-            .chain(added)
-            .all(|value| value.is_finite())
-        {
+        if !sum.iter().chain(slopes.iter().flatten()).chain(added).all(|value| value.is_finite()) {
             return None;
         }
-        let size = |values: &[f64]| {
-            values
-                .iter()
-                .fold(0.0_f64, |largest, value| largest.max(value.abs()))
-        };
+        let size =
+            |values: &[f64]| values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         let all = |values: &[f64], which: usize, count: usize| {
             let mut harmonics = self.transform.harmonics(values, count);
             for part in &above {
@@ -321,15 +301,8 @@ impl<'a> Balance<'a> {
             (_, false) => {}
         }
         for span in phases.chunks_exact(2) {
-            let (from, to) = (
-                span[0],
-                span[1]
-                    + if span[1] < span[0] {
-                        std::f64::consts::TAU
-                    } else {
-                        0.0
-                    },
-            );
+            let (from, to) =
+                (span[0], span[1] + if span[1] < span[0] { std::f64::consts::TAU } else { 0.0 });
             let panels = ((to - from) / std::f64::consts::TAU * (self.harmonics + 1) as f64).ceil();
             let width = (to - from) / panels;
             for panel in 0..panels as usize {
@@ -382,12 +355,8 @@ impl<'a> Balance<'a> {
             }
         };
         DMatrix::from_fn(self.size(), self.size(), |row, column| {
-            let place = |index: usize| {
-                (
-                    index.div_ceil(2) as isize,
-                    index > 0 && index.is_multiple_of(2),
-                )
-            };
+            let place =
+                |index: usize| (index.div_ceil(2) as isize, index > 0 && index.is_multiple_of(2));
             let ((k, k_sine), (l, l_sine)) = (place(row), place(column));
             // A cosine turns into minus a sine, a sine into a cosine.
             let turned = if l_sine { 1.0 } else { -1.0 } * omega * l as f64;
@@ -453,10 +422,8 @@ impl<'a> Balance<'a> {
         let (step_sine, step_cosine) = phase.sin_cos();
         let (mut cosine, mut sine) = (1.0, 0.0);
         for harmonic in 1..=self.harmonics {
-            (cosine, sine) = (
-                cosine * step_cosine - sine * step_sine,
-                sine * step_cosine + cosine * step_sine,
-            );
+            (cosine, sine) =
+                (cosine * step_cosine - sine * step_sine, sine * step_cosine + cosine * step_sine);
             let [a, b] = self.harmonic(coefficients, harmonic);
             point[0] += a * cosine + b * sine;
             point[1] += omega * harmonic as f64 * (b * cosine - a * sine);

@@ -112,11 +112,9 @@ pub fn between(
                 between(part)
             };
             let node = node.as_ref();
-            let multipliers = node
-                .filter(|_| matches!(kind, PeriodDoubling | NeimarkSacker))
-                .and_then(floquet);
-            node.and_then(|node| test(kind, node, multipliers))
-                .unwrap_or(f64::NAN)
+            let multipliers =
+                node.filter(|_| matches!(kind, PeriodDoubling | NeimarkSacker)).and_then(floquet);
+            node.and_then(|node| test(kind, node, multipliers)).unwrap_or(f64::NAN)
         };
         let part = match kind {
             // A sign alone has no root but by halving.
@@ -125,19 +123,14 @@ pub fn between(
         };
         // Where branches cross Newton's method may not settle: beside it is near enough.
         const BESIDE: [f64; 5] = [0.0, 1e-6, -1e-6, 1e-3, -1e-3];
-        let beside = |part: f64| {
-            BESIDE
-                .iter()
-                .find_map(|aside| between((part + aside).clamp(0.0, 1.0)))
-        };
+        let beside =
+            |part: f64| BESIDE.iter().find_map(|aside| between((part + aside).clamp(0.0, 1.0)));
         let Some(node) = part.and_then(beside) else {
             continue;
         };
         // A branch that is born at a crossing turns back there without a fold of its own, and its
         // turn is easier to find.
-        let crossing = found
-            .iter()
-            .position(|(other, _)| kind == Fold && *other == BranchPoint);
+        let crossing = found.iter().position(|(other, _)| kind == Fold && *other == BranchPoint);
         match crossing {
             Some(index) => found[index] = (BranchPoint, node),
             None => found.push((kind, node)),

@@ -96,11 +96,7 @@ impl Asked<'_> {
             _ => vec![first, last],
         };
         let known = |node: &Node| self.known(balance, paths, &node.coefficients, node.parameter);
-        match ends
-            .into_iter()
-            .find_map(known)
-            .filter(|_| known(middle).is_some())
-        {
+        match ends.into_iter().find_map(known).filter(|_| known(middle).is_some()) {
             Some(Known::Itself) => {}
             Some(Known::Mirrored(index)) => paths[index].mirrored = true,
             None => paths.push(path),
@@ -115,18 +111,9 @@ impl Asked<'_> {
             return;
         };
         let (before, behind) = (&path.nodes[..=index], &path.nodes[index + 1..]);
-        let half = Path {
-            nodes: before.to_vec(),
-            ends: path.ends,
-            mirrored: false,
-        };
+        let half = Path { nodes: before.to_vec(), ends: path.ends, mirrored: false };
         let image = |node: &Node| {
-            self.known(
-                balance,
-                std::slice::from_ref(&half),
-                &node.coefficients,
-                node.parameter,
-            )
+            self.known(balance, std::slice::from_ref(&half), &node.coefficients, node.parameter)
         };
         // The middle of that half, which is surely no longer than the first.
         if let Some(known) = behind.get(behind.len() / 2).and_then(image) {
@@ -149,18 +136,13 @@ impl Asked<'_> {
         /// The part of a motion by which a guess between two points may be off.
         const NEAR: f64 = 0.2;
         const SAME: f64 = 1e-5;
-        let size = balance
-            .extent(coefficients)
-            .max(1e-3 * coefficients[0].abs());
+        let size = balance.extent(coefficients).max(1e-3 * coefficients[0].abs());
         let period = std::f64::consts::TAU / self.question.periods as f64;
         let shifts = (0..self.question.periods).map(|periods| period * periods as f64);
-        let shifted: Vec<DVector<f64>> = shifts
-            .clone()
-            .map(|shift| later(coefficients, shift))
-            .collect();
-        let mirrored: Vec<DVector<f64>> = shifts
-            .map(|shift| -later(coefficients, shift + 0.5 * period))
-            .collect();
+        let shifted: Vec<DVector<f64>> =
+            shifts.clone().map(|shift| later(coefficients, shift)).collect();
+        let mirrored: Vec<DVector<f64>> =
+            shifts.map(|shift| -later(coefficients, shift + 0.5 * period)).collect();
         // Places between which the force does not change, such as those a turn of a pendulum apart,
         // are one.
         let is_one = |motion: &DVector<f64>, of: &[DVector<f64>], within: f64, anywhere: bool| {

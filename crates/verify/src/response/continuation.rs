@@ -39,20 +39,14 @@ impl Node {
     /// not.
     pub fn part_of_way(&self, next: &Self, parameter: f64) -> Option<f64> {
         let way = next.parameter - self.parameter;
-        let part = if way == 0.0 {
-            0.0
-        } else {
-            (parameter - self.parameter) / way
-        };
+        let part = if way == 0.0 { 0.0 } else { (parameter - self.parameter) / way };
         (-1e-9..=1.0 + 1e-9).contains(&part).then_some(part)
     }
 
     /// Position and velocity at phase zero.
     pub fn begins(&self, balance: &Balance) -> [f64; 2] {
-        self.truth.map_or_else(
-            || balance.start(&self.coefficients, self.parameter),
-            |truth| truth.start,
-        )
+        self.truth
+            .map_or_else(|| balance.start(&self.coefficients, self.parameter), |truth| truth.start)
     }
 
     /// dp along the branch: its sign changes at a fold.
@@ -140,9 +134,7 @@ impl Weights {
 
     fn dot(&self, one: &DVector<f64>, other: &DVector<f64>) -> f64 {
         let size = one.len() - 1;
-        (0..one.len())
-            .map(|index| self.of(index, size).powi(2) * one[index] * other[index])
-            .sum()
+        (0..one.len()).map(|index| self.of(index, size).powi(2) * one[index] * other[index]).sum()
     }
 
     fn norm(&self, vector: &DVector<f64>) -> f64 {
@@ -152,9 +144,7 @@ impl Weights {
     /// The last row of the bordered equations: a product with it is one with this direction.
     fn row(&self, direction: &DVector<f64>) -> DVector<f64> {
         let size = direction.len() - 1;
-        DVector::from_fn(size + 1, |index, _| {
-            self.of(index, size).powi(2) * direction[index]
-        })
+        DVector::from_fn(size + 1, |index, _| self.of(index, size).powi(2) * direction[index])
     }
 }
 
@@ -180,10 +170,7 @@ pub(super) fn largest<const ENDS: usize>(
     nodes: &[Node],
     ends: [BranchEnd; ENDS],
 ) -> f64 {
-    let mut sizes: Vec<f64> = nodes
-        .iter()
-        .map(|node| balance.extent(&node.coefficients))
-        .collect();
+    let mut sizes: Vec<f64> = nodes.iter().map(|node| balance.extent(&node.coefficients)).collect();
     sizes.sort_by(f64::total_cmp);
     let place = match ends.contains(&BranchEnd::Unbounded) {
         true => sizes.len() / 2,
@@ -196,16 +183,12 @@ impl Walk {
     fn weights(&self, balance: &Balance, coefficients: &DVector<f64>) -> Weights {
         /// The smallest size that counts, in parts of the largest.
         const SMALLEST: f64 = 0.1;
-        let own = balance
-            .extent(coefficients)
-            .max(1e-3 * coefficients[0].abs());
+        let own = balance.extent(coefficients).max(1e-3 * coefficients[0].abs());
         let size = own.max(SMALLEST * self.size);
         Weights {
             coefficients: if size > 0.0 { 1.0 / size } else { 1.0 },
             parameter: 1.0 / (self.range[1] - self.range[0]),
-            frequency: balance
-                .frequency_place()
-                .map(|place| (place, 1.0 / coefficients[place])),
+            frequency: balance.frequency_place().map(|place| (place, 1.0 / coefficients[place])),
         }
     }
 
@@ -248,18 +231,15 @@ impl Walk {
     /// A point between two of a branch, at this part of the way.
     pub fn between(&self, balance: &Balance, from: &Node, to: &Node, part: f64) -> Option<Node> {
         let weights = self.weights(balance, &from.coefficients);
-        let (start, end) = (
-            joined(&from.coefficients, from.parameter),
-            joined(&to.coefficients, to.parameter),
-        );
+        let (start, end) =
+            (joined(&from.coefficients, from.parameter), joined(&to.coefficients, to.parameter));
         let way = &end - &start;
         let length = weights.norm(&way);
         if length == 0.0 {
             return Some(from.clone());
         }
         let guess = &start + &way * part;
-        self.corrected(balance, &guess, &(way / length), weights)
-            .map(|(node, _)| node)
+        self.corrected(balance, &guess, &(way / length), weights).map(|(node, _)| node)
     }
 
     /// The whole branch through a motion at a parameter.
@@ -293,18 +273,10 @@ impl Walk {
         backward.orientation *= -1.0;
         let (mut nodes, end) = self.follow(balance, start);
         if end == BranchEnd::Closed {
-            return Some(Path {
-                nodes,
-                ends: [end, end],
-                mirrored: false,
-            });
+            return Some(Path { nodes, ends: [end, end], mirrored: false });
         }
         let largest = largest(balance, &nodes, [end]).max(self.size);
-        let (before, first_end) = Self {
-            size: largest,
-            ..*self
-        }
-        .follow(balance, backward);
+        let (before, first_end) = Self { size: largest, ..*self }.follow(balance, backward);
         let turned = before.into_iter().skip(1).map(|mut node| {
             node.tangent *= -1.0;
             node.orientation *= -1.0;
@@ -313,11 +285,7 @@ impl Walk {
         let mut all: Vec<Node> = turned.collect();
         all.reverse();
         all.append(&mut nodes);
-        Some(Path {
-            nodes: all,
-            ends: [first_end, end],
-            mirrored: false,
-        })
+        Some(Path { nodes: all, ends: [first_end, end], mirrored: false })
     }
 
     /// The motions by which a branch that ends with the range comes back to it, where it is
@@ -331,23 +299,14 @@ impl Walk {
     ) -> Vec<(DVector<f64>, f64)> {
         /// Points beyond the range.
         const MOST: usize = 200;
-        let outward = |(node, turn): (&Node, f64)| Node {
-            tangent: &node.tangent * turn,
-            ..node.clone()
-        };
+        let outward =
+            |(node, turn): (&Node, f64)| Node { tangent: &node.tangent * turn, ..node.clone() };
         let ends = [
             path.nodes.first().map(|node| (node, -1.0)),
             path.nodes.last().map(|node| (node, 1.0)),
         ];
-        let ends = ends
-            .into_iter()
-            .zip(path.ends)
-            .filter(|(_, end)| *end == BranchEnd::Range);
-        let walk = Self {
-            range: wide,
-            most: MOST,
-            ..*self
-        };
+        let ends = ends.into_iter().zip(path.ends).filter(|(_, end)| *end == BranchEnd::Range);
+        let walk = Self { range: wide, most: MOST, ..*self };
         let [low, high] = self.range;
         let back = |pair: &[Node]| {
             let [from, to] = pair else { return None };
@@ -361,11 +320,7 @@ impl Walk {
         };
         ends.filter_map(|(end, _)| end.map(outward))
             .flat_map(|start| {
-                walk.follow(balance, start)
-                    .0
-                    .windows(2)
-                    .filter_map(back)
-                    .collect::<Vec<_>>()
+                walk.follow(balance, start).0.windows(2).filter_map(back).collect::<Vec<_>>()
             })
             .collect()
     }
@@ -410,14 +365,11 @@ impl Walk {
             let tangent = &here.tangent / weights.norm(&here.tangent);
             let start = joined(&here.coefficients, here.parameter);
             let guess = &start + &tangent * step;
-            let found = self
-                .corrected(balance, &guess, &tangent, weights)
-                .filter(|(node, _)| {
-                    let next = &node.tangent / weights.norm(&node.tangent);
-                    let moved =
-                        weights.norm(&(joined(&node.coefficients, node.parameter) - &start));
-                    weights.dot(&next, &tangent) > SHARPEST && moved < 1.5 * step
-                });
+            let found = self.corrected(balance, &guess, &tangent, weights).filter(|(node, _)| {
+                let next = &node.tangent / weights.norm(&node.tangent);
+                let moved = weights.norm(&(joined(&node.coefficients, node.parameter) - &start));
+                weights.dot(&next, &tangent) > SHARPEST && moved < 1.5 * step
+            });
             let cut_off = found
                 .as_ref()
                 .is_some_and(|(node, _)| self.is_cut_off(balance, &node.coefficients));
@@ -504,12 +456,7 @@ impl Walk {
             return None;
         }
         let [low, high] = self.range;
-        let born = hopf::near(
-            balance.driven,
-            here.coefficients[0],
-            near,
-            [small, high - low],
-        )?;
+        let born = hopf::near(balance.driven, here.coefficients[0], near, [small, high - low])?;
         let far = (born.parameter - here.parameter).abs() > BESIDE * (high - low)
             || (born.position - here.coefficients[0]).abs() > small;
         if far || !(low..=high).contains(&born.parameter) {
@@ -518,11 +465,7 @@ impl Walk {
         let mut coefficients = DVector::zeros(balance.size());
         coefficients[0] = born.position;
         coefficients[balance.frequency_place()?] = born.frequency;
-        Some(Node {
-            coefficients,
-            parameter: born.parameter,
-            ..here.clone()
-        })
+        Some(Node { coefficients, parameter: born.parameter, ..here.clone() })
     }
 
     /// Whether the way from one point to the next passes the first one in its direction.
@@ -533,9 +476,7 @@ impl Walk {
         let length = weights.norm(&way);
         let offset = &target - &from;
         let along = weights.dot(&offset, &way) / length;
-        let across = (weights.dot(&offset, &offset) - along * along)
-            .max(0.0)
-            .sqrt();
+        let across = (weights.dot(&offset, &offset) - along * along).max(0.0).sqrt();
         let same_way = weights.dot(&first.tangent, &way) > 0.0;
         same_way && (0.0..=length).contains(&along) && across < 0.1 * length
     }
@@ -597,8 +538,7 @@ impl Walk {
         let found = [1.0, -1.0].map(|sign| {
             let direction = &direction * sign;
             let guess = &start + &direction * APART;
-            self.corrected(balance, &guess, &direction, weights)
-                .map(|(node, _)| node)
+            self.corrected(balance, &guess, &direction, weights).map(|(node, _)| node)
         });
         found.into_iter().flatten().collect()
     }
@@ -633,11 +573,7 @@ fn node(
 /// The sign of a determinant, which itself may be beyond doubles.
 fn sign_of_determinant(factors: &LU<f64, Dyn, Dyn>) -> f64 {
     let upper = factors.u();
-    let negative = upper
-        .diagonal()
-        .iter()
-        .filter(|entry| **entry < 0.0)
-        .count();
+    let negative = upper.diagonal().iter().filter(|entry| **entry < 0.0).count();
     let sign: f64 = factors.p().determinant();
     if negative % 2 == 1 { -sign } else { sign }
 }

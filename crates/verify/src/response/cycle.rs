@@ -55,10 +55,7 @@ fn followed(
             -by_velocity,
         ];
     };
-    let begin = Point {
-        t: 0.0,
-        y: [start[0], start[1], 1.0, 0.0, 0.0, 1.0, 0.0],
-    };
+    let begin = Point { t: 0.0, y: [start[0], start[1], 1.0, 0.0, 0.0, 1.0, 0.0] };
     let path =
         integrate_first_order(rates, begin, period, &[], &options(guess.size, TOLERANCE)).ok()?;
     path.is_complete().then_some(path)
@@ -75,9 +72,7 @@ pub fn true_cycle(
     const MOST: usize = 15;
     /// Parts of the size of the motion by which the start may move, and of its period.
     const FAR: f64 = 0.3;
-    let &Guess {
-        frequency, size, ..
-    } = guess;
+    let &Guess { frequency, size, .. } = guess;
     let sign = if backward { -1.0 } else { 1.0 };
     let flow = |[x, v]: [f64; 2]| [sign * v, -sign * driven.force(&[x, v, 0.0, parameter])];
     let measure = |step: [f64; 2]| step[0].hypot(step[1] / frequency);
@@ -129,11 +124,8 @@ fn described(
     period: f64,
     determinant: f64,
 ) -> TrueMotion {
-    let positions: Vec<f64> = path
-        .samples(SAMPLES + 1)
-        .take(SAMPLES)
-        .map(|point| point.y[0])
-        .collect();
+    let positions: Vec<f64> =
+        path.samples(SAMPLES + 1).take(SAMPLES).map(|point| point.y[0]).collect();
     TrueMotion {
         start,
         frequency: std::f64::consts::TAU / period,
@@ -203,8 +195,5 @@ pub fn settled(
         .find(|time| away(*time) <= BACK * guess.size)?;
     let positions =
         (0..SAMPLES).filter_map(|sample| path.state_at(own * sample as f64 / SAMPLES as f64));
-    Some((
-        std::f64::consts::TAU / own,
-        positions.map(|point| point.y[0]).collect(),
-    ))
+    Some((std::f64::consts::TAU / own, positions.map(|point| point.y[0]).collect()))
 }

@@ -48,13 +48,8 @@ pub struct Driven {
 }
 
 /// The functions with a corner or a jump.
-const CORNERS: [Function; 5] = [
-    Function::Absolute,
-    Function::Sign,
-    Function::Step,
-    Function::Maximum,
-    Function::Minimum,
-];
+const CORNERS: [Function; 5] =
+    [Function::Absolute, Function::Sign, Function::Step, Function::Maximum, Function::Minimum];
 
 /// A line of places and velocities on which the force jumps, `n_x x + n_v x' = c(p)`; n_v is one,
 /// or n_x where n_v is zero.
@@ -128,10 +123,9 @@ fn jumps_across(
     let [by_position, by_velocity] = &line.normal;
     let (name, on_line) = match by_velocity.is_zero() {
         true => (position, line.level.clone()),
-        false => (
-            velocity,
-            &line.level - &(Expr::number(by_position.clone()) * Expr::from(position)),
-        ),
+        false => {
+            (velocity, &line.level - &(Expr::number(by_position.clone()) * Expr::from(position)))
+        }
     };
     let on = |side: i64| -> Result<Expr, ResponseError> {
         let is_line = |argument: &Expr| grows_across(argument, line, oscillator);
@@ -192,17 +186,11 @@ fn line_of(
     let (Some(by_position), Some(by_velocity)) = (factor(position)?, factor(velocity)?) else {
         return Ok(None);
     };
-    let over = if by_velocity.is_zero() {
-        by_position.clone()
-    } else {
-        by_velocity.clone()
-    };
+    let over = if by_velocity.is_zero() { by_position.clone() } else { by_velocity.clone() };
     if over.is_zero() {
         return Ok(None);
     }
-    let rest = argument
-        .substitute(velocity, &Expr::zero())?
-        .substitute(position, &Expr::zero())?;
+    let rest = argument.substitute(velocity, &Expr::zero())?.substitute(position, &Expr::zero())?;
     let level = Expr::divide(&-rest, &Expr::number(over.clone()))?.expand()?;
     if level.contains(Symbol::new("t")) {
         return Ok(None);
@@ -223,10 +211,7 @@ fn with_sides(
     let mut force = oscillator.force.expand()?;
     let mut lines: Vec<Line> = Vec::new();
     for term in force.terms() {
-        for argument in term
-            .unique_nodes()
-            .filter_map(|part| argument_of_step(part, oscillator))
-        {
+        for argument in term.unique_nodes().filter_map(|part| argument_of_step(part, oscillator)) {
             match line_of(argument, oscillator)? {
                 Some((line, _)) if !lines.contains(&line) => lines.push(line),
                 None if argument.contains(oscillator.velocity()) => {
@@ -286,11 +271,8 @@ impl Driven {
     ) -> Result<Self, ResponseError> {
         let time = Symbol::new("t");
         let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
-        let names: Vec<Symbol> = oscillator
-            .names()
-            .into_iter()
-            .chain([velocity, parameter])
-            .collect();
+        let names: Vec<Symbol> =
+            oscillator.names().into_iter().chain([velocity, parameter]).collect();
         let phase = fresh("theta", &names);
         let stem = fresh_stem("side", &names);
         let side = |index: usize| Symbol::new(&format!("{stem}{index}"));
@@ -335,9 +317,7 @@ impl Driven {
             periods,
             self_excited: false,
             undamped,
-            smooth: !CORNERS
-                .iter()
-                .any(|corner| oscillator.force.contains_function(*corner)),
+            smooth: !CORNERS.iter().any(|corner| oscillator.force.contains_function(*corner)),
         })
     }
 
@@ -362,9 +342,7 @@ impl Driven {
 
     /// The derivative of that velocity by the parameter.
     pub fn jump_speed_slope(&self, parameter: f64) -> f64 {
-        self.jumps
-            .first()
-            .map_or(0.0, |jump| jump.level[1].call(&[parameter]))
+        self.jumps.first().map_or(0.0, |jump| jump.level[1].call(&[parameter]))
     }
 
     /// On how many lines of places and velocities the force jumps.
@@ -417,9 +395,7 @@ impl Driven {
 
     /// f as it is on these sides of its jumps, 1 above and -1 below.
     pub fn force_on(&self, at: &[f64; 4], sides: &[f64]) -> f64 {
-        with(at, sides, self.jumps.len(), |arguments| {
-            self.force.call(arguments)
-        })
+        with(at, sides, self.jumps.len(), |arguments| self.force.call(arguments))
     }
 
     /// Its derivatives on these sides.
@@ -432,9 +408,7 @@ impl Driven {
     /// The sides of its jumps that a motion is on; zero at a jump itself.
     fn sides(&self, at: &[f64; 4]) -> Vec<f64> {
         let side = |height: f64| if height == 0.0 { 0.0 } else { height.signum() };
-        (0..self.jumps.len())
-            .map(|index| side(self.height(index, [at[0], at[1]], at[3])))
-            .collect()
+        (0..self.jumps.len()).map(|index| side(self.height(index, [at[0], at[1]], at[3]))).collect()
     }
 
     /// f as it was given, in time.
@@ -464,17 +438,15 @@ fn with<T>(
 /// The expression with the phase in place of time; the arguments of `sin` and the like are written
 /// out, so that `Omega*theta/Omega` is `theta`.
 fn in_phase(expression: &Expr, time: Symbol, moment: &Expr) -> Result<Expr, ResponseError> {
-    Ok(
-        expression.fold(|node, children: &[Expr]| match node.node() {
-            Node::Symbol(name) if *name == time => Ok(moment.clone()),
-            Node::Function(..) if node.contains(time) => {
-                let arguments: Result<Vec<Expr>, _> = children.iter().map(Expr::expand).collect();
-                node.with_children(&arguments?)
-            }
-            _ if children.is_empty() => Ok(node.clone()),
-            _ => node.with_children(children),
-        })?,
-    )
+    Ok(expression.fold(|node, children: &[Expr]| match node.node() {
+        Node::Symbol(name) if *name == time => Ok(moment.clone()),
+        Node::Function(..) if node.contains(time) => {
+            let arguments: Result<Vec<Expr>, _> = children.iter().map(Expr::expand).collect();
+            node.with_children(&arguments?)
+        }
+        _ if children.is_empty() => Ok(node.clone()),
+        _ => node.with_children(children),
+    })?)
 }
 
 /// The frequency of which all frequencies of the drive are whole multiples.
@@ -492,9 +464,7 @@ fn drive_frequency(oscillator: &Oscillator) -> Result<Expr, ResponseError> {
             Node::Function(Function::Sin | Function::Cos | Function::Tan, arguments)
                 if node.contains(time) =>
             {
-                let frequency = arguments
-                    .first()
-                    .map(|argument| argument.differentiate(time));
+                let frequency = arguments.first().map(|argument| argument.differentiate(time));
                 let frequency = frequency.unwrap_or_else(|| Ok(Expr::zero()))?.expand()?;
                 if own.iter().any(|name| frequency.contains(*name)) {
                     return Ok(true);
@@ -515,27 +485,19 @@ fn drive_frequency(oscillator: &Oscillator) -> Result<Expr, ResponseError> {
     for frequency in &found {
         let ratio = Expr::divide(frequency, &first)?.expand()?;
         let Some(ratio) = ratio.as_number().filter(|ratio| !ratio.is_zero()) else {
-            return Err(ResponseError::TwoFrequencies([
-                first.to_string(),
-                frequency.to_string(),
-            ]));
+            return Err(ResponseError::TwoFrequencies([first.to_string(), frequency.to_string()]));
         };
         let ratio = ratio.abs();
         common = Some(match common {
             None => ratio,
-            Some(common) => Rational::new(
-                common.numer().gcd(ratio.numer()),
-                common.denom().lcm(ratio.denom()),
-            ),
+            Some(common) => {
+                Rational::new(common.numer().gcd(ratio.numer()), common.denom().lcm(ratio.denom()))
+            }
         });
     }
     let factor = common.unwrap_or_else(num_traits::One::one);
     let frequency = Expr::number(factor) * first;
-    Ok(if frequency.has_leading_minus() {
-        -frequency
-    } else {
-        frequency
-    })
+    Ok(if frequency.has_leading_minus() { -frequency } else { frequency })
 }
 
 #[cfg(test)]
@@ -545,9 +507,7 @@ mod tests {
     fn frequency(text: &str) -> Result<String, String> {
         let oscillator = Oscillator::parse(text).unwrap();
         let found = drive_frequency(&oscillator);
-        found
-            .map(|found| found.to_string())
-            .map_err(|error| error.to_string())
+        found.map(|found| found.to_string()).map_err(|error| error.to_string())
     }
 
     #[test]

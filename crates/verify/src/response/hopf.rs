@@ -48,12 +48,7 @@ pub fn near(
                 [place - step, place + step].map(|beside| driven.slopes(&at(beside))[1]);
             (after - before) / (2.0 * step[index])
         };
-        let matrix = Matrix2::new(
-            by_position,
-            by_parameter,
-            damping_slope(0),
-            damping_slope(1),
-        );
+        let matrix = Matrix2::new(by_position, by_parameter, damping_slope(0), damping_slope(1));
         Some((Vector2::new(driven.force(&at(*place)), by_velocity), matrix))
     };
     let judged = |place: &Vector2<f64>, step: &Vector2<f64>| match step[0].abs() <= SETTLED * size {

@@ -62,15 +62,11 @@ impl Asked<'_> {
         const OTHER: f64 = 0.3;
         let (u, parameter) = (&node.coefficients, node.parameter);
         let frequency = balance.frequency(u, parameter);
-        let guess = Guess {
-            start: balance.start(u, parameter),
-            frequency,
-            size: balance.extent(u),
-        };
+        let guess =
+            Guess { start: balance.start(u, parameter), frequency, size: balance.extent(u) };
         let damping = balance.motion(u).into_iter().map(|[x, by_phase, _]| {
             let [_, by_velocity, _] =
-                self.driven
-                    .slopes(&[x, frequency * by_phase, 0.0, parameter]);
+                self.driven.slopes(&[x, frequency * by_phase, 0.0, parameter]);
             by_velocity
         });
         let mean = damping.sum::<f64>() / balance.samples() as f64;
@@ -121,14 +117,9 @@ impl Asked<'_> {
         let frequency = balance.frequency(u, node.parameter);
         let (amplitude, phase) = match amplitude > NOTHING * peak {
             // Half a turn is pi, whatever rounding has left of the sine.
-            true if sine.abs() <= NOTHING * amplitude => (
-                amplitude,
-                if cosine < 0.0 {
-                    std::f64::consts::PI
-                } else {
-                    0.0
-                },
-            ),
+            true if sine.abs() <= NOTHING * amplitude => {
+                (amplitude, if cosine < 0.0 { std::f64::consts::PI } else { 0.0 })
+            }
             true => (amplitude, sine.atan2(cosine)),
             false => (0.0, 0.0),
         };
@@ -138,11 +129,7 @@ impl Asked<'_> {
             of_size.max((frequency / truth.frequency - 1.0).abs())
         });
         // On the circle itself only rounding tells.
-        let allowed = if self.driven.undamped {
-            1.0 + 1e-5
-        } else {
-            1.0
-        };
+        let allowed = if self.driven.undamped { 1.0 + 1e-5 } else { 1.0 };
         Point {
             parameter: node.parameter,
             harmonics: (0..=balance.harmonics)
@@ -182,19 +169,15 @@ impl Asked<'_> {
         let mut found = Vec::new();
         let mut budget = self.budget();
         for branch in branches {
-            for part in branch
-                .points
-                .chunk_by(|one, other| one.stable == other.stable)
-            {
+            for part in branch.points.chunk_by(|one, other| one.stable == other.stable) {
                 if part.first().is_none_or(|point| point.stable != Some(true)) {
                     continue;
                 }
                 let steps = EACH.min(part.len());
                 for index in 0..steps {
                     let point = &part[(2 * index + 1) * part.len() / (2 * steps)];
-                    let largest = point
-                        .multipliers
-                        .map_or(1.0, |multipliers| multipliers[0].norm());
+                    let largest =
+                        point.multipliers.map_or(1.0, |multipliers| multipliers[0].norm());
                     let needed = (1e-7_f64 / DISTURBANCES[0]).ln() / largest.ln();
                     let stopped = self.question.interrupt.is_requested();
                     // Without drive what shooting does not find may be no motion at all.
@@ -215,11 +198,8 @@ impl Asked<'_> {
                             return Some(simulated(point, &positions, frequency, size));
                         }
                         if self.driven.self_excited {
-                            let guess = Guess {
-                                start,
-                                frequency: point.frequency,
-                                size: point.peak,
-                            };
+                            let guess =
+                                Guess { start, frequency: point.frequency, size: point.peak };
                             let found = cycle::settled(
                                 &self.driven,
                                 &guess,
@@ -267,16 +247,12 @@ impl Asked<'_> {
         course.energy = None;
         course.start = start.to_vec();
         course.values = [(self.question.parameter, point.parameter)].into();
-        course
-            .values
-            .retain(|name, _| self.oscillator.parameters.contains(name));
+        course.values.retain(|name, _| self.oscillator.parameters.contains(name));
         course.interrupt = self.question.interrupt;
         course.duration = period * (periods + 2) as f64;
         if self.driven.self_excited {
             // From one least displacement to the next.
-            course.section = Some(trajectory::Section::Rising(
-                self.oscillator.velocity().into(),
-            ));
+            course.section = Some(trajectory::Section::Rising(self.oscillator.velocity().into()));
         }
         let motion = course.follow().ok().filter(|motion| motion.is_complete())?;
         let (from, to) = match (self.driven.self_excited, motion.crossings()) {
@@ -310,9 +286,7 @@ fn relative_error(
     [true_amplitude, true_peak]: [f64; 2],
     size: f64,
 ) -> f64 {
-    let apart = (amplitude - true_amplitude)
-        .abs()
-        .max((peak - true_peak).abs());
+    let apart = (amplitude - true_amplitude).abs().max((peak - true_peak).abs());
     let over = true_peak.max(1e-3 * size);
     if over > 0.0 { apart / over } else { 0.0 }
 }

@@ -95,9 +95,7 @@ impl Course {
     pub fn extent(&self) -> f64 {
         let positions = self.positions(super::stability::SAMPLES);
         let from = positions.first().copied().unwrap_or(0.0);
-        positions
-            .iter()
-            .fold(0.0, |most, position| most.max((position - from).abs()))
+        positions.iter().fold(0.0, |most, position| most.max((position - from).abs()))
     }
 
     /// Evaluations of the force.
@@ -136,12 +134,7 @@ pub fn follow(
             _ => false,
         };
         if turned || run.t >= until.time() {
-            return Some(Course {
-                legs,
-                stuck,
-                turned,
-                end: run.y,
-            });
+            return Some(Course { legs, stuck, turned, end: run.y });
         }
     }
     None
@@ -176,10 +169,7 @@ impl<'a> Run<'a> {
             sliding: None,
         };
         for index in (0..driven.jumps()).filter(|index| heights(*index) == 0.0) {
-            match [1.0, -1.0]
-                .into_iter()
-                .find(|side| side * run.rise(index, *side) > 0.0)
-            {
+            match [1.0, -1.0].into_iter().find(|side| side * run.rise(index, *side) > 0.0) {
                 Some(side) => run.sides[index] = side,
                 // At rest beside a step in place it is on neither side.
                 None if driven.normal(index)[1] != 0.0 => run.stick(index),
@@ -240,14 +230,8 @@ impl<'a> Run<'a> {
                 -by_position * y[4] - by_velocity * y[5],
             ];
         };
-        let events: Vec<_> = Self::turn(until)
-            .into_iter()
-            .chain(self.crossings(None))
-            .collect();
-        let begin = Point {
-            t: self.t,
-            y: self.y,
-        };
+        let events: Vec<_> = Self::turn(until).into_iter().chain(self.crossings(None)).collect();
+        let begin = Point { t: self.t, y: self.y };
         let path = integrate_first_order(rates, begin, until.time(), &events, options).ok()?;
         path.is_complete().then_some(path)
     }
@@ -261,14 +245,8 @@ impl<'a> Run<'a> {
     ) -> Option<Trajectory<Point<Values>>> {
         let [by_position, _] = self.driven.normal(surface);
         let rates = |_: f64, y: &Values, rates: &mut Values| {
-            *rates = [
-                y[1],
-                -by_position * y[1],
-                y[3],
-                -by_position * y[3],
-                y[5],
-                -by_position * y[5],
-            ];
+            *rates =
+                [y[1], -by_position * y[1], y[3], -by_position * y[3], y[5], -by_position * y[5]];
         };
         let leaves = [1.0, -1.0].map(|side| {
             let mut sides = self.sides.clone();
@@ -282,20 +260,14 @@ impl<'a> Run<'a> {
             Event::new(pushed, Action::Stop).rising()
         });
         let turn = Self::turn(until);
-        let events: Vec<_> = turn
-            .into_iter()
-            .chain(self.crossings(Some(surface)))
-            .chain(leaves)
-            .collect();
+        let events: Vec<_> =
+            turn.into_iter().chain(self.crossings(Some(surface))).chain(leaves).collect();
         // Nothing but the drive changes: a step sees all of it.
         let options = Options {
             maximum_step: 0.05 * std::f64::consts::TAU / self.omega / self.driven.periods as f64,
             ..*options
         };
-        let begin = Point {
-            t: self.t,
-            y: self.y,
-        };
+        let begin = Point { t: self.t, y: self.y };
         let path = integrate_first_order(rates, begin, until.time(), &events, &options).ok()?;
         path.is_complete().then_some(path)
     }
@@ -337,9 +309,7 @@ impl<'a> Run<'a> {
 
     /// Puts it exactly on a jump.
     fn put_on(&mut self, index: usize) {
-        let height = self
-            .driven
-            .height(index, [self.y[0], self.y[1]], self.parameter);
+        let height = self.driven.height(index, [self.y[0], self.y[1]], self.parameter);
         match self.driven.normal(index) {
             [by_position, 0.0] => self.y[0] -= height / by_position,
             [_, by_velocity] => self.y[1] -= height / by_velocity,
@@ -380,9 +350,8 @@ impl<'a> Run<'a> {
     /// Whether what stuck on a jump does so still behind another one.
     fn stay(&mut self) {
         let Some(surface) = self.sliding else { return };
-        if let Some(side) = [1.0, -1.0]
-            .into_iter()
-            .find(|side| side * self.rise(surface, *side) > 0.0)
+        if let Some(side) =
+            [1.0, -1.0].into_iter().find(|side| side * self.rise(surface, *side) > 0.0)
         {
             self.sides[surface] = side;
             self.sliding = None;

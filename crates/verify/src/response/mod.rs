@@ -163,11 +163,7 @@ impl Bifurcation {
     /// Whether this is the same place, met from another branch or by the other half of one.
     fn is_near(&self, other: &Self, [low, high]: [f64; 2], size: f64) -> bool {
         // Where branches cross, each finds the place as well as it can.
-        let near = if self.kind == BifurcationKind::BranchPoint {
-            2e-4
-        } else {
-            1e-5
-        };
+        let near = if self.kind == BifurcationKind::BranchPoint { 2e-4 } else { 1e-5 };
         self.kind == other.kind
             && (self.parameter - other.parameter).abs() <= near * (high - low)
             && (self.peak - other.peak).abs() <= 1e-2 * size
@@ -315,35 +311,22 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
         let mut response = match (attempt, fewer.take()) {
             (Ok(response), None) => response,
             (Ok(response), Some(_)) if response.complete => response,
-            (_, Some(response)) => Response {
-                complete: false,
-                ..response
-            },
+            (_, Some(response)) => Response { complete: false, ..response },
             (Err(error), None) => return Err(error),
         };
-        let points: usize = response
-            .branches
-            .iter()
-            .map(|branch| branch.points.len())
-            .sum();
+        let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
         let judged = 100 * response.unjudged <= points;
         let resolved = !response.ends_with(BranchEnd::Harmonics);
         let followed = response.elsewhere.is_empty();
         let good = resolved
             && judged
             && followed
-            && response
-                .error
-                .is_some_and(|error| error <= 0.1 * question.tolerance);
+            && response.error.is_some_and(|error| error <= 0.1 * question.tolerance);
         // What more harmonics do not better is not theirs, such as a jump of the force.
         let now = (response.error.unwrap_or(f64::INFINITY), response.unjudged);
         let stalled = resolved && followed && now.0 >= 0.7 * before.0 && now.1 >= before.1;
         // What has no branch yet has no error either.
-        before = if followed {
-            now
-        } else {
-            (f64::INFINITY, usize::MAX)
-        };
+        before = if followed { now } else { (f64::INFINITY, usize::MAX) };
         let fixed = question.harmonics.is_some() || !response.complete;
         let last = fixed || good || stalled || 2 * harmonics > MOST_HARMONICS;
         if last {
@@ -362,9 +345,7 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
 impl Response {
     /// Whether a branch ends for this reason.
     fn ends_with(&self, end: BranchEnd) -> bool {
-        self.branches
-            .iter()
-            .any(|branch| branch.ends.contains(&end))
+        self.branches.iter().any(|branch| branch.ends.contains(&end))
     }
 
     /// The same with the largest error of its points and simulations, and the verdict on it.
@@ -379,10 +360,7 @@ impl Response {
             (all + 1, none + usize::from(point.error.is_none()))
         });
         let small = error.is_some_and(|error| error <= self.question.tolerance);
-        let missed = self
-            .elsewhere
-            .iter()
-            .any(|elsewhere| elsewhere.periods == Some(1));
+        let missed = self.elsewhere.iter().any(|elsewhere| elsewhere.periods == Some(1));
         self.verdict = Verdict::of(small && 20 * unjudged <= all && !missed);
         (self.error, self.unjudged) = (error, unjudged);
         self
@@ -427,37 +405,22 @@ struct Asked<'a> {
 
 impl<'a> Asked<'a> {
     fn new(question: &'a Question) -> Result<Self, ResponseError> {
-        let Question {
-            oscillator,
-            parameter,
-            ..
-        } = question;
+        let Question { oscillator, parameter, .. } = question;
         let known = &oscillator.parameters;
         let self_excited = !oscillator.force.contains(Symbol::new("t"));
-        if self_excited
-            && oscillator
-                .parts()
-                .is_ok_and(|parts| parts.damping.is_zero())
-        {
+        if self_excited && oscillator.parts().is_ok_and(|parts| parts.damping.is_zero()) {
             return Err(ResponseError::NoDrive);
         }
         if self_excited && question.periods != 1 {
             return Err(ResponseError::NoPeriods(question.periods));
         }
         if !known.contains(parameter) {
-            return Err(ResponseError::NoParameter {
-                name: *parameter,
-                known: known.clone(),
-            });
+            return Err(ResponseError::NoParameter { name: *parameter, known: known.clone() });
         }
         if question.values.get(*parameter).is_some() {
             return Err(ResponseError::Given(*parameter));
         }
-        if let Some((unknown, _)) = question
-            .values
-            .iter()
-            .find(|(name, _)| !known.contains(name))
-        {
+        if let Some((unknown, _)) = question.values.iter().find(|(name, _)| !known.contains(name)) {
             return Err(ResponseError::Unknown(unknown));
         }
         let missing = |name: &&Symbol| *name != parameter && question.values.get(**name).is_none();
@@ -470,11 +433,7 @@ impl<'a> Asked<'a> {
             return Err(ResponseError::Range(*parameter));
         }
         for (what, given, most) in [
-            (
-                "the number of harmonics",
-                question.harmonics.unwrap_or(1),
-                MOST_HARMONICS,
-            ),
+            ("the number of harmonics", question.harmonics.unwrap_or(1), MOST_HARMONICS),
             ("the number of periods", question.periods, MOST_PERIODS),
         ] {
             if !(1..=most).contains(&given) {
@@ -487,12 +446,7 @@ impl<'a> Asked<'a> {
         if driven.self_excited && driven.undamped {
             return Err(ResponseError::NoDrive);
         }
-        let asked = Self {
-            question,
-            oscillator,
-            driven,
-            tried: Cell::default(),
-        };
+        let asked = Self { question, oscillator, driven, tried: Cell::default() };
         asked.has_frequency()
     }
 
@@ -516,10 +470,7 @@ impl<'a> Asked<'a> {
 
     /// What the simulations of one purpose may take together.
     fn budget(&self) -> Budget {
-        Budget {
-            evaluations: MOST_EVALUATIONS,
-            interrupt: self.question.interrupt,
-        }
+        Budget { evaluations: MOST_EVALUATIONS, interrupt: self.question.interrupt }
     }
 
     fn walk(&self, seeds: &[Seed], size: f64) -> Walk {
@@ -550,10 +501,7 @@ impl<'a> Asked<'a> {
         self.follow_sticking(&balance, seeds, &mut paths, size);
         let (all_judged, changes, ripple) = self.judged_paths(&balance, seeds, &mut paths);
         // What is small is small beside the largest motion of all.
-        let size = paths
-            .iter()
-            .map(|path| largest(&balance, path))
-            .fold(0.0, f64::max);
+        let size = paths.iter().map(|path| largest(&balance, path)).fold(0.0, f64::max);
         let bifurcations = self.bifurcations(&balance, changes, size);
         let branches: Vec<Branch> = paths
             .iter()
@@ -570,15 +518,13 @@ impl<'a> Asked<'a> {
             })
             .collect();
         if branches.is_empty() {
-            return Err(
-                match question.interrupt.is_requested() || self.driven.undamped {
-                    true => self.nothing(),
-                    false => ResponseError::NotFollowed {
-                        parameter: question.parameter,
-                        range: question.range,
-                    },
+            return Err(match question.interrupt.is_requested() || self.driven.undamped {
+                true => self.nothing(),
+                false => ResponseError::NotFollowed {
+                    parameter: question.parameter,
+                    range: question.range,
                 },
-            );
+            });
         }
         let simulated = self.simulated(&branches);
         let elsewhere = self.unfollowed(&balance, &paths, seeds, size);
@@ -634,11 +580,8 @@ impl<'a> Asked<'a> {
                 continue;
             };
             // Before no true motion is near any more the error has grown.
-            let within = |index: &&usize| {
-                points[**index]
-                    .error
-                    .is_some_and(|error| error <= tolerance)
-            };
+            let within =
+                |index: &&usize| points[**index].error.is_some_and(|error| error <= tolerance);
             if count - 1 - last > FEW {
                 last = longest.iter().rfind(within).copied().unwrap_or(last);
             }
@@ -660,17 +603,10 @@ impl<'a> Asked<'a> {
         let slowest_of = |branch: usize| slowest.get(branch).copied().unwrap_or(f64::INFINITY);
         let bifurcations = response.bifurcations.iter();
         let kept = bifurcations.filter(|found| found.frequency >= slowest_of(found.branch));
-        let number = |branch: usize| {
-            (0..branch)
-                .filter(|index| slowest_of(*index).is_finite())
-                .count()
-        };
-        response.bifurcations = kept
-            .map(|found| Bifurcation {
-                branch: number(found.branch),
-                ..*found
-            })
-            .collect();
+        let number =
+            |branch: usize| (0..branch).filter(|index| slowest_of(*index).is_finite()).count();
+        response.bifurcations =
+            kept.map(|found| Bifurcation { branch: number(found.branch), ..*found }).collect();
         response.branches.retain(|branch| !branch.points.is_empty());
         match response.branches.is_empty() {
             true => Err(self.nothing()),
@@ -717,10 +653,7 @@ impl<'a> Asked<'a> {
                     Some(_) => self.stuck_between(balance, from, to, part),
                     None => walk.between(balance, from, to, part),
                 };
-                let known = [
-                    (from, of_true_motion(*before)),
-                    (to, of_true_motion(*after)),
-                ];
+                let known = [(from, of_true_motion(*before)), (to, of_true_motion(*after))];
                 let found = bifurcation::between(balance, known, &between, &floquet);
                 for (mut kind, node) in found {
                     let crossed =
@@ -734,10 +667,7 @@ impl<'a> Asked<'a> {
             let (own, left_out) = ripple::without_ripple(own, &path.nodes, &judged);
             ripple = Ripple::with(ripple, &left_out);
             changes.extend(own.into_iter().map(|(_, kind, node)| (kind, branch, node)));
-            let ends = path
-                .ends
-                .iter()
-                .zip([path.nodes.first(), path.nodes.last()]);
+            let ends = path.ends.iter().zip([path.nodes.first(), path.nodes.last()]);
             let born = ends.filter(|(end, _)| **end == BranchEnd::Rest);
             changes.extend(
                 born.filter_map(|(_, node)| Some((BifurcationKind::Hopf, branch, node?.clone()))),
@@ -760,10 +690,7 @@ impl<'a> Asked<'a> {
                 amplitude: point.amplitude,
                 peak: point.peak,
             };
-            if !found
-                .iter()
-                .any(|known| new.is_near(known, self.question.range, size))
-            {
+            if !found.iter().any(|known| new.is_near(known, self.question.range, size)) {
                 found.push(new);
             }
         }
@@ -782,23 +709,13 @@ impl<'a> Asked<'a> {
 
     /// Why there is nothing.
     fn nothing(&self) -> ResponseError {
-        let Question {
-            parameter, range, ..
-        } = *self.question;
-        match (
-            self.question.interrupt.is_requested(),
-            self.driven.self_excited,
-        ) {
-            (true, _) => ResponseError::Interrupted {
-                parameter,
-                tried: self.tried.get(),
-            },
+        let Question { parameter, range, .. } = *self.question;
+        match (self.question.interrupt.is_requested(), self.driven.self_excited) {
+            (true, _) => ResponseError::Interrupted { parameter, tried: self.tried.get() },
             (false, true) => ResponseError::NoCycle { parameter, range },
-            (false, false) => ResponseError::NoMotion {
-                parameter,
-                at: range[0],
-                undamped: self.driven.undamped,
-            },
+            (false, false) => {
+                ResponseError::NoMotion { parameter, at: range[0], undamped: self.driven.undamped }
+            }
         }
     }
 }

@@ -30,17 +30,10 @@ impl Ripple {
     pub(super) fn with(ripple: Option<Self>, parameters: &[f64]) -> Option<Self> {
         parameters.iter().fold(ripple, |ripple, parameter| {
             Some(match ripple {
-                None => Self {
-                    folds: 1,
-                    range: [*parameter; 2],
-                },
-                Some(Self {
-                    folds,
-                    range: [low, high],
-                }) => Self {
-                    folds: folds + 1,
-                    range: [low.min(*parameter), high.max(*parameter)],
-                },
+                None => Self { folds: 1, range: [*parameter; 2] },
+                Some(Self { folds, range: [low, high] }) => {
+                    Self { folds: folds + 1, range: [low.min(*parameter), high.max(*parameter)] }
+                }
             })
         })
     }
@@ -56,11 +49,7 @@ fn side(judged: &[Judged]) -> f64 {
                 true => away[(0, 0)],
                 false => away.determinant(),
             };
-            if determinant == 0.0 {
-                0.0
-            } else {
-                determinant.signum()
-            }
+            if determinant == 0.0 { 0.0 } else { determinant.signum() }
         })
     };
     let sum: f64 = judged.iter().map(sign).sum();
@@ -144,22 +133,15 @@ fn of_true_motion(
     let mut direction = nodes.get(from)?.parameter_slope().signum();
     let mut real = Vec::new();
     for index in 0..turns.len() {
-        let begin = index
-            .checked_sub(1)
-            .map_or(from, |before| folds[turns[before]].0 + 1);
-        let end = turns
-            .get(index + 1)
-            .map_or(to, |behind| folds[*behind].0 + 1);
+        let begin = index.checked_sub(1).map_or(from, |before| folds[turns[before]].0 + 1);
+        let end = turns.get(index + 1).map_or(to, |behind| folds[*behind].0 + 1);
         let points = (begin..end)
             .filter_map(|index| Some((index, BifurcationKind::Fold, nodes.get(index)?)));
-        let places = folds
-            .iter()
-            .map(|(index, kind, node)| (*index, *kind, node));
+        let places = folds.iter().map(|(index, kind, node)| (*index, *kind, node));
         let places = places.filter(|(index, _, _)| (begin..end).contains(index));
         let ahead = |node: &Node| direction * node.parameter;
-        let farthest = points
-            .chain(places)
-            .max_by(|one, other| ahead(one.2).total_cmp(&ahead(other.2)));
+        let farthest =
+            points.chain(places).max_by(|one, other| ahead(one.2).total_cmp(&ahead(other.2)));
         real.extend(farthest.map(|(index, kind, node)| (index, kind, node.clone())));
         direction = -direction;
     }

@@ -41,17 +41,11 @@ impl Asked<'_> {
             true => (f64::from(index) + OFF) / f64::from(VALUES),
             false => f64::from(index) / f64::from(VALUES - 1),
         };
-        let values: Vec<f64> = (0..VALUES)
-            .map(|index| low + (high - low) * part(index))
-            .collect();
+        let values: Vec<f64> = (0..VALUES).map(|index| low + (high - low) * part(index)).collect();
         let mut seeds = Vec::new();
         let mut elsewhere = Vec::new();
         let mut budget = self.budget();
-        let rings = if self.driven.undamped {
-            0
-        } else {
-            4 * RINGS.len()
-        };
+        let rings = if self.driven.undamped { 0 } else { 4 * RINGS.len() };
         self.question.progress.begin(values.len() * (1 + rings));
         let mut size = 0.0_f64;
         for parameter in &values {
@@ -79,8 +73,7 @@ impl Asked<'_> {
         };
         for path in &first {
             for (found, parameter) in
-                self.walk(&seeds, size)
-                    .returns(&balance, path, self.surroundings())
+                self.walk(&seeds, size).returns(&balance, path, self.surroundings())
             {
                 seeds.push(self.seed(&balance, &found, parameter));
                 size = size.max(balance.extent(&found));
@@ -94,9 +87,8 @@ impl Asked<'_> {
         if !self.driven.undamped {
             for parameter in &values {
                 let omega = self.driven.frequency_at(*parameter);
-                for (radius, turn) in RINGS
-                    .iter()
-                    .flat_map(|radius| (0..4_u32).map(move |turn| (radius, turn)))
+                for (radius, turn) in
+                    RINGS.iter().flat_map(|radius| (0..4_u32).map(move |turn| (radius, turn)))
                 {
                     if self.question.interrupt.is_requested() {
                         return Ok((seeds, elsewhere));
@@ -131,10 +123,7 @@ impl Asked<'_> {
         let mut still = DVector::zeros(balance.size());
         still[0] = place;
         let found = balance.solve(&still, parameter)?;
-        Some((
-            self.seed(balance, &found, parameter),
-            balance.extent(&found),
-        ))
+        Some((self.seed(balance, &found, parameter), balance.extent(&found)))
     }
 
     /// A motion of a balance to begin with.
@@ -158,16 +147,8 @@ impl Asked<'_> {
         const TIMES: f64 = 4.0;
         let [low, high] = self.question.range;
         let beyond = TIMES * (high - low).max(low.abs()).max(high.abs());
-        let lowest = if low >= 0.0 {
-            low / TIMES
-        } else {
-            low - beyond
-        };
-        let highest = if high <= 0.0 {
-            high / TIMES
-        } else {
-            high + beyond
-        };
+        let lowest = if low >= 0.0 { low / TIMES } else { low - beyond };
+        let highest = if high <= 0.0 { high / TIMES } else { high + beyond };
         [lowest, highest]
     }
 
@@ -187,10 +168,7 @@ impl Asked<'_> {
         self.count([0, 1], seeds.len());
         let settled = settle(&self.driven, start, parameter, (PERIODS, CLOSELY), budget)?;
         if settled.returns_after != Some(1) {
-            return Some(Elsewhere {
-                parameter,
-                periods: settled.returns_after,
-            });
+            return Some(Elsewhere { parameter, periods: settled.returns_after });
         }
         seeds.push(Seed {
             parameter,
@@ -204,8 +182,5 @@ impl Asked<'_> {
 
 /// The size of the largest of the motions to begin with.
 pub(super) fn size_of(seeds: &[Seed]) -> f64 {
-    seeds
-        .iter()
-        .map(|seed| half_of_peak_to_peak(&seed.positions))
-        .fold(0.0, f64::max)
+    seeds.iter().map(|seed| half_of_peak_to_peak(&seed.positions)).fold(0.0, f64::max)
 }

@@ -59,10 +59,7 @@ impl Asked<'_> {
         let mut found: Vec<f64> = Vec::new();
         for size in SIZES {
             for place in places_of_rest(&self.driven, parameter, size) {
-                if !found
-                    .iter()
-                    .any(|known| (known - place).abs() <= 1e-9 * size)
-                {
+                if !found.iter().any(|known| (known - place).abs() <= 1e-9 * size) {
                     found.push(place);
                 }
             }
@@ -159,24 +156,13 @@ impl Asked<'_> {
         let pace = self.pace(place, radius, parameter);
         let speed = radius * pace * if backward { -1.0 } else { 1.0 };
         let scaled = |_: f64, x: f64, v: f64| {
-            -self
-                .driven
-                .force(&[place + radius * x, speed * v, 0.0, parameter])
+            -self.driven.force(&[place + radius * x, speed * v, 0.0, parameter])
                 / (radius * pace * pace)
         };
-        let start = State {
-            t: 0.0,
-            x: 1.0,
-            v: 0.0,
-        };
-        let events = [
-            Event::stop(|_, _, v| v).falling(),
-            Event::stop(|_, x, _| GONE - x.abs()).falling(),
-        ];
-        let options = Options {
-            maximum_steps,
-            ..Options::with_tolerance(tolerance)
-        };
+        let start = State { t: 0.0, x: 1.0, v: 0.0 };
+        let events =
+            [Event::stop(|_, _, v| v).falling(), Event::stop(|_, x, _| GONE - x.abs()).falling()];
+        let options = Options { maximum_steps, ..Options::with_tolerance(tolerance) };
         let path = integrate(scaled, start, LONGEST, &events, &options).ok()?;
         let turned = matches!(path.stop_reason(), StopReason::Event { event: 0, .. });
         (turned && path.end().x > 0.0).then_some(path)

@@ -58,10 +58,7 @@ impl Spurious {
     fn of(found: &[SteadyState]) -> Option<Self> {
         let amplitudes = || found.iter().map(|state| state.amplitude);
         let lowest = amplitudes().min_by(f64::total_cmp)?;
-        Some(Self {
-            count: found.len(),
-            amplitudes: [lowest, amplitudes().fold(lowest, f64::max)],
-        })
+        Some(Self { count: found.len(), amplitudes: [lowest, amplitudes().fold(lowest, f64::max)] })
     }
 }
 
@@ -124,9 +121,7 @@ impl Response {
         let points = self.branches.iter().flat_map(|branch| &branch.points);
         for point in points.filter(|point| point.stable == Some(true)) {
             count += 1;
-            let stable = motions_at(question, &solution, point.parameter)
-                .states
-                .into_iter();
+            let stable = motions_at(question, &solution, point.parameter).states.into_iter();
             let apart = stable
                 .filter(SteadyState::is_stable)
                 .map(|state| (state.amplitude - point.amplitude).abs())

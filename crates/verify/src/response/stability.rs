@@ -46,11 +46,7 @@ impl Floquet {
         }
         // The smaller one by the product, which does not cancel.
         let large = half + half.signum() * square.sqrt();
-        let small = if large == 0.0 {
-            0.0
-        } else {
-            determinant / large
-        };
+        let small = if large == 0.0 { 0.0 } else { determinant / large };
         [Complex::new(large, 0.0), Complex::new(small, 0.0)]
     }
 
@@ -105,10 +101,7 @@ fn with_variations(driven: &Driven, start: [f64; 2], parameter: f64) -> Option<C
 }
 
 fn monodromy(end: &[f64; 6]) -> Floquet {
-    Floquet {
-        monodromy: Matrix2::new(end[2], end[4], end[3], end[5]),
-        self_excited: false,
-    }
+    Floquet { monodromy: Matrix2::new(end[2], end[4], end[3], end[5]), self_excited: false }
 }
 
 /// The periodic motion whose start is near this one; nothing where shooting does not settle, or
@@ -131,9 +124,7 @@ pub fn periodic_motion(
         let end = path.end;
         let floquet = monodromy(&end);
         let missed = Vector2::new(end[0] - start[0], end[1] - start[1]);
-        let step = (Matrix2::identity() - floquet.monodromy)
-            .lu()
-            .solve(&missed)?;
+        let step = (Matrix2::identity() - floquet.monodromy).lu().solve(&missed)?;
         let moved = measure([step[0], step[1]]);
         // Near a fold rounding is magnified: what does not shrink any more has come as near as it
         // will.
@@ -170,10 +161,7 @@ pub fn multipliers_along(
             -by_position * y[2] - by_velocity * y[3],
         ];
     };
-    let begin = Point {
-        t: 0.0,
-        y: [1.0, 0.0, 0.0, 1.0],
-    };
+    let begin = Point { t: 0.0, y: [1.0, 0.0, 0.0, 1.0] };
     let path = integrate_first_order(
         rates,
         begin,
@@ -281,11 +269,9 @@ impl Period {
 
     fn positions(&self, count: usize) -> Vec<f64> {
         match self {
-            Self::One(path) => path
-                .samples(count + 1)
-                .take(count)
-                .map(|point| point.y[0])
-                .collect(),
+            Self::One(path) => {
+                path.samples(count + 1).take(count).map(|point| point.y[0]).collect()
+            }
             Self::Legs(course) => course.positions(count),
         }
     }
@@ -346,17 +332,11 @@ pub fn settle(
         }
         let moved = (end[0] - begin[0]).hypot((end[1] - begin[1]) / omega);
         let away = path.positions(32).into_iter().chain([end[0]]);
-        let extent = away.fold(0.0_f64, |most, position| {
-            most.max((position - begin[0]).abs())
-        });
+        let extent = away.fold(0.0_f64, |most, position| most.max((position - begin[0]).abs()));
         states.push(end);
         last = Some(path);
         // A motion that stands still is one that repeats itself.
-        quiet = if moved <= closely * extent.max(1e-12) {
-            quiet + 1
-        } else {
-            0
-        };
+        quiet = if moved <= closely * extent.max(1e-12) { quiet + 1 } else { 0 };
         if quiet >= 3 {
             break;
         }

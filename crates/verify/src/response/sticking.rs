@@ -50,11 +50,7 @@ impl<'a> PeriodMap<'a> {
         let size = size.max(1e-12);
         Self {
             asked,
-            sizes: Vector3::new(
-                size,
-                size * asked.driven.frequency_at(parameter),
-                high - low,
-            ),
+            sizes: Vector3::new(size, size * asked.driven.frequency_at(parameter), high - low),
         }
     }
 
@@ -75,13 +71,8 @@ impl<'a> PeriodMap<'a> {
         let driven = &self.asked.driven;
         let options = options(self.sizes[0].max(start[0].abs()), TOLERANCE);
         if driven.self_excited {
-            let mut course = follow(
-                driven,
-                [start[0], 0.0],
-                parameter,
-                Until::Turn(LONGEST),
-                &options,
-            )?;
+            let mut course =
+                follow(driven, [start[0], 0.0], parameter, Until::Turn(LONGEST), &options)?;
             // What is beside the start in the velocity is no other start; what is beside the end
             // along the motion is the same end.
             let [x, _, by_start, ..] = course.end;
@@ -92,13 +83,7 @@ impl<'a> PeriodMap<'a> {
         if omega.is_nan() || omega <= 0.0 {
             return None;
         }
-        follow(
-            driven,
-            start,
-            parameter,
-            Until::Time(std::f64::consts::TAU / omega),
-            &options,
-        )
+        follow(driven, start, parameter, Until::Time(std::f64::consts::TAU / omega), &options)
     }
 
     /// dP/dp, by differences.
@@ -219,11 +204,7 @@ impl<'a> PeriodMap<'a> {
                 continue;
             };
             if !(bounds[0]..=bounds[1]).contains(&shot.at[2]) {
-                let bound = if shot.at[2] < bounds[0] {
-                    bounds[0]
-                } else {
-                    bounds[1]
-                };
+                let bound = if shot.at[2] < bounds[0] { bounds[0] } else { bounds[1] };
                 if (bound - here.at[2]).abs() <= 1e-9 {
                     return (shots, BranchEnd::Range);
                 }
@@ -269,10 +250,7 @@ impl<'a> PeriodMap<'a> {
             truth: Some(TrueMotion {
                 start,
                 frequency,
-                floquet: Floquet {
-                    monodromy,
-                    self_excited,
-                },
+                floquet: Floquet { monodromy, self_excited },
                 first_harmonic: first_harmonic(&positions),
                 peak: half_of_peak_to_peak(&positions),
                 stuck: shot.course.stuck(),
@@ -380,15 +358,10 @@ impl Asked<'_> {
                 path.nodes.pop();
             }
             let walk = self.walk(seeds, largest);
-            let rest = path
-                .nodes
-                .last()
-                .and_then(|last| walk.rest_beside(balance, last, last.parameter));
+            let rest =
+                path.nodes.last().and_then(|last| walk.rest_beside(balance, last, last.parameter));
             if let Some(rest) = rest {
-                path.nodes.push(Node {
-                    truth: None,
-                    ..rest
-                });
+                path.nodes.push(Node { truth: None, ..rest });
                 path.ends[side] = BranchEnd::Rest;
             }
             if side == 0 {
@@ -411,25 +384,15 @@ impl Asked<'_> {
         let (before, first) = match last {
             BranchEnd::Closed => (vec![], last),
             _ => {
-                let backward = Shot {
-                    tangent: -shot.tangent,
-                    ..shot.clone()
-                };
+                let backward = Shot { tangent: -shot.tangent, ..shot.clone() };
                 map.walk(&backward, &met, balance)
             }
         };
-        let before = before.into_iter().rev().map(|shot| Shot {
-            tangent: -shot.tangent,
-            ..shot
-        });
+        let before = before.into_iter().rev().map(|shot| Shot { tangent: -shot.tangent, ..shot });
         let closing = (last == BranchEnd::Closed).then(|| shot.clone());
         let shots = before.chain([shot]).chain(behind).chain(closing);
         let nodes: Vec<Node> = shots.map(|shot| map.node(balance, &shot)).collect();
-        (nodes.len() > 1).then_some(Path {
-            nodes,
-            ends: [first, last],
-            mirrored: false,
-        })
+        (nodes.len() > 1).then_some(Path { nodes, ends: [first, last], mirrored: false })
     }
 
     /// Follows a branch on beyond one of its ends.
@@ -455,15 +418,9 @@ impl Asked<'_> {
             return;
         };
         let [at, beside] = [nodes[skipped], nodes[skipped + 1]];
-        let map = PeriodMap::new(
-            self,
-            balance.extent(&at.coefficients).max(0.1 * size),
-            at.parameter,
-        );
-        let (last, inner) = (
-            map.scaled(last, at.parameter),
-            map.scaled(inner, beside.parameter),
-        );
+        let map =
+            PeriodMap::new(self, balance.extent(&at.coefficients).max(0.1 * size), at.parameter);
+        let (last, inner) = (map.scaled(last, at.parameter), map.scaled(inner, beside.parameter));
         let direction = last - inner;
         let length = direction.norm();
         if length.is_nan() || length <= 0.0 {
@@ -484,13 +441,8 @@ impl Asked<'_> {
         match side {
             0 => {
                 // Points are in the order of the branch, and so are their tangents.
-                let mut all: Vec<Node> = outward
-                    .by_ref()
-                    .map(|node| Node {
-                        tangent: -node.tangent,
-                        ..node
-                    })
-                    .collect();
+                let mut all: Vec<Node> =
+                    outward.by_ref().map(|node| Node { tangent: -node.tangent, ..node }).collect();
                 all.reverse();
                 all.extend(path.nodes.drain(..).skip(skipped));
                 path.nodes = all;
@@ -508,9 +460,7 @@ impl Asked<'_> {
             return false;
         };
         let size = balance.extent(&node.coefficients);
-        paths
-            .iter()
-            .any(|path| self.lies_on(balance, path, truth.start, node.parameter, size))
+        paths.iter().any(|path| self.lies_on(balance, path, truth.start, node.parameter, size))
     }
 
     /// Whether a motion with this start lies on a branch.
@@ -550,9 +500,7 @@ impl Asked<'_> {
         to: &Node,
         part: f64,
     ) -> Option<Node> {
-        let size = balance
-            .extent(&from.coefficients)
-            .max(balance.extent(&to.coefficients));
+        let size = balance.extent(&from.coefficients).max(balance.extent(&to.coefficients));
         let map = PeriodMap::new(self, size, from.parameter);
         let [start, end] = [from, to].map(|node| map.scaled(node.begins(balance), node.parameter));
         let way = end - start;

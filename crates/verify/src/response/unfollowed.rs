@@ -52,16 +52,10 @@ impl Asked<'_> {
             if known.iter().any(is_known) {
                 continue;
             }
-            let motion = Motion {
-                parameter,
-                starts: self.images(start, parameter, extent),
-                size: extent,
-            };
+            let motion =
+                Motion { parameter, starts: self.images(start, parameter, extent), size: extent };
             if !paths.iter().any(|path| self.passes(balance, path, &motion)) {
-                found.push(Elsewhere {
-                    parameter,
-                    periods: Some(1),
-                });
+                found.push(Elsewhere { parameter, periods: Some(1) });
             }
             known.push(motion);
         }
@@ -107,9 +101,7 @@ impl Asked<'_> {
             self.is_one(motion, truth.map_or(guess, |truth| truth.start))
         };
         // A branch may end a little before an end of the range.
-        let ends = [path.nodes.first(), path.nodes.last()]
-            .into_iter()
-            .flatten();
+        let ends = [path.nodes.first(), path.nodes.last()].into_iter().flatten();
         let mut beside =
             ends.filter(|node| (node.parameter - parameter).abs() <= LONGEST_STEP * (high - low));
         let between = |pair: &[Node]| {

@@ -41,10 +41,7 @@ pub(super) fn of(oscillator: &Oscillator) -> Option<Energy> {
             powers[1].push(works(&term));
         }
     }
-    Some(Energy {
-        value: Expr::sum(value),
-        powers: powers.concat(),
-    })
+    Some(Energy { value: Expr::sum(value), powers: powers.concat() })
 }
 
 /// The terms of a force written out, functions and denominators as they were typed.
@@ -78,15 +75,6 @@ fn terms(force: &Expr, names: &[Symbol]) -> Result<Vec<Expr>, ExprError> {
         let back = |term: Expr, (name, part): &(Symbol, Expr)| term.substitute(*name, part);
         kept.iter().rev().try_fold(term.clone(), back)
     };
-    let typed: Vec<Expr> = outline
-        .terms()
-        .iter()
-        .map(typed)
-        .collect::<Result<_, _>>()?;
-    Ok(Expr::sum(typed)
-        .terms()
-        .iter()
-        .filter(|term| !term.is_zero())
-        .cloned()
-        .collect())
+    let typed: Vec<Expr> = outline.terms().iter().map(typed).collect::<Result<_, _>>()?;
+    Ok(Expr::sum(typed).terms().iter().filter(|term| !term.is_zero()).cloned().collect())
 }

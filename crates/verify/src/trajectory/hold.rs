@@ -96,12 +96,8 @@ pub(super) struct Layout {
 impl Layout {
     /// All states at a time.
     pub(super) fn states(&self, time: f64, followed: &[f64]) -> Vec<f64> {
-        let arguments: Vec<f64> = followed
-            .iter()
-            .copied()
-            .chain([time])
-            .chain(self.numbers.iter().copied())
-            .collect();
+        let arguments: Vec<f64> =
+            followed.iter().copied().chain([time]).chain(self.numbers.iter().copied()).collect();
         let state = |state: &Result<usize, CompiledFunction>| match state {
             Ok(place) => followed[*place],
             Err(value) => value.call(&arguments),
@@ -191,14 +187,8 @@ impl Course {
         let followed: Vec<usize> = (0..state.len())
             .filter(|index| !sliding.fixed.contains_key(&equations.states[*index]))
             .collect();
-        let names: Vec<Symbol> = followed
-            .iter()
-            .map(|index| equations.states[*index])
-            .collect();
-        let right: Vec<Expr> = followed
-            .iter()
-            .map(|index| sliding.right[*index].clone())
-            .collect();
+        let names: Vec<Symbol> = followed.iter().map(|index| equations.states[*index]).collect();
+        let right: Vec<Expr> = followed.iter().map(|index| sliding.right[*index].clone()).collect();
         let arguments: Vec<Symbol> = names
             .iter()
             .chain([&Symbol::new("t")])
@@ -211,21 +201,12 @@ impl Course {
         };
         let states: Result<Vec<_>, _> = equations.states.iter().enumerate().map(of_state).collect();
         let Ok(states) = states else { return Ok(None) };
-        let layout = Layout {
-            states,
-            numbers: equations.values.values().copied().collect(),
-        };
+        let layout = Layout { states, numbers: equations.values.values().copied().collect() };
         let start: Vec<f64> = followed.iter().map(|index| state[*index]).collect();
         state.copy_from_slice(&layout.states(from, &start));
-        let rates = Rates {
-            states: names.clone(),
-            right: right.clone(),
-        };
-        let section = self
-            .section
-            .as_ref()
-            .map(|section| section.on(&sliding.fixed))
-            .transpose()?;
+        let rates = Rates { states: names.clone(), right: right.clone() };
+        let section =
+            self.section.as_ref().map(|section| section.on(&sliding.fixed)).transpose()?;
         let mut events = section.map_or(vec![], |section| section.events(&rates));
         let recorded = events.len();
         events.extend(sliding.events);
@@ -271,12 +252,9 @@ fn released(regimes: &mut Regimes, event: usize) -> bool {
 /// The surface whose friction reaches its bound in an event, where others have theirs from it or
 /// from each other.
 fn hit(regimes: &Regimes, event: usize) -> Option<Expr> {
-    let surplus = regimes
-        .iter()
-        .any(|(_, regime)| matches!(regime, Regime::Tied(..)));
-    let (surface, _) = regimes
-        .get(event / EVENTS)
-        .filter(|(_, regime)| surplus && *regime == Regime::Held)?;
+    let surplus = regimes.iter().any(|(_, regime)| matches!(regime, Regime::Tied(..)));
+    let (surface, _) =
+        regimes.get(event / EVENTS).filter(|(_, regime)| surplus && *regime == Regime::Held)?;
     Some(surface.u.clone())
 }
 
@@ -336,10 +314,7 @@ fn surfaces(
     state: &[f64],
 ) -> Result<Vec<Surface>, ExprError> {
     let numbers = numbers_at(equations, time, state);
-    let size = 1.0
-        + state
-            .iter()
-            .fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    let size = 1.0 + state.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
     let corner = |part: &Expr| match part.node() {
         Node::Function(
             function @ (Function::Sign | Function::Step | Function::Absolute),
@@ -348,11 +323,7 @@ fn surfaces(
         _ => None,
     };
     let mut corners: Vec<(bool, Expr)> = Vec::new();
-    for found in equations
-        .right
-        .iter()
-        .flat_map(|right| right.unique_nodes().filter_map(corner))
-    {
+    for found in equations.right.iter().flat_map(|right| right.unique_nodes().filter_map(corner)) {
         if !corners.contains(&found) {
             corners.push(found);
         }
@@ -372,17 +343,8 @@ fn surfaces(
             continue;
         }
         let known = found.iter_mut().find_map(|surface| {
-            let ratio = argument
-                .differentiate(velocity)
-                .ok()?
-                .evaluate(&numbers)
-                .ok()?
-                / surface
-                    .u
-                    .differentiate(velocity)
-                    .ok()?
-                    .evaluate(&numbers)
-                    .ok()?;
+            let ratio = argument.differentiate(velocity).ok()?.evaluate(&numbers).ok()?
+                / surface.u.differentiate(velocity).ok()?.evaluate(&numbers).ok()?;
             let factor = Expr::number(from_f64(ratio)?);
             let apart = (&argument - &(&factor * &surface.u)).expand().ok()?;
             let states = equations
@@ -450,19 +412,12 @@ fn regimes_at(
             if share.is_nan() {
                 return Ok(None);
             }
-            let is_hit = regimes
-                .iter()
-                .enumerate()
-                .any(|(other, (surface, regime))| {
-                    let of_one_size =
-                        other == *index || matches!(regime, Regime::Tied(lead, _) if lead == index);
-                    of_one_size && hit == Some(&surface.u)
-                });
-            let bound = if is_hit {
-                1.0 - ROUNDING
-            } else {
-                1.0 + ROUNDING
-            };
+            let is_hit = regimes.iter().enumerate().any(|(other, (surface, regime))| {
+                let of_one_size =
+                    other == *index || matches!(regime, Regime::Tied(lead, _) if lead == index);
+                of_one_size && hit == Some(&surface.u)
+            });
+            let bound = if is_hit { 1.0 - ROUNDING } else { 1.0 + ROUNDING };
             if share.abs() > bound && worst.is_none_or(|(_, largest)| share.abs() > largest.abs()) {
                 worst = Some((*index, share));
             }
@@ -481,9 +436,7 @@ fn regimes_at(
         }
         if sliding.shares.is_empty() && excess > CLEARLY {
             // The corner itself says where the motion goes.
-            regimes
-                .iter_mut()
-                .for_each(|(_, regime)| *regime = Regime::Typed);
+            regimes.iter_mut().for_each(|(_, regime)| *regime = Regime::Typed);
         }
         return Ok(Some(regimes));
     }
@@ -514,19 +467,14 @@ fn tie(
         };
         numbers.insert(*name, value);
     }
-    let none: BTreeMap<Symbol, Expr> = rates
-        .on
-        .iter()
-        .map(|index| (rates.share(*index), Expr::zero()))
-        .collect();
+    let none: BTreeMap<Symbol, Expr> =
+        rates.on.iter().map(|index| (rates.share(*index), Expr::zero())).collect();
     let (mut matrix, mut right) = (Vec::new(), Vec::new());
     for index in &rates.on {
         let rate = rates.of(equations, &regimes[*index].0.u)?;
         let mut row = Vec::new();
         for column in &rates.on {
-            let entry = rate
-                .differentiate(rates.share(*column))?
-                .substitute_all(&none)?;
+            let entry = rate.differentiate(rates.share(*column))?.substitute_all(&none)?;
             let Ok(entry) = entry.evaluate(&numbers) else {
                 return Ok(false);
             };
@@ -576,12 +524,8 @@ impl SurfaceRates {
         regimes: &Regimes,
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Option<Self>, ExprError> {
-        let taken: Vec<Symbol> = equations
-            .states
-            .iter()
-            .chain(equations.values.keys())
-            .copied()
-            .collect();
+        let taken: Vec<Symbol> =
+            equations.states.iter().chain(equations.values.keys()).copied().collect();
         let on: Vec<usize> = (0..regimes.len())
             .filter(|index| matches!(regimes[*index].1, Regime::Held | Regime::Tied(..)))
             .collect();
@@ -625,11 +569,7 @@ impl SurfaceRates {
                 })?
                 .substitute_all(&rates.fixed)
         };
-        let right = equations
-            .right
-            .iter()
-            .map(replaced)
-            .collect::<Result<_, _>>()?;
+        let right = equations.right.iter().map(replaced).collect::<Result<_, _>>()?;
         Ok(Some(Self { right, ..rates }))
     }
 
@@ -672,9 +612,8 @@ fn sliding(
     let Some(rates) = SurfaceRates::new(equations, regimes, numbers)? else {
         return Ok(None);
     };
-    let held: Vec<usize> = (0..regimes.len())
-        .filter(|index| regimes[*index].1 == Regime::Held)
-        .collect();
+    let held: Vec<usize> =
+        (0..regimes.len()).filter(|index| regimes[*index].1 == Regime::Held).collect();
     if held.len() != rates.independent.len() {
         return Ok(None);
     }
@@ -682,10 +621,8 @@ fn sliding(
     let (right, fixed) = (&rates.right, &rates.fixed);
     let mut matrix = Vec::new();
     let mut rest = Vec::new();
-    let none: BTreeMap<Symbol, Expr> = held
-        .iter()
-        .map(|index| (share(*index), Expr::zero()))
-        .collect();
+    let none: BTreeMap<Symbol, Expr> =
+        held.iter().map(|index| (share(*index), Expr::zero())).collect();
     for index in &rates.independent {
         let rate = rates.of(equations, &regimes[*index].0.u)?;
         let row: Vec<Expr> = held
@@ -693,18 +630,13 @@ fn sliding(
             .map(|column| rate.differentiate(share(*column)))
             .collect::<Result<_, _>>()?;
         // Friction enters in proportion, or nothing is known of what holds.
-        if row
-            .iter()
-            .any(|entry| held.iter().any(|column| entry.contains(share(*column))))
-        {
+        if row.iter().any(|entry| held.iter().any(|column| entry.contains(share(*column)))) {
             return Ok(None);
         }
         matrix.push(row);
         rest.push(-rate.substitute_all(&none)?);
     }
-    let jumps: Vec<Expr> = (0..held.len())
-        .map(|row| matrix[row][row].clone())
-        .collect();
+    let jumps: Vec<Expr> = (0..held.len()).map(|row| matrix[row][row].clone()).collect();
     // Of frictions of one size each may act on another surface than its own.
     if held == rates.independent && jumps.iter().any(Expr::is_zero) {
         return Ok(None);
@@ -714,23 +646,15 @@ fn sliding(
         return Ok(None);
     };
     let shares: Vec<(usize, Expr)> = held.iter().copied().zip(found).collect();
-    let values: BTreeMap<Symbol, Expr> = shares
-        .iter()
-        .map(|(index, value)| (share(*index), value.clone()))
-        .collect();
-    let right = right
-        .iter()
-        .map(|rate| rate.substitute_all(&values))
-        .collect::<Result<_, _>>()?;
+    let values: BTreeMap<Symbol, Expr> =
+        shares.iter().map(|(index, value)| (share(*index), value.clone())).collect();
+    let right = right.iter().map(|rate| rate.substitute_all(&values)).collect::<Result<_, _>>()?;
     let mut events = Vec::new();
     for (index, (surface, regime)) in regimes.iter().enumerate() {
         events.extend(match regime {
             Regime::Typed | Regime::Tied(..) => [(); EVENTS].map(|()| Event::record(Expr::from(1))),
             Regime::Held => {
-                let share = values
-                    .get(&share(index))
-                    .cloned()
-                    .unwrap_or_else(Expr::zero);
+                let share = values.get(&share(index)).cloned().unwrap_or_else(Expr::zero);
                 let [one, more] = [1.0, 1.0 + 2.0 * ROUNDING].map(number);
                 [
                     Event::stop(&share - &one).rising(),
@@ -751,14 +675,7 @@ fn sliding(
             }
         });
     }
-    Ok(Some(Sliding {
-        right,
-        held: !held.is_empty(),
-        fixed: rates.fixed,
-        shares,
-        jumps,
-        events,
-    }))
+    Ok(Some(Sliding { right, held: !held.is_empty(), fixed: rates.fixed, shares, jumps, events }))
 }
 
 /// A finite number as an expression.
@@ -781,16 +698,10 @@ fn on_surfaces(
     else {
         return expr.with_children(children);
     };
-    let meant = regimes
-        .iter()
-        .enumerate()
-        .find_map(|(index, (surface, regime))| {
-            let known = surface
-                .arguments
-                .iter()
-                .find(|(known, _)| arguments.first() == Some(known));
-            known.map(|(_, same)| (index, *regime, if *same { 1 } else { -1 }))
-        });
+    let meant = regimes.iter().enumerate().find_map(|(index, (surface, regime))| {
+        let known = surface.arguments.iter().find(|(known, _)| arguments.first() == Some(known));
+        known.map(|(_, same)| (index, *regime, if *same { 1 } else { -1 }))
+    });
     let sign = match meant {
         None | Some((_, Regime::Typed, _)) => return expr.with_children(children),
         Some((index, Regime::Held, same)) => Expr::from(same) * Expr::from(share(index)),

@@ -26,10 +26,8 @@ pub(super) fn roots_across_corners(
 ) -> Result<Expr, ExprError> {
     expression.fold(|expr, children: &[Expr]| match (expr.node(), children) {
         (Node::Function(function, arguments), _) if is_corner(*function) => {
-            let inside: Result<Vec<Expr>, ExprError> = arguments
-                .iter()
-                .map(|argument| inside_corner(argument, values))
-                .collect();
+            let inside: Result<Vec<Expr>, ExprError> =
+                arguments.iter().map(|argument| inside_corner(argument, values)).collect();
             expr.with_children(&inside?)
         }
         (Node::Power(..), [base, exponent]) if rises_as_root(exponent, values) => {
@@ -72,19 +70,14 @@ fn inside_corner(argument: &Expr, values: &BTreeMap<Symbol, f64>) -> Result<Expr
 
 /// `(base^2)^(exponent/2)`.
 fn even_root(base: &Expr, exponent: &Expr) -> Result<Expr, ExprError> {
-    Expr::power(
-        &base.integer_power(2)?,
-        &(exponent * &Expr::number(ratio(1, 2))),
-    )
+    Expr::power(&base.integer_power(2)?, &(exponent * &Expr::number(ratio(1, 2))))
 }
 
 /// Whether a power with this exponent has no value below zero.
 fn draws_root(exponent: &Expr, values: &BTreeMap<Symbol, f64>) -> bool {
     match exponent.as_number() {
         Some(number) => (number.denom() % Integer::from(2)).is_zero(),
-        None => exponent
-            .evaluate(values)
-            .is_ok_and(|value| value.fract() != 0.0),
+        None => exponent.evaluate(values).is_ok_and(|value| value.fract() != 0.0),
     }
 }
 
@@ -151,11 +144,8 @@ fn one_function<'a>(
     let (number, factors) = expr.factors();
     let (numbers, rest): (Vec<&Expr>, Vec<&Expr>) =
         factors.iter().partition(|factor| is_number(factor, values));
-    let before = Expr::product(
-        [Expr::number(number)]
-            .into_iter()
-            .chain(numbers.into_iter().cloned()),
-    );
+    let before =
+        Expr::product([Expr::number(number)].into_iter().chain(numbers.into_iter().cloned()));
     let function = match rest.as_slice() {
         [only] => match only.node() {
             Node::Function(function, arguments) => Some((*function, arguments.as_slice())),

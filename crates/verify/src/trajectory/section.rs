@@ -134,20 +134,13 @@ impl Trajectory {
                 });
                 let (crossed, turned): (Vec<&Occurrence>, Vec<&Occurrence>) =
                     met.partition(|occurrence| occurrence.event == 0);
-                touched = self.turns_on(
-                    expression,
-                    turned.into_iter().map(|turn| turn.time).collect(),
-                );
+                touched =
+                    self.turns_on(expression, turned.into_iter().map(|turn| turn.time).collect());
                 let touches = |time: f64| {
-                    touched
-                        .iter()
-                        .any(|[before, _, behind]| (*before..*behind).contains(&time))
+                    touched.iter().any(|[before, _, behind]| (*before..*behind).contains(&time))
                 };
                 let rising = crossed.into_iter().filter(|occurrence| occurrence.rising);
-                rising
-                    .map(|occurrence| occurrence.time)
-                    .filter(|time| !touches(*time))
-                    .collect()
+                rising.map(|occurrence| occurrence.time).filter(|time| !touches(*time)).collect()
             }
             Some(Section::Every(period)) => {
                 let mut values = course.values.clone();
@@ -157,29 +150,14 @@ impl Trajectory {
                 if !(number > 0.0 && count < MOST_CROSSINGS) {
                     return Err(TrajectoryError::Period(period.clone(), number));
                 }
-                (1..=count as u32)
-                    .map(|index| number * f64::from(index))
-                    .collect()
+                (1..=count as u32).map(|index| number * f64::from(index)).collect()
             }
         };
-        let crossing = |time: f64| {
-            Some(Crossing {
-                time,
-                state: self.at(time)?,
-            })
-        };
+        let crossing = |time: f64| Some(Crossing { time, state: self.at(time)? });
         let in_time = |time: &f64| *time >= course.after;
         Ok(OnSection {
-            crossings: times
-                .into_iter()
-                .filter(in_time)
-                .filter_map(crossing)
-                .collect(),
-            touches: touched
-                .into_iter()
-                .map(|[_, at, _]| at)
-                .filter(in_time)
-                .collect(),
+            crossings: times.into_iter().filter(in_time).filter_map(crossing).collect(),
+            touches: touched.into_iter().map(|[_, at, _]| at).filter(in_time).collect(),
         })
     }
 
@@ -195,12 +173,9 @@ impl Trajectory {
         let value =
             |time: f64| Some(function(time, &self.at(time)?)).filter(|value| value.is_finite());
         let times = [0.0].into_iter().chain(turns).chain([self.end()]);
-        let heights: Vec<(f64, f64)> = times
-            .filter_map(|time| Some((time, value(time)?)))
-            .collect();
-        let largest = heights
-            .iter()
-            .fold(0.0_f64, |most, (_, height)| most.max(height.abs()));
+        let heights: Vec<(f64, f64)> =
+            times.filter_map(|time| Some((time, value(time)?))).collect();
+        let largest = heights.iter().fold(0.0_f64, |most, (_, height)| most.max(height.abs()));
         let touch = |around: &[(f64, f64)]| {
             let [(before, one), (at, height), (behind, other)] = [around[0], around[1], around[2]];
             let away = |height: f64| height.abs() > TOUCH * largest;

@@ -71,10 +71,7 @@ impl Trajectory {
         let (mut known, mut doubtful) = (0.0, false);
         for time in (0..=ACCOUNTS).map(|index| time(end, index)) {
             let (one, other) = (self.at(time)?, displaced.at(time)?);
-            let apart = one
-                .iter()
-                .zip(&other)
-                .map(|(one, other)| (one - other).abs());
+            let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs());
             let is_lost = apart.zip(&sizes).any(|(apart, size)| apart > lost * size);
             // One moment alone may lie between two jumps of one force.
             match (is_lost, doubtful) {

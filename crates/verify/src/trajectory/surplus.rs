@@ -28,26 +28,16 @@ pub(super) fn of_one_size(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<Vec<
         let (size, slip) = nearest_slip(&shares, &open)?;
         // Within what is open these have that size, and the rest is left.
         let rows: Vec<Vec<f64>> = slip.iter().map(|(index, _)| row(&open, *index)).collect();
-        let wanted: Vec<f64> = slip
-            .iter()
-            .map(|(index, sign)| *sign as f64 * size - shares[*index])
-            .collect();
+        let wanted: Vec<f64> =
+            slip.iter().map(|(index, sign)| *sign as f64 * size - shares[*index]).collect();
         let (along, rest) = solutions(&rows, &wanted)?;
         let moved = |along: &[f64]| -> Vec<f64> {
-            let part = |index: usize| {
-                along
-                    .iter()
-                    .zip(&open)
-                    .map(|(z, column)| z * column[index])
-                    .sum()
-            };
+            let part =
+                |index: usize| along.iter().zip(&open).map(|(z, column)| z * column[index]).sum();
             (0..shares.len()).map(part).collect()
         };
-        let next: Vec<f64> = shares
-            .iter()
-            .zip(moved(&along))
-            .map(|(share, more)| share + more)
-            .collect();
+        let next: Vec<f64> =
+            shares.iter().zip(moved(&along)).map(|(share, more)| share + more).collect();
         let left: Vec<Vec<f64>> = rest.iter().map(|direction| moved(direction)).collect();
         if left.len() >= open.len() {
             return None;
@@ -65,16 +55,9 @@ fn row(open: &[Vec<f64>], index: usize) -> Vec<f64> {
 
 /// The size that the largest share has at least, and the shares that have it, with their signs.
 fn nearest_slip(shares: &[f64], open: &[Vec<f64>]) -> Option<(f64, Vec<(usize, i64)>)> {
-    let largest = open
-        .iter()
-        .flatten()
-        .fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+    let largest = open.iter().flatten().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
     let free: Vec<usize> = (0..shares.len())
-        .filter(|index| {
-            row(open, *index)
-                .iter()
-                .any(|entry| entry.abs() > NOTHING * largest)
-        })
+        .filter(|index| row(open, *index).iter().any(|entry| entry.abs() > NOTHING * largest))
         .collect();
     let mut nearest: Option<(f64, Vec<(usize, i64)>)> = None;
     let mut chosen: Vec<usize> = (0..=open.len()).collect();
@@ -90,22 +73,14 @@ fn nearest_slip(shares: &[f64], open: &[Vec<f64>]) -> Option<(f64, Vec<(usize, i
             && let [slip] = slips.as_slice()
         {
             let whole: f64 = slip.iter().map(|entry| entry.abs()).sum();
-            let power: f64 = slip
-                .iter()
-                .zip(&chosen)
-                .map(|(w, place)| w * shares[free[*place]])
-                .sum();
+            let power: f64 =
+                slip.iter().zip(&chosen).map(|(w, place)| w * shares[free[*place]]).sum();
             let size = power.abs() / whole;
             if nearest.as_ref().is_none_or(|(known, _)| size > *known) {
                 let sign = |w: f64| if (w > 0.0) == (power >= 0.0) { 1 } else { -1 };
-                let of_slip = slip
-                    .iter()
-                    .zip(&chosen)
-                    .filter(|(w, _)| w.abs() > NOTHING * whole);
-                nearest = Some((
-                    size,
-                    of_slip.map(|(w, place)| (free[*place], sign(*w))).collect(),
-                ));
+                let of_slip = slip.iter().zip(&chosen).filter(|(w, _)| w.abs() > NOTHING * whole);
+                nearest =
+                    Some((size, of_slip.map(|(w, place)| (free[*place], sign(*w))).collect()));
             }
         }
         if !next_choice(&mut chosen, free.len()) {
@@ -118,10 +93,7 @@ fn nearest_slip(shares: &[f64], open: &[Vec<f64>]) -> Option<(f64, Vec<(usize, i
 /// The next choice of as many of `count`, in order; `false` after the last one.
 fn next_choice(chosen: &mut [usize], count: usize) -> bool {
     let size = chosen.len();
-    let Some(place) = (0..size)
-        .rev()
-        .find(|place| chosen[*place] < count - size + place)
-    else {
+    let Some(place) = (0..size).rev().find(|place| chosen[*place] < count - size + place) else {
         return false;
     };
     let first = chosen[place] + 1;
@@ -145,40 +117,24 @@ fn solutions(matrix: &[Vec<f64>], right: &[f64]) -> Option<(Vec<f64>, Vec<Vec<f6
     if rows.iter().flatten().any(|entry| !entry.is_finite()) {
         return None;
     }
-    let size_of = |entries: &[f64]| {
-        entries
-            .iter()
-            .fold(0.0_f64, |largest, entry| largest.max(entry.abs()))
-    };
-    let matrix_size = rows
-        .iter()
-        .map(|row| size_of(&row[..count]))
-        .fold(0.0, f64::max);
+    let size_of =
+        |entries: &[f64]| entries.iter().fold(0.0_f64, |largest, entry| largest.max(entry.abs()));
+    let matrix_size = rows.iter().map(|row| size_of(&row[..count])).fold(0.0, f64::max);
     let right_size = size_of(right).max(matrix_size);
     let mut pivots: Vec<usize> = Vec::new();
     while pivots.len() < rows.len() {
         let done = pivots.len();
         let places = (done..rows.len()).flat_map(|row| (0..count).map(move |column| (row, column)));
-        let pivot = places.max_by(|one, other| {
-            rows[one.0][one.1]
-                .abs()
-                .total_cmp(&rows[other.0][other.1].abs())
-        });
+        let pivot = places
+            .max_by(|one, other| rows[one.0][one.1].abs().total_cmp(&rows[other.0][other.1].abs()));
         let Some((row, column)) =
             pivot.filter(|(row, column)| rows[*row][*column].abs() > NOTHING * matrix_size)
         else {
             break;
         };
         rows.swap(done, row);
-        let leading: Vec<f64> = rows[done]
-            .iter()
-            .map(|entry| entry / rows[done][column])
-            .collect();
-        for (_, row) in rows
-            .iter_mut()
-            .enumerate()
-            .filter(|(index, _)| *index != done)
-        {
+        let leading: Vec<f64> = rows[done].iter().map(|entry| entry / rows[done][column]).collect();
+        for (_, row) in rows.iter_mut().enumerate().filter(|(index, _)| *index != done) {
             let factor = row[column];
             for (entry, of_pivot) in row.iter_mut().zip(&leading) {
                 *entry -= factor * of_pivot;
@@ -189,10 +145,7 @@ fn solutions(matrix: &[Vec<f64>], right: &[f64]) -> Option<(Vec<f64>, Vec<Vec<f6
         rows[done] = leading;
         pivots.push(column);
     }
-    if rows[pivots.len()..]
-        .iter()
-        .any(|row| row[count].abs() > APART * right_size)
-    {
+    if rows[pivots.len()..].iter().any(|row| row[count].abs() > APART * right_size) {
         return None;
     }
     let mut one = vec![0.0; count];
@@ -227,32 +180,14 @@ mod tests {
         };
         // f over 1 + c where x moves alone, (f + g)/(1 + b) where both do, g over b + c where y
         // does.
-        assert_eq!(
-            groups([1.0, 0.5], [1.2, 0.0]),
-            Some(vec![vec![(0, 1), (2, 1)]])
-        );
-        assert_eq!(
-            groups([0.1, 0.5], [1.0, 0.0]),
-            Some(vec![vec![(0, 1), (1, 1)]])
-        );
-        assert_eq!(
-            groups([1.0, 0.5], [0.0, -1.0]),
-            Some(vec![vec![(1, -1), (2, 1)]])
-        );
+        assert_eq!(groups([1.0, 0.5], [1.2, 0.0]), Some(vec![vec![(0, 1), (2, 1)]]));
+        assert_eq!(groups([0.1, 0.5], [1.0, 0.0]), Some(vec![vec![(0, 1), (1, 1)]]));
+        assert_eq!(groups([1.0, 0.5], [0.0, -1.0]), Some(vec![vec![(1, -1), (2, 1)]]));
         // What contradicts itself has no shares.
-        assert_eq!(
-            of_one_size(&[vec![1.0, 1.0], vec![1.0, 1.0]], &[1.0, 2.0]),
-            None
-        );
-        assert_eq!(
-            of_one_size(&[vec![f64::NAN, 1.0], vec![1.0, 1.0]], &[1.0, 2.0]),
-            None
-        );
+        assert_eq!(of_one_size(&[vec![1.0, 1.0], vec![1.0, 1.0]], &[1.0, 2.0]), None);
+        assert_eq!(of_one_size(&[vec![f64::NAN, 1.0], vec![1.0, 1.0]], &[1.0, 2.0]), None);
         // Nothing is open.
-        assert_eq!(
-            of_one_size(&[vec![2.0, 0.0], vec![0.0, 1.0]], &[1.0, 2.0]),
-            Some(vec![])
-        );
+        assert_eq!(of_one_size(&[vec![2.0, 0.0], vec![0.0, 1.0]], &[1.0, 2.0]), Some(vec![]));
         assert_eq!(of_one_size(&[], &[]), Some(vec![]));
     }
 }

@@ -66,17 +66,14 @@ pub fn sweep(
         course
     };
     // The equations are made ready once, if they can be, and take other numbers for each motion.
-    let ready = grid
-        .first()
-        .and_then(|first| at(first).ready(Integrator::Taylor).ok());
+    let ready = grid.first().and_then(|first| at(first).ready(Integrator::Taylor).ok());
     let one = |&(number, values): &(usize, &Vec<f64>)| {
         if course.interrupt.is_requested() {
             return Ok(None);
         }
         let after = course.after;
-        let motion = at(values)
-            .followed(ready.as_ref(), Accounted::No)
-            .map_err(|error| (number, error))?;
+        let motion =
+            at(values).followed(ready.as_ref(), Accounted::No).map_err(|error| (number, error))?;
         progress();
         // One that was cut off before it counts has nothing to show.
         if motion.reason() == End::Interrupted && motion.end() < after {

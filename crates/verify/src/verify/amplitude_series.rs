@@ -56,12 +56,7 @@ pub(super) fn amplitude_series(force: &[f64]) -> Option<Vec<f64>> {
     }
     let squared = power(&period, -4);
     let scale = Integer::one() << BITS;
-    Some(
-        squared
-            .into_iter()
-            .map(|value| to_f64(&Rational::new(value, scale.clone())))
-            .collect(),
-    )
+    Some(squared.into_iter().map(|value| to_f64(&Rational::new(value, scale.clone()))).collect())
 }
 
 fn whole(value: &Rational) -> Integer {
@@ -107,9 +102,7 @@ mod tests {
             ("x'' + sin(x) = 0", (0..=17).map(sine).collect()),
             (
                 "x'' + x + x^2 = 0",
-                (0..=17)
-                    .map(|k| if k == 1 || k == 2 { 1.0 } else { 0.0 })
-                    .collect(),
+                (0..=17).map(|k| if k == 1 || k == 2 { 1.0 } else { 0.0 }).collect(),
             ),
             ("x'' + x + x^3/2 - x^4 = 0", {
                 let mut force = vec![0.0; 18];
@@ -118,11 +111,8 @@ mod tests {
             }),
         ];
         for (equation, force) in cases {
-            let options = Options {
-                order: Some(16),
-                small: Some("A".to_owned()),
-                ..Options::default()
-            };
+            let options =
+                Options { order: Some(16), small: Some("A".to_owned()), ..Options::default() };
             let exact = solve(&Oscillator::parse(equation).unwrap(), &options).unwrap();
             let law = exact.law.frequency_squared().unwrap();
             let series = amplitude_series(&force).unwrap();

@@ -56,10 +56,7 @@ impl<'a> TrueBackbone<'a> {
         };
         let asked = backbone.asked().abs();
         let _ = backbone.frequency(asked);
-        let work = backbone
-            .physics
-            .as_ref()
-            .map_or(0, |physics| physics.rest.evaluations());
+        let work = backbone.physics.as_ref().map_or(0, |physics| physics.rest.evaluations());
         let by_energy = backbone.physics.as_ref().is_none_or(Physics::by_energy);
         backbone.times = match by_energy {
             true => (MOST_FOR_ONE / work.max(1) as f64).clamp(1.0, FARTHEST),
@@ -107,11 +104,8 @@ impl<'a> TrueBackbone<'a> {
 
     /// The end of what is looked at.
     pub(super) fn farthest(&self) -> f64 {
-        f64::min(
-            0.999 * self.largest_amplitude(),
-            self.times * self.asked().abs(),
-        )
-        .max(self.asked().abs().min(self.largest_amplitude()))
+        f64::min(0.999 * self.largest_amplitude(), self.times * self.asked().abs())
+            .max(self.asked().abs().min(self.largest_amplitude()))
     }
 
     /// The true frequency; `None` where the motion is not periodic.
@@ -162,13 +156,7 @@ impl<'a> TrueBackbone<'a> {
         }
         sizes.sort_by(f64::total_cmp);
         sizes.dedup();
-        Some(
-            sizes
-                .iter()
-                .copied()
-                .step_by(sizes.len().div_ceil(MOST_PLACES).max(1))
-                .collect(),
-        )
+        Some(sizes.iter().copied().step_by(sizes.len().div_ceil(MOST_PLACES).max(1)).collect())
     }
 
     /// Sizes of the amplitude from rest to the end of what is looked at, in order.
@@ -184,9 +172,8 @@ impl<'a> TrueBackbone<'a> {
         let inner = self.smallest_amplitude();
         if inner > 0.0 {
             // The frequency falls to zero there, as the inverse of a logarithm.
-            let above = [
-                1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0,
-            ];
+            let above =
+                [1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.03, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0];
             sizes.extend(above.map(|part| inner * (1.0 + part)));
             sizes
                 .extend((1..LINEAR).map(|k| inner + (farthest - inner) * k as f64 / LINEAR as f64));

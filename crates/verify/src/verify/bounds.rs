@@ -89,19 +89,15 @@ fn course(force: &Force, amplitude: f64) -> Option<Vec<(f64, f64)>> {
     /// Towards rest by decades.
     const DECADES: i32 = 6;
     const PER_DECADE: i32 = 16;
-    let mut places: Vec<f64> = (1..=LINEAR)
-        .map(|k| amplitude * f64::from(k) / f64::from(LINEAR))
-        .collect();
+    let mut places: Vec<f64> =
+        (1..=LINEAR).map(|k| amplitude * f64::from(k) / f64::from(LINEAR)).collect();
     places.extend(
         (1..=DECADES * PER_DECADE)
             .map(|k| amplitude * 10.0_f64.powf(-f64::from(k) / f64::from(PER_DECADE))),
     );
     // A jump has two sides.
     let cuts = force.cuts(0.0, amplitude);
-    places.extend(
-        cuts.iter()
-            .flat_map(|cut| [cut * (1.0 - 1e-12), *cut, cut * (1.0 + 1e-12)]),
-    );
+    places.extend(cuts.iter().flat_map(|cut| [cut * (1.0 - 1e-12), *cut, cut * (1.0 + 1e-12)]));
     places.retain(|place| *place > 0.0 && *place <= amplitude);
     places.sort_by(f64::total_cmp);
     places.dedup();
@@ -119,10 +115,7 @@ fn course(force: &Force, amplitude: f64) -> Option<Vec<(f64, f64)>> {
         }
     }
     course.sort_by(|one, other| one.0.total_cmp(&other.0));
-    course
-        .iter()
-        .all(|point| point.1.is_finite())
-        .then_some(course)
+    course.iter().all(|point| point.1.is_finite()).then_some(course)
 }
 
 /// The first place at which the values turn back by more than rounding.
@@ -158,33 +151,19 @@ mod tests {
     use crate::verify::judge;
 
     /// Equation, values, whether the condition fails, words, and the two bounds stated.
-    type Case = (
-        &'static str,
-        &'static [(&'static str, &'static str)],
-        bool,
-        &'static str,
-        f64,
-        f64,
-    );
+    type Case =
+        (&'static str, &'static [(&'static str, &'static str)], bool, &'static str, f64, f64);
 
     fn decided(equation: &str, at: &[(&str, &str)]) -> (Range, f64) {
         let oscillator = Oscillator::parse(equation).unwrap();
-        let options = Options {
-            method: Some(Method::MaxMin),
-            ..Options::default()
-        };
+        let options = Options { method: Some(Method::MaxMin), ..Options::default() };
         let solution = solve(&oscillator, &options).unwrap();
         let mut values = Values::default();
         for (name, value) in at {
-            values
-                .insert((*name).into(), value.parse().unwrap())
-                .unwrap();
+            values.insert((*name).into(), value.parse().unwrap()).unwrap();
         }
         let verification = judge(&oscillator, &solution, &values, 0.01).unwrap();
-        let range = verification
-            .ranges
-            .into_iter()
-            .find(|range| range.text.starts_with("f(x)/x"));
+        let range = verification.ranges.into_iter().find(|range| range.text.starts_with("f(x)/x"));
         (range.expect(equation), verification.true_frequency.powi(2))
     }
 
@@ -198,22 +177,8 @@ mod tests {
     #[test]
     fn the_condition_is_decided_and_the_true_frequency_lies_between() {
         let cases: [Case; 8] = [
-            (
-                "x'' + x + eps*x^3 = 0",
-                &[("eps", "1.0"), ("A", "2.0")],
-                false,
-                "rises",
-                1.0,
-                5.0,
-            ),
-            (
-                "x'' + k*x - x^3 = 0",
-                &[("k", "4.0"), ("A", "-1.0")],
-                false,
-                "falls",
-                4.0,
-                3.0,
-            ),
+            ("x'' + x + eps*x^3 = 0", &[("eps", "1.0"), ("A", "2.0")], false, "rises", 1.0, 5.0),
+            ("x'' + k*x - x^3 = 0", &[("k", "4.0"), ("A", "-1.0")], false, "falls", 4.0, 3.0),
             // 1 - x^2 + b x^4 is least at x^2 = 1/(2 b).
             (
                 "x'' + x - x^3 + b*x^5 = 0",
@@ -247,14 +212,7 @@ mod tests {
                 5e11,
                 5e12,
             ),
-            (
-                "x'' + x + x*abs(x) = 0",
-                &[("A", "1e9")],
-                false,
-                "rises",
-                1.0,
-                1e9,
-            ),
+            ("x'' + x + x*abs(x) = 0", &[("A", "1e9")], false, "rises", 1.0, 1e9),
             // 1 + b H(x - 1)/x steps up and comes down again.
             (
                 "x'' + x + b*H(x - 1) - b*H(-x - 1) = 0",
@@ -267,16 +225,8 @@ mod tests {
         ];
         for (equation, at, outside, words, least, largest) in cases {
             let (range, squared) = decided(equation, at);
-            assert_eq!(
-                range.outside, outside,
-                "{equation} at {at:?}: {}",
-                range.text
-            );
-            assert!(
-                range.text.contains(words),
-                "{equation} at {at:?}: {}",
-                range.text
-            );
+            assert_eq!(range.outside, outside, "{equation} at {at:?}: {}", range.text);
+            assert!(range.text.contains(words), "{equation} at {at:?}: {}", range.text);
             let (one, other) = pair(&range.text);
             assert!(
                 (one / least - 1.0).abs() < 1e-5 && (other / largest - 1.0).abs() < 1e-5,
@@ -284,17 +234,9 @@ mod tests {
                 range.text
             );
             let (low, high) = (one.min(other), one.max(other));
-            assert!(
-                low < squared && squared < high,
-                "{equation}: {squared} of {}",
-                range.text
-            );
+            assert!(low < squared && squared < high, "{equation}: {squared} of {}", range.text);
         }
         let (range, _) = decided("x'' + 3*x + b*sin(3*x) = 0", &[("b", "1.0"), ("A", "2.5")]);
-        assert!(
-            range.outside && range.text.contains("turns back at x = 1.4978"),
-            "{}",
-            range.text
-        );
+        assert!(range.outside && range.text.contains("turns back at x = 1.4978"), "{}", range.text);
     }
 }

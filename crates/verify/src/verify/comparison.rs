@@ -53,10 +53,7 @@ impl Row {
     /// The convergence-control parameter that was chosen for the numbers, where it was.
     pub fn chosen_hbar(&self) -> Option<(Symbol, f64)> {
         let hbar = convergence_control(&self.solution);
-        let own = self
-            .chosen
-            .iter()
-            .filter(|_| self.solution.method == Method::HomotopyAnalysis);
+        let own = self.chosen.iter().filter(|_| self.solution.method == Method::HomotopyAnalysis);
         own.copied().find(|entry| entry.0 == hbar)
     }
 }
@@ -133,20 +130,15 @@ fn variants(oscillator: &Oscillator, small: Option<&str>) -> Vec<Options> {
     for method in Method::ALL {
         variants.push(default(method));
         if method == Method::HomotopyPerturbation {
-            variants.push(Options {
-                order: Some(1),
-                ..default(method)
-            });
+            variants.push(Options { order: Some(1), ..default(method) });
         }
         let higher: &[u32] = match method {
             Method::Averaging => &[2],
             Method::MultipleScales if driven => &[2, 3],
             _ => &[],
         };
-        variants.extend(higher.iter().map(|order| Options {
-            order: Some(*order),
-            ..default(method)
-        }));
+        variants
+            .extend(higher.iter().map(|order| Options { order: Some(*order), ..default(method) }));
     }
     variants
 }
@@ -176,10 +168,7 @@ pub fn compare(
     // A force too long to be written out stops every method at the same place: once is enough.
     if let Err(error) = oscillator.parts() {
         let reason = Refusal::from(error);
-        let refused = Method::ALL.map(|method| Refused {
-            method,
-            reason: reason.clone(),
-        });
+        let refused = Method::ALL.map(|method| Refused { method, reason: reason.clone() });
         return Err(ComparisonError::NoMethod(refused.into()));
     }
     let (solutions, slow, mut refused) = answers(oscillator, at, small);
@@ -213,14 +202,7 @@ pub fn compare(
     let rows = solutions
         .iter()
         .map(|solution| {
-            row(
-                oscillator,
-                solution,
-                &numbers,
-                true_motion.as_ref(),
-                &at_amplitude,
-                tolerance,
-            )
+            row(oscillator, solution, &numbers, true_motion.as_ref(), &at_amplitude, tolerance)
         })
         .collect();
     let validity = validity::of_equation(oscillator, first, &numbers);
@@ -245,10 +227,7 @@ fn answers(
 ) -> (Vec<Solution>, Vec<Solution>, Vec<Refused>) {
     let (mut solutions, mut slow, mut refused) = (Vec::new(), Vec::new(), Vec::new());
     let in_a_parameter = small.is_none()
-        && !matches!(
-            oscillator.small_parameter(None),
-            Ok(SmallParameter::Amplitude)
-        );
+        && !matches!(oscillator.small_parameter(None), Ok(SmallParameter::Amplitude));
     for options in variants(oscillator, small) {
         let solved = |options: &Options| {
             with_resonance_at(oscillator, options, at)
@@ -284,10 +263,7 @@ fn answers(
             (Ok(solution), Some(method))
                 if solution.response.is_none() && super::periodic(&solution).is_err() =>
             {
-                refused.push(Refused {
-                    method,
-                    reason: Unsuited::NoSteadyAmplitude.to(method),
-                })
+                refused.push(Refused { method, reason: Unsuited::NoSteadyAmplitude.to(method) })
             }
             (Ok(solution), _) => solutions.push(solution),
             (Err(reason), Some(method))
@@ -299,10 +275,7 @@ fn answers(
         }
     }
     let applies = |method: Method| {
-        solutions
-            .iter()
-            .chain(&slow)
-            .any(|solution: &Solution| solution.method == method)
+        solutions.iter().chain(&slow).any(|solution: &Solution| solution.method == method)
     };
     refused.retain(|refused: &Refused| !applies(refused.method));
     solutions.dedup_by(|second, first| {
@@ -320,9 +293,7 @@ fn by_start(first: &Solution, at: &Values) -> Values {
     if !free || at.get(initial).is_none() {
         return at.clone();
     }
-    let renamed = at
-        .iter()
-        .map(|(name, value)| (if name == initial { own } else { name }, value));
+    let renamed = at.iter().map(|(name, value)| (if name == initial { own } else { name }, value));
     let mut values = Values::default();
     for (name, value) in renamed {
         if values.insert(name, value.clone()).is_err() {
@@ -344,20 +315,16 @@ fn driven(
     for solution in solutions {
         let judged = super::judge(oscillator, solution, at, tolerance)?;
         frequency = frequency.or(judged.frequency);
-        let largest = judged
-            .steady_states
-            .iter()
-            .find(|judged| judged.state.is_stable());
+        let largest = judged.steady_states.iter().find(|judged| judged.state.is_stable());
         let words = match largest.map(|judged| (judged.state.amplitude, judged.true_amplitude)) {
             Some((own, Some(truth))) => format!(
                 "{FIRST_HARMONIC} = {} against a true {}",
                 significant(own, 6),
                 significant(truth, 6)
             ),
-            Some((own, None)) => format!(
-                "{FIRST_HARMONIC} = {}, and no true motion near it",
-                significant(own, 6)
-            ),
+            Some((own, None)) => {
+                format!("{FIRST_HARMONIC} = {}, and no true motion near it", significant(own, 6))
+            }
             None => "no stable steady motion".to_owned(),
         };
         validity.push(format!(
@@ -437,10 +404,9 @@ fn of_transients(
             refused,
             validity,
         }),
-        None => Err(reason.map_or(
-            ComparisonError::NoMethod(refused),
-            ComparisonError::Verification,
-        )),
+        None => {
+            Err(reason.map_or(ComparisonError::NoMethod(refused), ComparisonError::Verification))
+        }
     }
 }
 
@@ -454,9 +420,8 @@ fn row(
 ) -> Row {
     let (found, reason) = numbers_or_reason(oscillator, solution, numbers);
     let frequency = found.as_ref().map(|found| found.frequency_squared.sqrt());
-    let relative_error = frequency
-        .zip(true_motion)
-        .map(|(frequency, truth)| frequency / truth.frequency - 1.0);
+    let relative_error =
+        frequency.zip(true_motion).map(|(frequency, truth)| frequency / truth.frequency - 1.0);
     let max_deviation = frequency
         .zip(found.as_ref().and_then(|found| found.motion.as_ref()))
         .zip(true_motion)
@@ -519,16 +484,13 @@ pub fn backbones(
     }
     let numbers = checked_numbers(first, &by_start(first, &comparison.at))?;
     let truth = validity::backbone(oscillator, first, &numbers);
-    let asked = numbers
-        .get(&first.amplitude.symbol())
-        .map_or(1.0, |value| value.abs());
+    let asked = numbers.get(&first.amplitude.symbol()).map_or(1.0, |value| value.abs());
     // To the escape, or to twice the amplitude asked for.
     let last = f64::min(truth.largest_amplitude() * 0.995, 2.0 * asked);
     // Motions over several wells begin at the separatrix.
     let inner = truth.smallest_amplitude();
-    let amplitudes: Vec<f64> = (1..=POINTS)
-        .map(|k| inner + (last - inner) * k as f64 / POINTS as f64)
-        .collect();
+    let amplitudes: Vec<f64> =
+        (1..=POINTS).map(|k| inner + (last - inner) * k as f64 / POINTS as f64).collect();
     let curve = |of: &dyn Fn(f64) -> Option<f64>| -> Vec<(f64, f64)> {
         // A formula may have its first real frequency above.
         let without = amplitudes
@@ -545,11 +507,7 @@ pub fn backbones(
         points: curve(&|amplitude| truth.frequency(amplitude)),
     };
     let mut curves: Vec<Backbone> = Vec::new();
-    for row in comparison
-        .rows
-        .iter()
-        .filter(|row| row.solution.method != Method::Exact)
-    {
+    for row in comparison.rows.iter().filter(|row| row.solution.method != Method::Exact) {
         let followed = Known::default();
         let points = curve(&|amplitude| {
             formula_frequency_along(
@@ -569,10 +527,7 @@ pub fn backbones(
         };
         match curves.iter_mut().find(same) {
             Some(known) => known.methods.push(row.solution.title()),
-            None => curves.push(Backbone {
-                methods: vec![row.solution.title()],
-                points,
-            }),
+            None => curves.push(Backbone { methods: vec![row.solution.title()], points }),
         }
     }
     Ok((true_curve, curves))

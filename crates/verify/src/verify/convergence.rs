@@ -112,10 +112,7 @@ fn exact_coefficients(solution: &Solution) -> Option<(Monomial, Vec<Rational>)> 
             solution.order as usize / usize::try_from(PowerSeries::of(solution, true).step).ok()?;
         coefficients.resize((count + 1).max(coefficients.len()), Rational::zero());
     }
-    let powers = coefficients
-        .iter()
-        .enumerate()
-        .filter(|(_, value)| !value.is_zero());
+    let powers = coefficients.iter().enumerate().filter(|(_, value)| !value.is_zero());
     let step = powers.fold(0, |common: usize, (power, _)| common.gcd(&power));
     if step > 1 {
         variable = variable.power(i32::try_from(step).ok()?);
@@ -140,18 +137,9 @@ pub(super) fn convergence(
         true => in_the_amplitude(oscillator, solution, numbers, value)?,
         false => in_a_parameter(oscillator, solution, numbers, small)?,
     };
-    let even = series
-        .coefficients
-        .iter()
-        .skip(1)
-        .step_by(2)
-        .all(|c| *c == 0.0);
-    let coefficients: Vec<f64> = series
-        .coefficients
-        .iter()
-        .step_by(if even { 2 } else { 1 })
-        .copied()
-        .collect();
+    let even = series.coefficients.iter().skip(1).step_by(2).all(|c| *c == 0.0);
+    let coefficients: Vec<f64> =
+        series.coefficients.iter().step_by(if even { 2 } else { 1 }).copied().collect();
     let found = nearest_singularity(&coefficients)?;
     let (variable, radius, size) = match even {
         true => (
@@ -159,11 +147,7 @@ pub(super) fn convergence(
             series.unit * found.radius.sqrt(),
             series.unit.powi(2) * found.radius,
         ),
-        false => (
-            small.to_string(),
-            series.unit * found.radius,
-            series.unit * found.radius,
-        ),
+        false => (small.to_string(), series.unit * found.radius, series.unit * found.radius),
     };
     let size = significant(size, 3);
     let place = match found.angle {
@@ -188,25 +172,19 @@ fn at_numbers(
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Option<Range> {
     let variable = Polynomial::term(known.variable.clone(), Rational::one());
-    let value = solution
-        .evaluate(&variable, &|name| numbers.get(&name).copied())
-        .ok()?;
+    let value = solution.evaluate(&variable, &|name| numbers.get(&name).copied()).ok()?;
     let radius = to_f64(&known.nearest.radius.value);
     let text = match known.in_symbol() {
-        Some((symbol, size)) => format!(
-            "the series converges for |{symbol}| < {}",
-            decimal(to_f64(&size.value))
-        ),
+        Some((symbol, size)) => {
+            format!("the series converges for |{symbol}| < {}", decimal(to_f64(&size.value)))
+        }
         None => format!(
             "the series converges for |{}| < {}",
             known.variable_in_words(),
             decimal(radius)
         ),
     };
-    Some(Range {
-        text,
-        outside: value.abs() >= radius,
-    })
+    Some(Range { text, outside: value.abs() >= radius })
 }
 
 /// omega^2 in powers of the small parameter over a unit, up to a factor.
@@ -220,12 +198,7 @@ struct Series {
 fn growth(force: &[f64]) -> f64 {
     let linear = force[1];
     let rate = |(k, value): (usize, &f64)| (value / linear).abs().powf(1.0 / (k as f64 - 1.0));
-    force
-        .iter()
-        .enumerate()
-        .skip(2)
-        .map(rate)
-        .fold(0.0, f64::max)
+    force.iter().enumerate().skip(2).map(rate).fold(0.0, f64::max)
 }
 
 /// In the amplitude of a force of the position alone.
@@ -266,10 +239,7 @@ fn in_the_amplitude(
         even().for_each(|k| coefficients[k] = 0.0);
     }
     (coefficients[1], coefficients[0]) = (1.0, 0.0);
-    Some(Series {
-        coefficients: amplitude_series(&coefficients)?,
-        unit,
-    })
+    Some(Series { coefficients: amplitude_series(&coefficients)?, unit })
 }
 
 /// In a parameter, at the amplitude given: secular terms removed in floating-point numbers.
@@ -281,18 +251,12 @@ fn in_a_parameter(
 ) -> Option<Series> {
     let cycle = solution.limit_cycle.as_ref();
     // The frequency of most limit cycles has even powers alone.
-    let highest = if cycle.is_some() {
-        2 * SERIES_TERMS
-    } else {
-        SERIES_TERMS
-    };
+    let highest = if cycle.is_some() { 2 * SERIES_TERMS } else { SERIES_TERMS };
     let amplitude = match cycle {
         // To leading order, which is where the series of a limit cycle begins.
         Some(cycle) => {
             let value_of = |symbol: Symbol| numbers.get(&symbol).copied();
-            solution
-                .evaluate(&solution.leading(&cycle.amplitude), &value_of)
-                .ok()?
+            solution.evaluate(&solution.leading(&cycle.amplitude), &value_of).ok()?
         }
         None => *numbers.get(&solution.amplitude.symbol())?,
     };
@@ -306,11 +270,8 @@ fn in_a_parameter(
         detuning: Detuning::Acceleration,
     };
     let expansion = expand(&Doubles, &terms, highest, &scheme).ok()?;
-    let mut coefficients: Vec<f64> = expansion
-        .frequency_squared
-        .iter()
-        .map(|constant| constant.mean().0)
-        .collect();
+    let mut coefficients: Vec<f64> =
+        expansion.frequency_squared.iter().map(|constant| constant.mean().0).collect();
     if cycle.is_some() {
         forget_odd_noise(&mut coefficients);
     }
@@ -340,24 +301,17 @@ fn in_numbers(
     const HIGHEST_POWER: u32 = 9;
     let numerical = with_numbers(oscillator, numbers, small)?;
     let centred = crate::equilibrium::centred(&numerical, None).ok()?;
-    let expanded = centred
-        .oscillator
-        .expand(SmallParameter::Parameter(small), highest as u32);
+    let expanded = centred.oscillator.expand(SmallParameter::Parameter(small), highest as u32);
     let force = expanded.ok()?;
     if force.terms.len() > MOST_TERMS
-        || force
-            .terms
-            .iter()
-            .any(|term| term.position + term.velocity > HIGHEST_POWER)
+        || force.terms.iter().any(|term| term.position + term.velocity > HIGHEST_POWER)
     {
         return None;
     }
     let number = |polynomial: &crate::exact::Polynomial| {
         let value = |symbol| {
-            let meaning = force
-                .definitions
-                .iter()
-                .find(|definition| definition.symbol == symbol)?;
+            let meaning =
+                force.definitions.iter().find(|definition| definition.symbol == symbol)?;
             meaning.meaning.evaluate(numbers).ok()
         };
         let pi = Symbol::new("pi");
@@ -373,9 +327,8 @@ fn in_numbers(
     };
     let values: Vec<f64> = force.terms.iter().map(scaled).collect::<Option<_>>()?;
     let sizes = values.iter().zip(&force.terms);
-    let largest = sizes
-        .map(|(value, term)| value.abs().powf(1.0 / term.order as f64))
-        .fold(0.0, f64::max);
+    let largest =
+        sizes.map(|(value, term)| value.abs().powf(1.0 / term.order as f64)).fold(0.0, f64::max);
     if !largest.is_normal() {
         return None;
     }
@@ -426,11 +379,7 @@ pub fn nearest_singularity(coefficients: &[f64]) -> Option<Singularity> {
 
 fn estimate(coefficients: &[f64]) -> Option<Singularity> {
     if coefficients.len() < 2 * WINDOW + 4
-        || coefficients
-            .iter()
-            .rev()
-            .take(WINDOW + 3)
-            .any(|c| *c == 0.0 || !c.is_finite())
+        || coefficients.iter().rev().take(WINDOW + 3).any(|c| *c == 0.0 || !c.is_finite())
     {
         return None;
     }
@@ -442,15 +391,8 @@ fn estimate(coefficients: &[f64]) -> Option<Singularity> {
         let inverse = extrapolated(&window, &ratio)?;
         // The limit must be near the ratios themselves, or they follow no such law.
         if (inverse / ratio(last)).ln().abs() < 0.5 && inverse * signs > 0.0 {
-            let angle = if inverse > 0.0 {
-                0.0
-            } else {
-                std::f64::consts::PI
-            };
-            return Some(Singularity {
-                radius: 1.0 / inverse.abs(),
-                angle,
-            });
+            let angle = if inverse > 0.0 { 0.0 } else { std::f64::consts::PI };
+            return Some(Singularity { radius: 1.0 / inverse.abs(), angle });
         }
     }
     pair(coefficients)
@@ -460,10 +402,7 @@ fn estimate(coefficients: &[f64]) -> Option<Singularity> {
 fn pair(coefficients: &[f64]) -> Option<Singularity> {
     const ROWS: usize = 16;
     const UNKNOWNS: usize = 6;
-    let first = coefficients
-        .len()
-        .checked_sub(ROWS)
-        .filter(|first| *first >= 2)?;
+    let first = coefficients.len().checked_sub(ROWS).filter(|first| *first >= 2)?;
     let mut matrix = DMatrix::zeros(ROWS, UNKNOWNS);
     let mut right = DVector::zeros(ROWS);
     for row in 0..ROWS {
@@ -485,11 +424,7 @@ fn pair(coefficients: &[f64]) -> Option<Singularity> {
         }
         right[row] = own / size;
     }
-    if matrix
-        .iter()
-        .chain(right.iter())
-        .any(|value| !value.is_finite())
-    {
+    if matrix.iter().chain(right.iter()).any(|value| !value.is_finite()) {
         return None;
     }
     let solved = matrix.clone().svd(true, true).solve(&right, 1e-14).ok()?;
@@ -497,10 +432,8 @@ fn pair(coefficients: &[f64]) -> Option<Singularity> {
     let left_over = (&matrix * &solved - &right).norm() / right.norm();
     let (alpha, beta) = (solved[0], solved[3]);
     let cosine = 0.5 * alpha / (-beta).sqrt();
-    (left_over < 1e-3 && beta < 0.0 && cosine.abs() <= 1.0).then(|| Singularity {
-        radius: 1.0 / (-beta).sqrt(),
-        angle: cosine.acos(),
-    })
+    (left_over < 1e-3 && beta < 0.0 && cosine.abs() <= 1.0)
+        .then(|| Singularity { radius: 1.0 / (-beta).sqrt(), angle: cosine.acos() })
 }
 
 /// The limit of a sequence `limit (1 + b/k + c/k^2)` by least squares over a window.
@@ -529,10 +462,7 @@ mod tests {
                 series.push(series[k - 1] * (k as f64 - 1.5) / (k as f64 * s0));
             }
             let found = nearest_singularity(&series).unwrap();
-            assert!(
-                (found.radius / f64::abs(s0) - 1.0).abs() < 1e-4,
-                "{found:?}"
-            );
+            assert!((found.radius / f64::abs(s0) - 1.0).abs() < 1e-4, "{found:?}");
         }
         // 1/(1 - 2 s cos(phi)/R + (s/R)^2): c_k = sin((k+1) phi)/(R^k sin phi), a pair of poles at
         // R e^(+-i phi).
@@ -569,19 +499,12 @@ mod tests {
             })
             .collect();
         assert_eq!(nearest_singularity(&factorials), None);
-        let noise: Vec<f64> = (0..=24)
-            .map(|k| f64::from((k * k * 7919) % 31) - 15.5)
-            .collect();
+        let noise: Vec<f64> = (0..=24).map(|k| f64::from((k * k * 7919) % 31) - 15.5).collect();
         assert_eq!(nearest_singularity(&noise), None);
         assert_eq!(pair(&noise), None);
         // Three equal waves obey no recurrence of two terms.
         let waves: Vec<f64> = (0..=24)
-            .map(|k| {
-                [0.6, 1.3, 2.2]
-                    .map(|phi| (f64::from(k) * phi + phi).sin())
-                    .iter()
-                    .sum()
-            })
+            .map(|k| [0.6, 1.3, 2.2].map(|phi| (f64::from(k) * phi + phi).sin()).iter().sum())
             .collect();
         assert_eq!(pair(&waves), None);
         // Ratios that change near the end leave it open where the singularity is.

@@ -64,10 +64,7 @@ pub(super) fn motions(
 ) -> Result<Option<Motions>, VerificationError> {
     let question = Question::new(oscillator, solution, response, at)?;
     let states = question.states();
-    let largest = states
-        .iter()
-        .find(|state| state.is_stable())
-        .or(states.first());
+    let largest = states.iter().find(|state| state.is_stable()).or(states.first());
     let Some((state, found)) =
         largest.and_then(|state| Some((*state, question.truth.near(&question.motion, *state)?)))
     else {
@@ -118,16 +115,11 @@ impl<'a> Question<'a> {
         response: &Response,
         numbers: BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
-        let resonance = solution
-            .modulation
-            .as_ref()
-            .and_then(|slow| slow.resonance.as_ref());
-        let (p, q) = resonance.map_or((1, 1), |resonance| {
-            (resonance.times_linear, resonance.times_driving)
-        });
-        let driving = resonance.map_or(Ok(1.0), |resonance| {
-            resonance.driving_frequency.evaluate(&numbers)
-        })?;
+        let resonance = solution.modulation.as_ref().and_then(|slow| slow.resonance.as_ref());
+        let (p, q) =
+            resonance.map_or((1, 1), |resonance| (resonance.times_linear, resonance.times_driving));
+        let driving = resonance
+            .map_or(Ok(1.0), |resonance| resonance.driving_frequency.evaluate(&numbers))?;
         let period = TAU * f64::from(p) / driving.abs();
         Ok(Self {
             solution,
@@ -143,8 +135,7 @@ impl<'a> Question<'a> {
     }
 
     fn steady_motions(&self) -> SteadyMotions {
-        self.solution
-            .steady_motions(&|name| self.numbers.get(&name).copied())
+        self.solution.steady_motions(&|name| self.numbers.get(&name).copied())
     }
 
     /// What the formula leaves of the equation, over the force.
@@ -152,11 +143,7 @@ impl<'a> Question<'a> {
         let times = (0..SAMPLES).map(|k| self.truth.period * k as f64 / SAMPLES as f64);
         let (mut defects, mut forces) = (0.0, 0.0);
         for t in times {
-            let place = [
-                t,
-                self.motion.position(t, state),
-                self.motion.velocity(t, state),
-            ];
+            let place = [t, self.motion.position(t, state), self.motion.velocity(t, state)];
             let force = self.truth.force.call(&place);
             defects += (self.motion.acceleration(t, state) + force).powi(2);
             forces += force.powi(2);
@@ -188,11 +175,8 @@ impl<'a> Question<'a> {
             true => held(*state),
             false => self.truth.beside(&self.motion, *state, found),
         };
-        let judged: Vec<JudgedState> = states
-            .iter()
-            .zip(&found)
-            .map(|(state, found)| judge(state, found.as_ref()))
-            .collect();
+        let judged: Vec<JudgedState> =
+            states.iter().zip(&found).map(|(state, found)| judge(state, found.as_ref())).collect();
         let same = |one: usize, other: usize| {
             let size = self.motion.size(self.truth.period, states[one]);
             let (Some((x, v)), Some((y, w))) = (start_of(&found[one]), start_of(&found[other]))
@@ -203,9 +187,7 @@ impl<'a> Question<'a> {
         };
         let apart = |judged: &JudgedState| {
             let other_kind = judged.true_stable != Some(judged.state.is_stable());
-            judged
-                .max_deviation
-                .map(|deviation| (other_kind, deviation))
+            judged.max_deviation.map(|deviation| (other_kind, deviation))
         };
         let nearer = |one: usize, other: usize| {
             let [own, rival] = [one, other].map(|k| apart(&judged[k]));
@@ -224,10 +206,7 @@ impl<'a> Question<'a> {
             let judged = judge(state, Some(&found));
             let own = apart(&judged)?;
             let others = states.iter().map(|other| judge(other, Some(&found)));
-            if others
-                .filter_map(|other| apart(&other))
-                .any(|other| other < own)
-            {
+            if others.filter_map(|other| apart(&other)).any(|other| other < own) {
                 return None;
             }
             known.extend(self.truth.starts(&found));
@@ -241,11 +220,8 @@ impl<'a> Question<'a> {
                 _ => another(&states[k]).unwrap_or_else(|| judge(&states[k], None)),
             })
             .collect();
-        let is_near = |judged: &JudgedState| {
-            judged
-                .relative_error
-                .is_some_and(|error| error.abs() <= NEAR)
-        };
+        let is_near =
+            |judged: &JudgedState| judged.relative_error.is_some_and(|error| error.abs() <= NEAR);
         let doubtful = all.split_off(count);
         let (kept, left_out): (Vec<JudgedState>, Vec<JudgedState>) =
             doubtful.into_iter().partition(is_near);
@@ -276,13 +252,9 @@ fn slope(oscillator: &Oscillator, question: &Question, judged: &JudgedState) -> 
         }
         let smaller = smaller(oscillator, question.solution, &question.numbers, halvings)?;
         let response = smaller.solution.response.as_ref()?;
-        let question = Question::of_numbers(
-            &smaller.oscillator,
-            &smaller.solution,
-            response,
-            smaller.numbers,
-        )
-        .ok()?;
+        let question =
+            Question::of_numbers(&smaller.oscillator, &smaller.solution, response, smaller.numbers)
+                .ok()?;
         let apart = |state: &SteadyState| (state.amplitude - judged.state.amplitude).abs();
         let states = question.states().into_iter();
         let alike = states.filter(|state| state.is_stable() == judged.state.is_stable());
@@ -291,21 +263,12 @@ fn slope(oscillator: &Oscillator, question: &Question, judged: &JudgedState) -> 
             return None;
         }
         let found = question.truth.near(&question.motion, state)?;
-        question
-            .truth
-            .beside(&question.motion, state, Some(&found))
-            .max_deviation
+        question.truth.beside(&question.motion, state, Some(&found)).max_deviation
     };
-    let errors: Vec<f64> = (0..HALVINGS)
-        .map_while(deviation)
-        .take_while(|error| *error >= FLOOR)
-        .collect();
+    let errors: Vec<f64> =
+        (0..HALVINGS).map_while(deviation).take_while(|error| *error >= FLOOR).collect();
     // What is halved is the square of a small amplitude.
-    let power = if is_small_in_amplitude(question.solution) {
-        2.0
-    } else {
-        1.0
-    };
+    let power = if is_small_in_amplitude(question.solution) { 2.0 } else { 1.0 };
     slopes_of(&errors).map(|slope| power * slope)
 }
 
@@ -319,18 +282,13 @@ pub(super) fn judge(
 ) -> Result<Verification, VerificationError> {
     let question = Question::new(oscillator, solution, response, at)?;
     let (states, spurious) = question.judged_states();
-    let judged = states
-        .iter()
-        .find(|judged| judged.state.is_stable())
-        .or(states.first());
-    let passed = judged
-        .filter(|judged| judged.state.is_stable())
-        .is_some_and(|judged| {
-            let agrees = judged.true_stable == Some(judged.state.is_stable());
-            // A motion without a part of its own has the drive's alone.
-            let error = judged.relative_error.or(judged.max_deviation);
-            agrees && error.is_some_and(|error| error.abs() <= tolerance)
-        });
+    let judged = states.iter().find(|judged| judged.state.is_stable()).or(states.first());
+    let passed = judged.filter(|judged| judged.state.is_stable()).is_some_and(|judged| {
+        let agrees = judged.true_stable == Some(judged.state.is_stable());
+        // A motion without a part of its own has the drive's alone.
+        let error = judged.relative_error.or(judged.max_deviation);
+        agrees && error.is_some_and(|error| error.abs() <= tolerance)
+    });
     let symbols = symbol_values(oscillator, solution, &question.numbers, None);
     let moving =
         judged.filter(|judged| judged.true_amplitude.is_some() && judged.max_deviation.is_some());
@@ -388,20 +346,9 @@ impl Truth {
         [drives, own]: [u32; 2],
     ) -> Result<Self, VerificationError> {
         let exact = |(name, value): (&Symbol, &f64)| Some((*name, Expr::number(from_f64(*value)?)));
-        let force = oscillator
-            .force
-            .substitute_all(&numbers.iter().filter_map(exact).collect())?;
-        let arguments = [
-            Symbol::new("t"),
-            oscillator.coordinate,
-            oscillator.velocity(),
-        ];
-        Ok(Self {
-            force: CompiledFunction::new(&force, &arguments)?,
-            period,
-            own,
-            drives,
-        })
+        let force = oscillator.force.substitute_all(&numbers.iter().filter_map(exact).collect())?;
+        let arguments = [Symbol::new("t"), oscillator.coordinate, oscillator.velocity()];
+        Ok(Self { force: CompiledFunction::new(&force, &arguments)?, period, own, drives })
     }
 
     /// Whether what is at rest at a place stays there at all times, since it is driven back
@@ -446,9 +393,7 @@ impl Truth {
             return Some(found);
         }
         let second = self.by_newton(motion, state, &self.starts(&found));
-        second
-            .filter(|second| is_alike(second) && is_near(second))
-            .or(Some(found))
+        second.filter(|second| is_alike(second) && is_near(second)).or(Some(found))
     }
 
     /// The true periodic motion near one by the formula.
@@ -516,9 +461,8 @@ impl Truth {
         let own = found.map(|found| found.harmonic(self.own));
         let error = own.map(|own| state.amplitude / own - 1.0);
         let deviation = found.map(|found| {
-            let largest = largest_over(self.period, |t| {
-                (found.at(t).0 - motion.position(t, state)).abs()
-            });
+            let largest =
+                largest_over(self.period, |t| (found.at(t).0 - motion.position(t, state)).abs());
             let size = largest_over(self.period, |t| (found.at(t).0 - motion.equilibrium).abs());
             if size == 0.0 { 0.0 } else { largest / size }
         });
@@ -548,14 +492,9 @@ impl Formula {
     ) -> Result<Self, VerificationError> {
         let value_of = |name: Symbol| numbers.get(&name).copied();
         let defined = solution.defined_values(&value_of).unwrap_or_default();
-        let known = numbers
-            .iter()
-            .map(|(name, value)| (*name, *value))
-            .chain(defined);
+        let known = numbers.iter().map(|(name, value)| (*name, *value)).chain(defined);
         let exact = |(name, value): (Symbol, f64)| Some((name, Expr::number(from_f64(value)?)));
-        let motion = response
-            .motion
-            .substitute_all(&known.filter_map(exact).collect())?;
+        let motion = response.motion.substitute_all(&known.filter_map(exact).collect())?;
         let t = Symbol::new("t");
         let phase = solution.modulation.as_ref().map_or(t, |slow| slow.phase);
         let arguments = [t, solution.amplitude.symbol(), phase];

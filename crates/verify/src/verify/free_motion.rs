@@ -48,23 +48,12 @@ fn evaluated(
     let force = oscillator.force.substitute_all(&known.collect()).ok()?;
     let force =
         CompiledFunction::new(&force, &[oscillator.coordinate, oscillator.velocity()]).ok()?;
-    let begin = ode::State {
-        t: 0.0,
-        x: start.equilibrium + start.distance,
-        v: 0.0,
-    };
+    let begin = ode::State { t: 0.0, x: start.equilibrium + start.distance, v: 0.0 };
     let options = ode::Options {
         maximum_step: start.step,
         ..ode::Options::with_tolerance(TOLERANCE * start.distance.abs().min(1.0))
     };
-    ode::integrate(
-        |_, x, v| -force.call(&[x, v]),
-        begin,
-        start.duration,
-        &[],
-        &options,
-    )
-    .ok()
+    ode::integrate(|_, x, v| -force.call(&[x, v]), begin, start.duration, &[], &options).ok()
 }
 
 /// A motion with what is read off it.
@@ -145,9 +134,9 @@ impl FreeMotion {
     /// Distance from the equilibrium and velocity.
     pub(super) fn at(&self, time: f64) -> (f64, f64) {
         let found = match &self.motion {
-            Path::Series(motion) => motion
-                .at(time)
-                .and_then(|state| Some((*state.first()?, *state.get(1)?))),
+            Path::Series(motion) => {
+                motion.at(time).and_then(|state| Some((*state.first()?, *state.get(1)?)))
+            }
             Path::Evaluated(motion) => motion.at(time),
         };
         found.map_or((f64::NAN, f64::NAN), |(x, v)| (x - self.equilibrium, v))
@@ -158,11 +147,7 @@ impl FreeMotion {
         /// More looks than any motion here needs.
         const MOST: usize = 1_000_000;
         let count = (self.end / step).ceil();
-        let count = if count.is_finite() {
-            (count as usize).min(MOST)
-        } else {
-            0
-        };
+        let count = if count.is_finite() { (count as usize).min(MOST) } else { 0 };
         let time = |k: usize| self.end * k as f64 / count as f64;
         let (mut turns, mut crossings) = (vec![], vec![]);
         let mut before = (0.0, self.at(0.0));
@@ -205,9 +190,7 @@ impl FreeMotion {
             .chain(self.held)
             .map(|(t, x)| (t, x.abs()))
             .collect();
-        let index = points
-            .windows(2)
-            .position(|pair| pair[1].1 <= size && pair[0].1 > size)?;
+        let index = points.windows(2).position(|pair| pair[1].1 <= size && pair[0].1 > size)?;
         let [(t0, x0), (t1, x1)] = [points[index], points[index + 1]];
         // Dry friction takes the same difference every half swing, viscous damping the same ratio:
         // whichever the turning point before says.

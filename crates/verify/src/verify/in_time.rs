@@ -56,10 +56,7 @@ impl Followed {
         let defined = solution
             .defined_values(&value_of)
             .map_err(|name| VerificationError::Missing(vec![name]))?;
-        let known = numbers
-            .iter()
-            .map(|(name, value)| (*name, *value))
-            .chain(defined);
+        let known = numbers.iter().map(|(name, value)| (*name, *value)).chain(defined);
         let exact: BTreeMap<Symbol, Expr> = known
             .filter_map(|(name, value)| Some((name, Expr::number(from_f64(value)?))))
             .collect();
@@ -76,32 +73,13 @@ impl Followed {
         let stiffness = (force.call(&[0.0, equilibrium + 1.0, 0.0])
             - force.call(&[0.0, equilibrium, 0.0]))
         .abs();
-        let rates = || {
-            drives
-                .iter()
-                .copied()
-                .chain([stiffness.sqrt()])
-                .filter(|rate| *rate > 0.0)
-        };
-        let [slow, fast] = [
-            rates().fold(f64::INFINITY, f64::min),
-            rates().fold(0.0, f64::max),
-        ];
+        let rates = || drives.iter().copied().chain([stiffness.sqrt()]).filter(|rate| *rate > 0.0);
+        let [slow, fast] = [rates().fold(f64::INFINITY, f64::min), rates().fold(0.0, f64::max)];
         let until = (PERIODS[0] * TAU / slow).min(PERIODS[1] * TAU / fast);
         let acceleration = |t: f64, x: f64, v: f64| -force.call(&[t, x, v]);
-        let begin = State {
-            t: 0.0,
-            x: equilibrium + numbers[&start],
-            v: 0.0,
-        };
-        let path = integrate(
-            acceleration,
-            begin,
-            until,
-            &[],
-            &Options::with_tolerance(1e-12),
-        )
-        .map_err(|_| VerificationError::NotFollowed { time: 0.0 })?;
+        let begin = State { t: 0.0, x: equilibrium + numbers[&start], v: 0.0 };
+        let path = integrate(acceleration, begin, until, &[], &Options::with_tolerance(1e-12))
+            .map_err(|_| VerificationError::NotFollowed { time: 0.0 })?;
         if !path.is_complete() {
             let time = path.end().t;
             return Err(VerificationError::NotFollowed { time });
@@ -114,9 +92,7 @@ impl Followed {
             forces += own.powi(2);
         }
         Ok(Self {
-            formula: times()
-                .map(|t| (t, place.call(&[t]), speed.call(&[t])))
-                .collect(),
+            formula: times().map(|t| (t, place.call(&[t]), speed.call(&[t]))).collect(),
             truth: times()
                 .map(|t| {
                     let (x, v) = path.at(t).unwrap_or((f64::NAN, f64::NAN));
@@ -134,19 +110,11 @@ impl Followed {
     fn deviation(&self) -> Option<f64> {
         let largest = |values: &mut dyn Iterator<Item = f64>| {
             // NaN stays.
-            values.fold(
-                0.0_f64,
-                |largest, value| if value <= largest { largest } else { value },
-            )
+            values.fold(0.0_f64, |largest, value| if value <= largest { largest } else { value })
         };
         let pairs = self.formula.iter().zip(&self.truth);
         let apart = largest(&mut pairs.map(|(formula, truth)| (formula.1 - truth.1).abs()));
-        let size = largest(
-            &mut self
-                .truth
-                .iter()
-                .map(|truth| (truth.1 - self.equilibrium).abs()),
-        );
+        let size = largest(&mut self.truth.iter().map(|truth| (truth.1 - self.equilibrium).abs()));
         let deviation = if size == 0.0 { apart } else { apart / size };
         Some(deviation).filter(|value| value.is_finite())
     }
@@ -230,9 +198,5 @@ pub(super) fn motions(
     at: &Values,
 ) -> Result<Motions, VerificationError> {
     let Followed { formula, truth, .. } = Followed::new(oscillator, solution, motion, at)?;
-    Ok(Motions {
-        formula,
-        truth,
-        envelope: None,
-    })
+    Ok(Motions { formula, truth, envelope: None })
 }

@@ -25,11 +25,8 @@ pub(super) fn largest_over(period: f64, function: impl Fn(f64) -> f64) -> f64 {
         let is_peak = below.iter().all(|below| *below >= 0.0);
         if is_peak && sample >= LARGE * largest && below.iter().any(|below| *below > CLOSE * sample)
         {
-            let (_, least) = find_minimum(
-                |t| function(t).recip(),
-                time(neighbours[0]),
-                time(neighbours[1]),
-            );
+            let (_, least) =
+                find_minimum(|t| function(t).recip(), time(neighbours[0]), time(neighbours[1]));
             found = found.max(least.recip());
         }
     }
@@ -46,10 +43,7 @@ mod tests {
     fn a_narrow_peak_is_found_between_the_samples() {
         let peak = |width: f64| move |t: f64| 3.0 / (1.0 + ((t - 1.234_567) / width).powi(2));
         for width in [1e-2, 3e-3, 1e-3] {
-            assert!(
-                (largest_over(2.0, peak(width)) - 3.0).abs() < 1e-9,
-                "{width}"
-            );
+            assert!((largest_over(2.0, peak(width)) - 3.0).abs() < 1e-9, "{width}");
         }
         let wide = largest_over(2.0, peak(0.5));
         assert!(wide < 3.0 && wide > 3.0 * (1.0 - 1e-5), "{wide}");

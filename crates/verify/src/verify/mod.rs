@@ -167,9 +167,7 @@ impl Verification {
             Some(error) => format!("{what} off by {} %", significant(100.0 * error, 3)),
             None => format!("{what} without a number"),
         };
-        let far_off = self
-            .max_deviation
-            .filter(|deviation| *deviation > tolerance);
+        let far_off = self.max_deviation.filter(|deviation| *deviation > tolerance);
         match (&self.followed, self.verdict, far_off) {
             (Some(followed), ..) => Some(format!(
                 "{verdict}: {}, {}",
@@ -387,13 +385,7 @@ pub fn judge_to(
     if let Some((converted, in_words)) = in_convention_of(oscillator, solution, at)? {
         let mut judged = judge_to(oscillator, solution, &converted, tolerance, extent)?;
         let text = in_words;
-        judged.ranges.insert(
-            0,
-            validity::Range {
-                text,
-                outside: false,
-            },
-        );
+        judged.ranges.insert(0, validity::Range { text, outside: false });
         return Ok(judged);
     }
     let settled = on_cycle(solution, at);
@@ -426,24 +418,14 @@ pub fn judge_to(
         .map(|(frequency, motion)| residual(&physics, *frequency, motion));
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
     let remark = found.as_ref().and_then(|found| found.remark.clone());
-    let remark = remark.map(|text| validity::Range {
-        text,
-        outside: false,
-    });
+    let remark = remark.map(|text| validity::Range { text, outside: false });
     let mut symbols = symbol_values(oscillator, solution, &numbers, found.as_ref());
-    if let Some(cycle) = settled
-        .as_ref()
-        .and_then(|settled| settled.limit_cycle.as_ref())
-    {
+    if let Some(cycle) = settled.as_ref().and_then(|settled| settled.limit_cycle.as_ref()) {
         // The formulas are those of any amplitude: where the motion settles it is the cycle's,
         // whatever it was at the start.
         let size = solution.evaluate(&cycle.amplitude, &|symbol| numbers.get(&symbol).copied());
-        symbols
-            .values
-            .retain(|(name, _)| *name != AmplitudeConvention::Initial.symbol());
-        symbols
-            .values
-            .extend(size.ok().map(|size| (solution.amplitude.symbol(), size)));
+        symbols.values.retain(|(name, _)| *name != AmplitudeConvention::Initial.symbol());
+        symbols.values.extend(size.ok().map(|size| (solution.amplitude.symbol(), size)));
     }
     let ranged = extent == Extent::Range;
     let far = ranged.then(|| validity::ranges(oscillator, solution, &numbers, tolerance));
@@ -461,20 +443,13 @@ pub fn judge_to(
         no_deviation: unfollowed(&truth, &physics, solution.coordinate())
             .filter(|_| motion.is_some()),
         residual: residual.filter(|value| value.is_finite()),
-        slope: ranged
-            .then(|| slope(oscillator, solution, &numbers))
-            .flatten(),
+        slope: ranged.then(|| slope(oscillator, solution, &numbers)).flatten(),
         over_several_wells: validity::is_over_several_wells(oscillator, solution, &numbers),
         ranges: about_the_cycle(&truth, solution.coordinate())
             .filter(|_| attraction(solution, &numbers) != Some(0.0))
             .into_iter()
             .chain(remark)
-            .chain(cancellation(
-                solution,
-                &numbers,
-                found.as_ref(),
-                max_deviation,
-            ))
+            .chain(cancellation(solution, &numbers, found.as_ref(), max_deviation))
             .chain(far)
             .collect(),
         chosen: found.map_or_else(Vec::new, |found| found.chosen),
@@ -533,17 +508,10 @@ fn in_convention_of(
         return Ok(None);
     };
     let numbers = at.with(given.symbol(), size);
-    if solution
-        .parameters
-        .iter()
-        .any(|name| !numbers.contains_key(name))
-    {
+    if solution.parameters.iter().any(|name| !numbers.contains_key(name)) {
         return Ok(None);
     }
-    let meant = Meant {
-        convention: given,
-        ..meant(oscillator, solution, &numbers)
-    };
+    let meant = Meant { convention: given, ..meant(oscillator, solution, &numbers) };
     let equilibrium = solution.equilibrium.evaluate(&numbers)?;
     let motion = TrueMotion::of(oscillator, &meant, &numbers)?;
     let Some(converted) = motion.amplitude_by_the_other(given, equilibrium) else {
@@ -584,9 +552,7 @@ fn cancellation(
         ),
         outside: false,
     };
-    let law = found
-        .map(|found| found.rounding)
-        .filter(|rounding| *rounding > SHOWN);
+    let law = found.map(|found| found.rounding).filter(|rounding| *rounding > SHOWN);
     let value_of = |symbol: Symbol| numbers.get(&symbol).copied();
     let motion = max_deviation.zip(solution.rounding_of_motion_at(&value_of));
     let motion =
@@ -598,10 +564,7 @@ fn cancellation(
 
 /// An error where the amplitude of a free motion changes.
 fn periodic(solution: &Solution) -> Result<(), VerificationError> {
-    let slow = solution
-        .modulation
-        .as_ref()
-        .filter(|_| solution.limit_cycle.is_none());
+    let slow = solution.modulation.as_ref().filter(|_| solution.limit_cycle.is_none());
     match slow.is_some_and(|slow| !slow.is_conservative()) {
         true => Err(VerificationError::NotPeriodic),
         false => Ok(()),
@@ -617,10 +580,7 @@ fn off_cycle(solution: &Solution, at: &Values) -> Option<Solution> {
 /// Slow equations where their motion has settled, unless a start is given.
 fn on_cycle(solution: &Solution, at: &Values) -> Option<Solution> {
     let started = at.get(AmplitudeConvention::Initial.symbol()).is_some();
-    solution
-        .slow()
-        .filter(|_| !started)
-        .and_then(|_| solution.on_cycle())
+    solution.slow().filter(|_| !started).and_then(|_| solution.on_cycle())
 }
 
 /// What the amplitude among the values is called: that of the start, where it changes.
@@ -660,13 +620,8 @@ fn check_digits(
     let mut there = numbers.clone();
     there.insert(coordinate, amplitude);
     there.extend([oscillator.velocity(), Symbol::new("t")].map(|name| (name, 0.0)));
-    let of_amplitude = |lost: LostDigits| LostDigits {
-        name: amplitude_symbol(solution),
-        ..lost
-    };
-    Ok(force
-        .check_digits(&there, &[coordinate])
-        .map_err(of_amplitude)?)
+    let of_amplitude = |lost: LostDigits| LostDigits { name: amplitude_symbol(solution), ..lost };
+    Ok(force.check_digits(&there, &[coordinate]).map_err(of_amplitude)?)
 }
 
 /// The values as numbers.
@@ -689,10 +644,7 @@ fn checked_numbers(
     if let Some((name, _)) = at.iter().find(|(name, _)| !known.contains(name)) {
         return Err(VerificationError::Unknown { name, known });
     }
-    let missing: Vec<Symbol> = needed
-        .into_iter()
-        .filter(|&name| at.get(name).is_none())
-        .collect();
+    let missing: Vec<Symbol> = needed.into_iter().filter(|&name| at.get(name).is_none()).collect();
     if !missing.is_empty() {
         return Err(VerificationError::Missing(missing));
     }
@@ -765,13 +717,8 @@ pub fn motions(
         return Ok(None);
     };
     let velocity = motion.derivative();
-    let formula = |t: f64| {
-        (
-            t,
-            motion.evaluate(frequency * t),
-            frequency * velocity.evaluate(frequency * t),
-        )
-    };
+    let formula =
+        |t: f64| (t, motion.evaluate(frequency * t), frequency * velocity.evaluate(frequency * t));
     Ok(Some(Motions {
         formula: instants(&truth).map(formula).collect(),
         truth: samples_of(&truth),
@@ -892,9 +839,7 @@ fn law_overflows(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> bool {
 fn series_of_omega(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
     solution.law.frequency_squared()?;
     let series = solution.law.frequency()?;
-    solution
-        .evaluate(series, &|symbol| numbers.get(&symbol).copied())
-        .ok()
+    solution.evaluate(series, &|symbol| numbers.get(&symbol).copied()).ok()
 }
 
 /// omega, the motion by the formula in theta, and what was chosen for it.
@@ -926,11 +871,7 @@ fn meant(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
         equilibrium: solution.equilibrium.clone(),
         convention: solution.amplitude,
         limit_cycle: solution.limit_cycle.as_ref().map(near),
-        frequency: if oscillator.of_position_alone() {
-            None
-        } else {
-            expected()
-        },
+        frequency: if oscillator.of_position_alone() { None } else { expected() },
     }
 }
 
@@ -954,10 +895,7 @@ fn force_of(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Option<Force> {
-    let amplitude = numbers
-        .get(&solution.amplitude.symbol())
-        .copied()
-        .unwrap_or(1.0);
+    let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
     let (force, coordinate) = (&oscillator.force, oscillator.coordinate);
     Force::new(force, coordinate, &solution.equilibrium, numbers, amplitude)
 }
@@ -965,11 +903,7 @@ fn force_of(
 /// Where a true limit cycle lies and what it does to its neighbours.
 fn about_the_cycle(truth: &TrueMotion, coordinate: Symbol) -> Option<validity::Range> {
     let cycle = truth.limit_cycle()?;
-    let does = if cycle.attracts() {
-        "attracts"
-    } else {
-        "repels"
-    };
+    let does = if cycle.attracts() { "attracts" } else { "repels" };
     Some(validity::Range {
         text: format!(
             "the true limit cycle turns at {coordinate} = {} and {does}",
@@ -1056,15 +990,10 @@ fn slope(
     // The truth is good to 1e-15 by quadrature, 1e-12 by one in pieces and 1e-11 by Runge-Kutta: an
     // error hundreds of times that is measured to less than a per cent.
     let conservative = oscillator.of_position_alone();
-    let amplitude = numbers
-        .get(&solution.amplitude.symbol())
-        .copied()
-        .unwrap_or(1.0);
+    let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
     let equilibrium = solution.equilibrium.evaluate(numbers).unwrap_or(0.0);
     let features = Features::new(&oscillator.force, oscillator.coordinate, numbers);
-    let pieces = !features
-        .cuts(equilibrium - amplitude, equilibrium + amplitude)
-        .is_empty();
+    let pieces = !features.cuts(equilibrium - amplitude, equilibrium + amplitude).is_empty();
     let floor = match (conservative, pieces) {
         (true, false) => 2e-13,
         (true, true) => 1e-10,
@@ -1085,31 +1014,20 @@ fn slope(
         let error = (formula / truth - 1.0).abs();
         // A closed form such as (cos(A) - 1)/A^2 loses digits at small amplitudes: what a change of
         // the last bits does to it is no error of the formula.
-        let shakes = if solution.law.closed_form().is_some() {
-            4
-        } else {
-            0
-        };
+        let shakes = if solution.law.closed_form().is_some() { 4 } else { 0 };
         let shaken = (1..=shakes).filter_map(|k| formula_at(factor * (1.0 + f64::from(k) * 1e-14)));
-        let noise = shaken
-            .map(|(shaken, _)| (shaken / formula - 1.0).abs())
-            .fold(0.0, f64::max);
+        let noise = shaken.map(|(shaken, _)| (shaken / formula - 1.0).abs()).fold(0.0, f64::max);
         Some(if error > 100.0 * noise { error } else { 0.0 })
     };
-    let errors: Vec<f64> = (0..HALVINGS)
-        .filter_map(error)
-        .take_while(|error| *error >= floor)
-        .collect();
+    let errors: Vec<f64> =
+        (0..HALVINGS).filter_map(error).take_while(|error| *error >= floor).collect();
     slopes_of(&errors)
 }
 
 /// The exponent of errors of which each belongs to half of what the one before does: the slopes
 /// between them, which approach their limit linearly, carried on to zero.
 fn slopes_of(errors: &[f64]) -> Option<f64> {
-    let slopes: Vec<f64> = errors
-        .windows(2)
-        .map(|pair| (pair[0] / pair[1]).log2())
-        .collect();
+    let slopes: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
     match *slopes.as_slice() {
         [.., before, last] if (last - before).abs() < 0.5 => Some(2.0 * last - before),
         [.., last] => Some(last),
@@ -1126,14 +1044,9 @@ fn with_small_parameter(
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Option<(Oscillator, Solution, BTreeMap<Symbol, f64>)> {
     let delta = solution.small_parameter;
-    let own = solution
-        .definitions
-        .iter()
-        .find(|definition| definition.symbol == delta)?;
+    let own = solution.definitions.iter().find(|definition| definition.symbol == delta)?;
     let known = solution.definitions.iter();
-    let known = known
-        .map(|definition| (definition.symbol, definition.meaning.clone()))
-        .collect();
+    let known = known.map(|definition| (definition.symbol, definition.meaning.clone())).collect();
     let stiffness = Expr::from(&solution.leading(solution.law.frequency_squared()?));
     let stiffness = stiffness.substitute_all(&known).ok()?;
     let linear = &stiffness * &(&Expr::from(oscillator.coordinate) - &solution.equilibrium);
@@ -1142,9 +1055,7 @@ fn with_small_parameter(
         (oscillator.clone(), solution.clone(), numbers.clone());
     oscillator.force = &linear + &(&factor * &(&oscillator.force - &linear));
     oscillator.parameters.push(delta);
-    varied
-        .definitions
-        .retain(|definition| definition.symbol != delta);
+    varied.definitions.retain(|definition| definition.symbol != delta);
     varied.parameters.push(delta);
     numbers.insert(delta, own.meaning.evaluate(&BTreeMap::new()).ok()?);
     Some((oscillator, varied, numbers))

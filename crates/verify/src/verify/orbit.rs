@@ -46,10 +46,7 @@ impl Meant {
     /// The amplitude among the numbers; one where there is none, as for a frequency that is free of
     /// it.
     pub(super) fn amplitude_at(&self, numbers: &BTreeMap<Symbol, f64>) -> f64 {
-        numbers
-            .get(&self.convention.symbol())
-            .copied()
-            .unwrap_or(1.0)
+        numbers.get(&self.convention.symbol()).copied().unwrap_or(1.0)
     }
 }
 
@@ -106,13 +103,7 @@ impl TrueMotion {
             let frequency = TAU / cycle.period();
             let orbit = Orbit::LimitCycle(cycle);
             let equilibrium = physics.rest.equilibrium();
-            return Ok(Self::from_orbit(
-                meant,
-                numbers,
-                orbit,
-                frequency,
-                equilibrium,
-            ));
+            return Ok(Self::from_orbit(meant, numbers, orbit, frequency, equilibrium));
         }
         let start = physics.start(meant.amplitude_at(numbers))?;
         if physics.by_energy() && meant.convention == AmplitudeConvention::Initial {
@@ -134,13 +125,7 @@ impl TrueMotion {
             false => TAU / path.period(),
         };
         let equilibrium = physics.rest.equilibrium();
-        Ok(Self::from_orbit(
-            meant,
-            numbers,
-            Orbit::Swing(path),
-            frequency,
-            equilibrium,
-        ))
+        Ok(Self::from_orbit(meant, numbers, Orbit::Swing(path), frequency, equilibrium))
     }
 
     fn from_orbit(
@@ -161,12 +146,7 @@ impl TrueMotion {
             (AmplitudeConvention::FirstHarmonic, None) => meant.amplitude_at(numbers).abs(),
             _ => (orbit.at(0.0).0 - equilibrium).abs(),
         };
-        Self {
-            frequency,
-            orbit: Some(orbit),
-            shift,
-            amplitude,
-        }
+        Self { frequency, orbit: Some(orbit), shift, amplitude }
     }
 
     /// The limit cycle, where the motion is one.
@@ -198,18 +178,13 @@ impl TrueMotion {
 
     /// The time after which it begins again.
     pub(super) fn period(&self) -> f64 {
-        self.orbit
-            .as_ref()
-            .map_or(TAU / self.frequency, Orbit::period)
+        self.orbit.as_ref().map_or(TAU / self.frequency, Orbit::period)
     }
 
     /// The time, the true position and the true velocity at the time `t` of the formula.
     pub(super) fn sample(&self, t: f64) -> (f64, f64, f64) {
         let place = (t + self.shift).rem_euclid(self.period());
-        let (x, v) = self
-            .orbit
-            .as_ref()
-            .map_or((f64::NAN, f64::NAN), |orbit| orbit.at(place));
+        let (x, v) = self.orbit.as_ref().map_or((f64::NAN, f64::NAN), |orbit| orbit.at(place));
         (t, x, v)
     }
 }
@@ -241,10 +216,7 @@ impl Physics {
             false => {
                 let velocities = Expr::sum([parts.inertia, parts.damping, parts.forcing]);
                 let moving = with_numbers(oscillator, &velocities, numbers)?;
-                (
-                    parts.restoring,
-                    Some(CompiledFunction::new(&moving, &[x, v])?),
-                )
+                (parts.restoring, Some(CompiledFunction::new(&moving, &[x, v])?))
             }
         };
         meant.equilibrium.evaluate(numbers)?;
@@ -283,17 +255,13 @@ impl Physics {
     /// The force at a distance from the equilibrium and a velocity.
     pub(super) fn force_at(&self, y: f64, v: f64) -> f64 {
         let position = self.rest.equilibrium() + y;
-        let moving = self
-            .moving
-            .as_ref()
-            .map_or(0.0, |moving| moving.call(&[position, v]));
+        let moving = self.moving.as_ref().map_or(0.0, |moving| moving.call(&[position, v]));
         self.rest.at(y) + moving
     }
 
     /// The period of a motion released at this distance from the equilibrium, by its energy.
     pub(super) fn period(&self, start: f64) -> Result<f64, PeriodError> {
-        self.rest
-            .between_turning_points(start, |force, end| period_between(force, start, end))
+        self.rest.between_turning_points(start, |force, end| period_between(force, start, end))
     }
 
     /// omega of the true motion that a formula of this amplitude means.
@@ -332,11 +300,7 @@ impl Physics {
             acceleration: &|x, v| -self.force_at(x - equilibrium, v),
             equilibrium,
             amplitude,
-            frequency: if slope.sqrt().is_normal() {
-                slope.sqrt()
-            } else {
-                1.0
-            },
+            frequency: if slope.sqrt().is_normal() { slope.sqrt() } else { 1.0 },
         };
         Ok(nearest_limit_cycle(&equation, near.attracts)?)
     }
@@ -349,9 +313,7 @@ impl Physics {
         }
         let excess = |start: f64| {
             let path = self.swing(start, self.longest);
-            path.map_or(f64::NAN, |path| {
-                first_harmonic(&Orbit::Swing(path)).0 - amplitude
-            })
+            path.map_or(f64::NAN, |path| first_harmonic(&Orbit::Swing(path)).0 - amplitude)
         };
         let at = |factor: f64| factor * amplitude;
         for spread in [0.05, 0.2, 0.5] {
@@ -366,10 +328,7 @@ impl Physics {
 /// The parameters that have no number.
 fn without_number(oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>) -> Vec<Symbol> {
     let parameters = oscillator.parameters.iter();
-    parameters
-        .filter(|name| !numbers.contains_key(name))
-        .copied()
-        .collect()
+    parameters.filter(|name| !numbers.contains_key(name)).copied().collect()
 }
 
 /// An expression with exact numbers in place of the parameters.
@@ -395,9 +354,7 @@ fn first_harmonic(orbit: &Orbit) -> (f64, f64) {
         let x = orbit.at(period * phase).0;
         (x * (TAU * phase).cos(), x * (TAU * phase).sin())
     };
-    let sum = (0..SAMPLES)
-        .map(sample)
-        .fold((0.0, 0.0), |sum, (c, s)| (sum.0 + c, sum.1 + s));
+    let sum = (0..SAMPLES).map(sample).fold((0.0, 0.0), |sum, (c, s)| (sum.0 + c, sum.1 + s));
     (2.0 * sum.0 / SAMPLES as f64, 2.0 * sum.1 / SAMPLES as f64)
 }
 

@@ -33,9 +33,7 @@ pub(super) fn places_of_law(
     };
     let mut law: Expr = form.value.clone();
     for definition in solution.definitions.iter().rev() {
-        law = law
-            .substitute(definition.symbol, &definition.meaning)
-            .unwrap_or(law);
+        law = law.substitute(definition.symbol, &definition.meaning).unwrap_or(law);
     }
     let features = Features::new(&law, symbol, numbers);
     let mut cuts = features.cuts(0.0, to);
@@ -46,15 +44,8 @@ pub(super) fn places_of_law(
         .filter(|pole| pole.width == 0.0)
         .map(|pole| pole.place)
         .collect();
-    cuts.extend(
-        poles
-            .iter()
-            .flat_map(|pole| [pole * (1.0 - 1e-6), pole * (1.0 + 1e-6)]),
-    );
-    cuts.into_iter()
-        .map(|place| place * to.signum())
-        .filter(|size| *size > 0.0)
-        .collect()
+    cuts.extend(poles.iter().flat_map(|pole| [pole * (1.0 - 1e-6), pole * (1.0 + 1e-6)]));
+    cuts.into_iter().map(|place| place * to.signum()).filter(|size| *size > 0.0).collect()
 }
 
 /// How far a formula is good; amplitudes have their sign.
@@ -94,12 +85,7 @@ impl Reach {
     /// The end of the range, where there is one.
     pub fn end(self) -> Option<f64> {
         match self {
-            Self::UpTo(end)
-            | Self::Between {
-                to: end,
-                open: false,
-                ..
-            } => Some(end),
+            Self::UpTo(end) | Self::Between { to: end, open: false, .. } => Some(end),
             Self::Nowhere => Some(0.0),
             Self::Everywhere(_) | Self::Between { open: true, .. } => None,
         }
@@ -112,10 +98,9 @@ impl Reach {
                 "within {percent} % at every amplitude looked at, up to {amplitude} = {}",
                 significant(searched, 4)
             ),
-            Self::UpTo(end) => format!(
-                "within {percent} % up to {amplitude} = {}",
-                significant(end, 4)
-            ),
+            Self::UpTo(end) => {
+                format!("within {percent} % up to {amplitude} = {}", significant(end, 4))
+            }
             Self::Between { from, to, open } => {
                 let [from, to] = [from, to].map(|end| significant(end, 4));
                 match open {
@@ -166,26 +151,15 @@ pub(super) fn reach(
     if solution.method == Method::Exact {
         // It is the truth wherever there is one.
         let good = error(asked.abs())?.abs() <= tolerance;
-        let last = amplitudes
-            .iter()
-            .rev()
-            .find(|&&size| truth.frequency(size).is_some());
-        return last
-            .filter(|_| good)
-            .map(|last| match truth.smallest_amplitude() {
-                inner if inner > 0.0 => Reach::Between {
-                    from: inner.copysign(asked),
-                    to: last.copysign(asked),
-                    open: true,
-                },
-                _ => Reach::Everywhere(last.copysign(asked)),
-            });
+        let last = amplitudes.iter().rev().find(|&&size| truth.frequency(size).is_some());
+        return last.filter(|_| good).map(|last| match truth.smallest_amplitude() {
+            inner if inner > 0.0 => {
+                Reach::Between { from: inner.copysign(asked), to: last.copysign(asked), open: true }
+            }
+            _ => Reach::Everywhere(last.copysign(asked)),
+        });
     }
-    amplitudes.extend(places_of_law(
-        solution,
-        truth.numbers,
-        asked.signum() * truth.farthest(),
-    ));
+    amplitudes.extend(places_of_law(solution, truth.numbers, asked.signum() * truth.farthest()));
     amplitudes.retain(|size| *size <= truth.farthest());
     amplitudes.sort_by(f64::total_cmp);
     if truth.smallest_amplitude() > 0.0 {
@@ -203,11 +177,7 @@ pub(super) fn reach(
         }
     }
     let last = points.last()?.0;
-    let follow = Follow {
-        error: &error,
-        tolerance,
-        evaluations: std::cell::Cell::new(0),
-    };
+    let follow = Follow { error: &error, tolerance, evaluations: std::cell::Cell::new(0) };
     let signed = |size: f64| size.copysign(asked);
     // From rest to the smallest of them the law may change at any scale.
     const SMALLEST: f64 = 1e-6;
@@ -246,41 +216,23 @@ fn about_the_amplitude(
     tolerance: f64,
 ) -> Option<Reach> {
     // Close to the separatrix the truth may have no digits.
-    let points: Vec<(f64, f64)> = amplitudes
-        .iter()
-        .filter_map(|&size| Some((size, error(size)?)))
-        .collect();
+    let points: Vec<(f64, f64)> =
+        amplitudes.iter().filter_map(|&size| Some((size, error(size)?))).collect();
     let good = |point: &(f64, f64)| point.1.abs() <= tolerance;
-    let own = points
-        .iter()
-        .position(|point| point.0 == asked.abs() && good(point));
+    let own = points.iter().position(|point| point.0 == asked.abs() && good(point));
     let Some(start) = own.or_else(|| points.iter().rposition(good)) else {
         return (!points.is_empty()).then_some(Reach::Nowhere);
     };
     let follow = |pairs: Vec<[(f64, f64); 2]>| {
-        let follow = Follow {
-            error,
-            tolerance,
-            evaluations: std::cell::Cell::new(0),
-        };
+        let follow = Follow { error, tolerance, evaluations: std::cell::Cell::new(0) };
         pairs.into_iter().find_map(|[near, far]| match good(&far) {
             true => follow.first_crossing(near, far),
             false => Some(follow.crossing(near, far)),
         })
     };
-    let outwards = follow(
-        points[start..]
-            .windows(2)
-            .map(|pair| [pair[0], pair[1]])
-            .collect(),
-    );
-    let inwards = follow(
-        points[..=start]
-            .windows(2)
-            .rev()
-            .map(|pair| [pair[1], pair[0]])
-            .collect(),
-    );
+    let outwards = follow(points[start..].windows(2).map(|pair| [pair[0], pair[1]]).collect());
+    let inwards =
+        follow(points[..=start].windows(2).rev().map(|pair| [pair[1], pair[0]]).collect());
     let last = points.last().map_or(asked, |point| point.0);
     let signed = |size: f64| size.copysign(asked);
     Some(Reach::Between {

@@ -97,15 +97,9 @@ impl Numbers {
         if turned && let Some(value) = known.get_mut(&released) {
             *value = -*value;
         }
-        let exact = known
-            .iter()
-            .filter_map(|(name, value)| Some((*name, Expr::number(from_f64(*value)?))));
-        Ok(Self {
-            exact: exact.collect(),
-            known,
-            turned,
-            closed_forms_hold: !negative || simple,
-        })
+        let exact =
+            known.iter().filter_map(|(name, value)| Some((*name, Expr::number(from_f64(*value)?))));
+        Ok(Self { exact: exact.collect(), known, turned, closed_forms_hold: !negative || simple })
     }
 
     fn put(&self, expression: &Expr) -> Result<Expr, ExprError> {
@@ -115,10 +109,9 @@ impl Numbers {
     /// Amplitude and phase at the start.
     fn start(&self, modulation: &Modulation) -> Result<[f64; 2], VerificationError> {
         Ok(match &modulation.release {
-            Some(release) => [
-                release.amplitude.evaluate(&self.known)?,
-                release.phase.evaluate(&self.known)?,
-            ],
+            Some(release) => {
+                [release.amplitude.evaluate(&self.known)?, release.phase.evaluate(&self.known)?]
+            }
             None => {
                 let released = self.known.get(&AmplitudeConvention::Initial.symbol());
                 [released.copied().unwrap_or(1.0), 0.0]
@@ -128,17 +121,11 @@ impl Numbers {
 
     /// Amplitude and phase in closed form, where there is one that holds.
     fn closed(&self, modulation: &Modulation) -> Option<[CompiledFunction; 2]> {
-        let transient = modulation
-            .transient
-            .as_ref()
-            .filter(|_| self.closed_forms_hold)?;
+        let transient = modulation.transient.as_ref().filter(|_| self.closed_forms_hold)?;
         let compiled = |expression: &Expr| {
             CompiledFunction::new(&self.put(expression).ok()?, &[Symbol::new("t")]).ok()
         };
-        Some([
-            compiled(&transient.amplitude)?,
-            compiled(transient.phase.as_ref()?)?,
-        ])
+        Some([compiled(&transient.amplitude)?, compiled(transient.phase.as_ref()?)?])
     }
 }
 
@@ -165,10 +152,8 @@ impl SlowMotion {
         let numbers = Numbers::of(solution, modulation, numbers)?;
         let (a, theta) = (modulation.amplitude, solution.phase());
         let place = numbers.put(&displacement(solution, theta)?)?;
-        let rates = [
-            numbers.put(&modulation.amplitude_rate)?,
-            numbers.put(&modulation.phase_rate)?,
-        ];
+        let rates =
+            [numbers.put(&modulation.amplitude_rate)?, numbers.put(&modulation.phase_rate)?];
         let moved = |of: &Expr| -> Result<Expr, ExprError> {
             let slopes = [of.differentiate(a)?, of.differentiate(theta)?];
             Ok(&slopes[0] * &rates[0] + &slopes[1] * &rates[1])
@@ -230,21 +215,13 @@ impl SlowMotion {
     pub(super) fn acceleration(&self, t: f64) -> Option<f64> {
         let acceleration = self.acceleration.as_ref()?;
         let at = self.slow_at(t);
-        Some(if at[0] == 0.0 {
-            0.0
-        } else {
-            acceleration.call(&at)
-        })
+        Some(if at[0] == 0.0 { 0.0 } else { acceleration.call(&at) })
     }
 
     /// Distance from the equilibrium at the amplitude of a time and any phase.
     pub(super) fn at_phase(&self, t: f64, phase: f64) -> f64 {
         let [a, _] = self.slow_at(t);
-        if a == 0.0 {
-            0.0
-        } else {
-            self.place.call(&[a, phase])
-        }
+        if a == 0.0 { 0.0 } else { self.place.call(&[a, phase]) }
     }
 
     /// Where the formula turns on the side of a true turning point.
@@ -307,10 +284,7 @@ impl SlowMotion {
         let settles = |a: f64| {
             let near = |steady: &f64| (a.abs() / steady - 1.0).abs() < 0.01;
             self.steady.iter().any(near)
-                && !self
-                    .steady
-                    .iter()
-                    .any(|steady| (start / steady - 1.0).abs() < 0.01)
+                && !self.steady.iter().any(|steady| (start / steady - 1.0).abs() < 0.01)
         };
         let steps = 8 * MOST_PERIODS as usize;
         for k in 1..=steps {
@@ -344,9 +318,7 @@ fn followed(
     start: [f64; 2],
     duration: f64,
 ) -> Result<SlowPath, VerificationError> {
-    let [amplitude, phase] = rates
-        .each_ref()
-        .map(|rate| CompiledFunction::new(rate, &[a]));
+    let [amplitude, phase] = rates.each_ref().map(|rate| CompiledFunction::new(rate, &[a]));
     let (amplitude, phase) = (amplitude?, phase?);
     let rates = move |_: f64, values: &[f64; 2], rates: &mut [f64; 2]| {
         // Below zero nothing is left of the motion.

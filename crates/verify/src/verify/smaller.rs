@@ -57,9 +57,7 @@ fn power_of_balance(oscillator: &Oscillator, order: u32) -> i32 {
     let order = || {
         let centred = centred(oscillator, None).ok()?.oscillator;
         let mut free = centred.clone();
-        free.force = (&centred.force - &centred.parts().ok()?.forcing)
-            .expand()
-            .ok()?;
+        free.force = (&centred.force - &centred.parts().ok()?.forcing).expand().ok()?;
         i32::try_from(order_of_balance(&free, order)).ok()
     };
     order().unwrap_or(2)
@@ -77,10 +75,7 @@ fn small_drives<'a>(solution: &'a Solution, resonance: &Resonance) -> Vec<&'a Ex
         Note::Driven { small, .. } => Some(small),
         _ => None,
     });
-    small
-        .flatten()
-        .filter(|small| **small != detuning)
-        .collect()
+    small.flatten().filter(|small| **small != detuning).collect()
 }
 
 /// The driving frequency with so much of its detuning left.
@@ -91,11 +86,7 @@ fn retuned(
     factor: f64,
 ) -> Option<[f64; 2]> {
     let mut known = numbers.clone();
-    known.extend(
-        solution
-            .defined_values(&|name| numbers.get(&name).copied())
-            .ok()?,
-    );
+    known.extend(solution.defined_values(&|name| numbers.get(&name).copied()).ok()?);
     let driving = resonance.driving_frequency.evaluate(&known).ok()?;
     let detuning = resonance.detuning.meaning.evaluate(&known).ok()?;
     let less = driving - (1.0 - factor) * detuning / f64::from(resonance.times_driving);
@@ -113,10 +104,8 @@ fn by_letters(
     let mut smaller = numbers.clone();
     if let Some(resonance) = resonance(solution) {
         for drive in small_drives(solution, resonance) {
-            let letters = drive
-                .symbols()
-                .into_iter()
-                .filter(|name| oscillator.parameters.contains(name));
+            let letters =
+                drive.symbols().into_iter().filter(|name| oscillator.parameters.contains(name));
             let letters: Vec<Symbol> = letters.collect();
             let [letter] = letters.as_slice() else {
                 return None;
@@ -140,11 +129,7 @@ fn by_letters(
         }
         *smaller.get_mut(&name)? *= factor;
     }
-    Some(Smaller {
-        oscillator: oscillator.clone(),
-        solution: solution.clone(),
-        numbers: smaller,
-    })
+    Some(Smaller { oscillator: oscillator.clone(), solution: solution.clone(), numbers: smaller })
 }
 
 /// Numbers in the equation, seen from the equilibrium.
@@ -157,18 +142,12 @@ fn by_numbers(
     let in_amplitude = is_small_in_amplitude(solution);
     // What balances the nonlinear terms counts as a power of the amplitude, whose square is what is
     // halved.
-    let power = if in_amplitude {
-        power_of_balance(oscillator, solution.order)
-    } else {
-        2
-    };
+    let power = if in_amplitude { power_of_balance(oscillator, solution.order) } else { 2 };
     let factor_of_balance = factor.powf(f64::from(power) / 2.0);
     let number = |value: f64| from_f64(value).map(Expr::number);
     let (factor_number, root) = (number(factor)?, number(factor.sqrt())?);
-    let known: Option<BTreeMap<Symbol, Expr>> = numbers
-        .iter()
-        .map(|(name, value)| Some((*name, number(*value)?)))
-        .collect();
+    let known: Option<BTreeMap<Symbol, Expr>> =
+        numbers.iter().map(|(name, value)| Some((*name, number(*value)?))).collect();
     let place = number(solution.equilibrium.evaluate(numbers).ok()?)?;
     let mut question = oscillator.clone();
     question.parameters = vec![];
@@ -183,17 +162,11 @@ fn by_numbers(
         let moved = moved.substitute(v, &(&scale * &Expr::from(v)))?;
         Expr::divide(&moved, &scale)?.expand()
     };
-    let at_rest = |part: &Expr| {
-        part.substitute(v, &Expr::zero())?
-            .substitute(x, &Expr::zero())
-    };
+    let at_rest = |part: &Expr| part.substitute(v, &Expr::zero())?.substitute(x, &Expr::zero());
     let restoring = seen(&parts.restoring).ok()?;
     let restoring = &restoring - &at_rest(&restoring).ok()?;
     // A force that has no linear part restores as a whole.
-    let stiffness = restoring
-        .differentiate(x)
-        .and_then(|slope| at_rest(&slope))
-        .ok();
+    let stiffness = restoring.differentiate(x).and_then(|slope| at_rest(&slope)).ok();
     let linear = match stiffness.filter(|stiffness| !stiffness.is_zero()) {
         Some(stiffness) => &stiffness * &Expr::from(x),
         None => restoring.clone(),
@@ -239,16 +212,8 @@ fn by_numbers(
     question.force = question.force.expand().ok()?;
     let answer = solve(&question, &options).ok()?;
     let start = AmplitudeConvention::Initial.symbol();
-    let numbers = numbers
-        .get(&start)
-        .map(|value| (start, *value))
-        .into_iter()
-        .collect();
-    Some(Smaller {
-        oscillator: question,
-        solution: answer.off_cycle().unwrap_or(answer),
-        numbers,
-    })
+    let numbers = numbers.get(&start).map(|value| (start, *value)).into_iter().collect();
+    Some(Smaller { oscillator: question, solution: answer.off_cycle().unwrap_or(answer), numbers })
 }
 
 /// The rate at which time turns the wave of a driven term.
@@ -259,11 +224,7 @@ fn rate_of(term: &Expr) -> Option<f64> {
     let Node::Function(_, arguments) = wave.node() else {
         return None;
     };
-    let rate = arguments[0]
-        .differentiate(t)
-        .ok()?
-        .evaluate(&BTreeMap::new())
-        .ok()?;
+    let rate = arguments[0].differentiate(t).ok()?.evaluate(&BTreeMap::new()).ok()?;
     Some(rate.abs())
 }
 

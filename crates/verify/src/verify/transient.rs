@@ -75,20 +75,9 @@ pub(super) fn judge(
 ) -> Result<Verification, VerificationError> {
     let symbols = symbol_values(oscillator, solution, numbers, None);
     let judged = Judged::of(oscillator, solution, modulation, numbers)?;
-    let Judged {
-        slow,
-        truth,
-        until,
-        reason,
-        start,
-    } = &judged;
+    let Judged { slow, truth, until, reason, start } = &judged;
     let crossings = slow.crossings(*until);
-    let own: Vec<f64> = truth
-        .crossings
-        .iter()
-        .copied()
-        .filter(|t| t <= until)
-        .collect();
+    let own: Vec<f64> = truth.crossings.iter().copied().filter(|t| t <= until).collect();
     let count = own.len().min(crossings.len());
     let mean = |times: &[f64]| match times {
         [first, .., last] => Some(PI * (times.len() - 1) as f64 / (last - first)),
@@ -180,11 +169,7 @@ pub(super) fn motions(
 fn samples(until: f64, period: f64) -> usize {
     const PER_PERIOD: f64 = 64.0;
     let count = (PER_PERIOD * until / period).ceil();
-    if count.is_finite() {
-        (count as usize).clamp(64, 8192)
-    } else {
-        64
-    }
+    if count.is_finite() { (count as usize).clamp(64, 8192) } else { 64 }
 }
 
 /// The largest of numbers that are all finite; `None` where there is none.
@@ -237,10 +222,7 @@ impl Judged {
         (until, reason): (f64, &'static str),
         duration: f64,
     ) -> Result<Self, VerificationError> {
-        let start = numbers
-            .get(&AmplitudeConvention::Initial.symbol())
-            .copied()
-            .unwrap_or(1.0);
+        let start = numbers.get(&AmplitudeConvention::Initial.symbol()).copied().unwrap_or(1.0);
         let truth = FreeMotion::of(
             oscillator,
             numbers,
@@ -251,13 +233,7 @@ impl Judged {
                 step: slow.period / LOOKS,
             },
         )?;
-        Ok(Self {
-            until: until.min(truth.end()),
-            slow,
-            truth,
-            reason,
-            start,
-        })
+        Ok(Self { until: until.min(truth.end()), slow, truth, reason, start })
     }
 
     /// The errors up to a time.
@@ -319,21 +295,12 @@ fn slopes(
             return Some(judged.errors(first));
         }
         let smaller = smaller(oscillator, solution, numbers, halving)?;
-        let slow = SlowMotion::new(
-            &smaller.solution,
-            smaller.solution.slow()?,
-            &smaller.numbers,
-        )
-        .ok()?;
+        let slow =
+            SlowMotion::new(&smaller.solution, smaller.solution.slow()?, &smaller.numbers).ok()?;
         let until = first * 2.0_f64.powi(halving);
-        let judged = Judged::followed(
-            &smaller.oscillator,
-            &smaller.numbers,
-            slow,
-            (until, ""),
-            until,
-        )
-        .ok()?;
+        let judged =
+            Judged::followed(&smaller.oscillator, &smaller.numbers, slow, (until, ""), until)
+                .ok()?;
         (judged.until >= until).then(|| judged.errors(until))
     };
     let mut errors = vec![];
@@ -345,17 +312,10 @@ fn slopes(
         }
     }
     // What is halved is the square of a small amplitude.
-    let power = if is_small_in_amplitude(solution) {
-        2.0
-    } else {
-        1.0
-    };
+    let power = if is_small_in_amplitude(solution) { 2.0 } else { 1.0 };
     let measured = |of: fn(&Errors) -> Option<f64>| {
-        let errors: Vec<f64> = errors
-            .iter()
-            .map_while(of)
-            .take_while(|error| *error >= FLOOR)
-            .collect();
+        let errors: Vec<f64> =
+            errors.iter().map_while(of).take_while(|error| *error >= FLOOR).collect();
         slopes_of(&errors).map(|slope| power * slope)
     };
     Slopes {

@@ -40,19 +40,13 @@ pub(super) fn ranges(
     numbers: &BTreeMap<Symbol, f64>,
     tolerance: f64,
 ) -> Vec<Range> {
-    let mut ranges: Vec<Range> = of_equation(oscillator, solution, numbers)
-        .into_iter()
-        .collect();
+    let mut ranges: Vec<Range> = of_equation(oscillator, solution, numbers).into_iter().collect();
     if let Some(cycle) = &solution.limit_cycle {
         let series =
             Entry::of(solution.method).sees == Sees::Derivatives && cycle.small_with.is_empty();
         // Where nothing feeds the motion there is no cycle to expand from.
-        let feeds = numbers
-            .get(&solution.small_parameter)
-            .is_some_and(|value| *value != 0.0);
-        let found = (series && feeds)
-            .then(|| convergence(oscillator, solution, numbers))
-            .flatten();
+        let feeds = numbers.get(&solution.small_parameter).is_some_and(|value| *value != 0.0);
+        let found = (series && feeds).then(|| convergence(oscillator, solution, numbers)).flatten();
         ranges.extend(found.map(|range| {
             match range.outside && solution.method == Method::LindstedtPoincare {
                 // A quotient has poles where the series ends.
@@ -79,12 +73,7 @@ pub(super) fn ranges(
     let truth = backbone(oscillator, solution, numbers);
     match truth.smallest_amplitude() {
         inner if inner > 0.0 => ranges.extend(positive_from(oscillator, solution, numbers, &truth)),
-        _ => ranges.extend(vanishing(
-            oscillator,
-            solution,
-            numbers,
-            truth.largest_amplitude(),
-        )),
+        _ => ranges.extend(vanishing(oscillator, solution, numbers, truth.largest_amplitude())),
     }
     if Entry::of(solution.method).sees == Sees::Derivatives {
         ranges.extend(convergence(oscillator, solution, numbers));
@@ -106,9 +95,7 @@ pub(super) fn of_equation(
 ) -> Option<Range> {
     let well = well_of(oscillator, solution, numbers)?;
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
-    let beyond = well
-        .on_side(amplitude)
-        .is_some_and(|end| amplitude.abs() >= end.amplitude.abs())
+    let beyond = well.on_side(amplitude).is_some_and(|end| amplitude.abs() >= end.amplitude.abs())
         || amplitude.abs() < well.smallest_amplitude();
     let text = well.in_words(solution.amplitude.symbol(), oscillator.coordinate);
     // Past the edge of one well the motion may still be periodic, over several.
@@ -120,10 +107,7 @@ pub(super) fn of_equation(
             text: format!("{text}; beyond it the motion runs over several wells, and does so here"),
             outside: false,
         },
-        false => Range {
-            text,
-            outside: beyond,
-        },
+        false => Range { text, outside: beyond },
     })
 }
 
@@ -147,12 +131,7 @@ pub(super) fn backbone<'a>(
     numbers: &'a BTreeMap<Symbol, f64>,
 ) -> TrueBackbone<'a> {
     let well = well_of(oscillator, solution, numbers);
-    TrueBackbone::new(
-        oscillator,
-        &meant(oscillator, solution, numbers),
-        numbers,
-        well,
-    )
+    TrueBackbone::new(oscillator, &meant(oscillator, solution, numbers), numbers, well)
 }
 
 /// Whether the motions that an answer is meant for do not begin at rest, but run over several
@@ -180,13 +159,7 @@ fn well_of(
     }
     let forces = inertia::forces(oscillator)?;
     let [weighted, force] = forces.map(|force| {
-        Force::new(
-            &force,
-            oscillator.coordinate,
-            &solution.equilibrium,
-            numbers,
-            amplitude,
-        )
+        Force::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, amplitude)
     });
     Well::with_inertia(&weighted?, &force?, amplitude)
 }
@@ -244,19 +217,15 @@ fn positive_from(
     }
     let symbol = solution.amplitude.symbol();
     let amplitude = *numbers.get(&symbol)?;
-    let (inner, outer) = (
-        truth.smallest_amplitude(),
-        f64::min(truth.largest_amplitude(), 4.0 * amplitude.abs()),
-    );
+    let (inner, outer) =
+        (truth.smallest_amplitude(), f64::min(truth.largest_amplitude(), 4.0 * amplitude.abs()));
     let squared = |size: f64| {
         let numbers = truth.numbers_at(size);
         frequency_squared_of(oscillator, solution, &numbers).unwrap_or(f64::NAN)
     };
     let place = |k: usize| inner + (outer - inner) * k as f64 / STEPS as f64;
     let values: Vec<f64> = (0..=STEPS).map(|k| squared(place(k))).collect();
-    let last = values
-        .windows(2)
-        .rposition(|pair| pair[0] <= 0.0 && pair[1] > 0.0)?;
+    let last = values.windows(2).rposition(|pair| pair[0] <= 0.0 && pair[1] > 0.0)?;
     let zero = find_root(squared, place(last), place(last + 1)).ok()?;
     let at = significant(zero.copysign(amplitude), 6);
     let law = of_frequency(law_name(solution));
@@ -296,11 +265,7 @@ fn vanishing(
     };
     let mut places: Vec<f64> = (1..=STEPS)
         .map(|k| farthest * (k as f64 / STEPS as f64).powi(2))
-        .chain(reach::places_of_law(
-            solution,
-            numbers,
-            amplitude.signum() * farthest,
-        ))
+        .chain(reach::places_of_law(solution, numbers, amplitude.signum() * farthest))
         .collect();
     places.sort_by(f64::total_cmp);
     let (mut before, mut value_before) = (1e-9 * amplitude.abs(), squared(1e-9 * amplitude.abs()));

@@ -22,13 +22,9 @@ impl Memory {
     pub fn zeroed(count: usize) -> Self {
         #[cfg(target_os = "linux")]
         if let Some(large) = large::Large::zeroed(count) {
-            return Self {
-                pages: Pages::Large(large),
-            };
+            return Self { pages: Pages::Large(large) };
         }
-        Self {
-            pages: Pages::Usual(vec![Lanes::default(); count]),
-        }
+        Self { pages: Pages::Usual(vec![Lanes::default(); count]) }
     }
 
     /// All of it.
@@ -91,12 +87,7 @@ mod tests {
         for count in [0, 1, 1000, 4096, 40_000, 100_000] {
             let mut memory = Memory::zeroed(count);
             assert_eq!(memory.lanes().len(), count);
-            assert!(
-                memory
-                    .lanes()
-                    .iter()
-                    .all(|lanes| *lanes == Lanes::default())
-            );
+            assert!(memory.lanes().iter().all(|lanes| *lanes == Lanes::default()));
             memory.lanes().fill(Lanes::all(7));
             assert!(memory.lanes().iter().all(|lanes| *lanes == Lanes::all(7)));
         }

@@ -130,11 +130,7 @@ impl Modulus {
 
     /// The residue of a word.
     pub fn residue(&self, value: u64) -> u64 {
-        let remainder = if value < self.prime {
-            value
-        } else {
-            value % self.prime
-        };
+        let remainder = if value < self.prime { value } else { value % self.prime };
         self.product(remainder, self.square)
     }
 
@@ -222,10 +218,7 @@ pub fn primes_up_to(last: u64) -> Vec<u64> {
     let mut primes: Vec<u64> = Vec::new();
     for number in 2..=last {
         let small = primes.iter().take_while(|&prime| prime * prime <= number);
-        if small
-            .into_iter()
-            .all(|prime| !number.is_multiple_of(*prime))
-        {
+        if small.into_iter().all(|prime| !number.is_multiple_of(*prime)) {
             primes.push(number);
         }
     }
@@ -242,11 +235,7 @@ fn is_prime(number: u64) -> bool {
     if let Some(divisor) = BASES.iter().find(|&base| number.is_multiple_of(*base)) {
         return number == *divisor;
     }
-    let needed = if number < FOUR_DECIDE_BELOW {
-        4
-    } else {
-        BASES.len()
-    };
+    let needed = if number < FOUR_DECIDE_BELOW { 4 } else { BASES.len() };
     if number < 2 {
         return false;
     }
@@ -274,9 +263,7 @@ pub fn primes_below(bits: u32, step: u64) -> impl Iterator<Item = u64> {
     let (highest, lowest) = ((1 << bits) - 1, 1_u64 << (bits - 1));
     let first = (highest - 1) / step;
     let numbers = (1..=first).rev().map(move |multiple| multiple * step + 1);
-    numbers
-        .take_while(move |&number| number > lowest)
-        .filter(|&number| is_prime(number))
+    numbers.take_while(move |&number| number > lowest).filter(|&number| is_prime(number))
 }
 
 #[cfg(test)]
@@ -285,10 +272,7 @@ mod tests {
 
     /// By division alone.
     fn is_prime_by_division(number: u64) -> bool {
-        number > 1
-            && (2..)
-                .take_while(|d| d * d <= number)
-                .all(|d| !number.is_multiple_of(d))
+        number > 1 && (2..).take_while(|d| d * d <= number).all(|d| !number.is_multiple_of(d))
     }
 
     #[test]
@@ -297,20 +281,11 @@ mod tests {
             assert_eq!(is_prime(number), is_prime_by_division(number), "{number}");
         }
         // Products of two primes, the first of them a pseudoprime to the bases 2, 3, 5 and 7.
-        for composite in [
-            3_215_031_751,
-            1_000_003 * 1_000_033,
-            33_554_393 * 33_554_383,
-        ] {
+        for composite in [3_215_031_751, 1_000_003 * 1_000_033, 33_554_393 * 33_554_383] {
             assert!(!is_prime(composite), "{composite}");
         }
         let found: Vec<u64> = primes_below(30, 24).take(3).collect();
-        assert!(
-            found
-                .iter()
-                .all(|p| p % 24 == 1 && is_prime_by_division(*p)),
-            "{found:?}"
-        );
+        assert!(found.iter().all(|p| p % 24 == 1 && is_prime_by_division(*p)), "{found:?}");
         assert_eq!(primes_up_to(30), [2, 3, 5, 7, 11, 13, 17, 19, 23, 29]);
     }
 

@@ -247,10 +247,7 @@ mod tests {
                 .take(WIDTH - 1)
                 .map(|prime| Modulus::new(prime, A::RADIX))
                 .collect();
-            let residues = Residues {
-                arithmetic,
-                moduli: Moduli::of(&moduli),
-            };
+            let residues = Residues { arithmetic, moduli: Moduli::of(&moduli) };
             let modulus = |lane: usize| &moduli[lane.min(WIDTH - 2)];
             let mut own: Vec<Lanes> = (3..40).map(|k| residues.small(k * k + 1)).collect();
             let inverses = {
@@ -258,9 +255,7 @@ mod tests {
                 residues.invert(&mut inverses).expect("none is zero");
                 inverses
             };
-            let root = residues
-                .root_of_unity(48)
-                .expect("48 divides each prime minus one");
+            let root = residues.root_of_unity(48).expect("48 divides each prime minus one");
             assert!(residues.root_of_unity(1 << 40).is_none());
             let powers = residues.powers(root, 50);
             for lane in 0..WIDTH {
@@ -282,10 +277,7 @@ mod tests {
                     assert_eq!(difference.0[lane], modulus.difference(value, other));
                     assert_eq!(residues.plain(*own).0[lane], modulus.plain(value));
                 }
-                assert_eq!(
-                    modulus.power(root.0[lane], 24),
-                    modulus.negative(modulus.one)
-                );
+                assert_eq!(modulus.power(root.0[lane], 24), modulus.negative(modulus.one));
                 assert_ne!(modulus.power(root.0[lane], 16), modulus.one);
                 assert_eq!(powers[49].0[lane], root.0[lane]);
             }

@@ -55,56 +55,36 @@ impl Narrow {
         let inverse = self.words(&moduli.inverse);
         let quotient = self.words(&moduli.quotient);
         [
-            Four {
-                prime: prime[0],
-                inverse: inverse[0],
-                quotient: quotient[0],
-            },
-            Four {
-                prime: prime[1],
-                inverse: inverse[1],
-                quotient: quotient[1],
-            },
+            Four { prime: prime[0], inverse: inverse[0], quotient: quotient[0] },
+            Four { prime: prime[1], inverse: inverse[1], quotient: quotient[1] },
         ]
     }
 
     #[inline(always)]
     fn both(self, left: Words, right: Words) -> Words {
         let v = self.0.avx2;
-        [
-            v._mm256_add_epi64(left[0], right[0]),
-            v._mm256_add_epi64(left[1], right[1]),
-        ]
+        [v._mm256_add_epi64(left[0], right[0]), v._mm256_add_epi64(left[1], right[1])]
     }
 
     /// The products of the low halves.
     #[inline(always)]
     fn multiply(self, left: Words, right: Words) -> Words {
         let v = self.0.avx2;
-        [
-            v._mm256_mul_epu32(left[0], right[0]),
-            v._mm256_mul_epu32(left[1], right[1]),
-        ]
+        [v._mm256_mul_epu32(left[0], right[0]), v._mm256_mul_epu32(left[1], right[1])]
     }
 
     /// The upper halves.
     #[inline(always)]
     fn upper(self, words: Words) -> Words {
         let v = self.0.avx2;
-        [
-            v._mm256_srli_epi64::<32>(words[0]),
-            v._mm256_srli_epi64::<32>(words[1]),
-        ]
+        [v._mm256_srli_epi64::<32>(words[0]), v._mm256_srli_epi64::<32>(words[1])]
     }
 
     /// The lower halves.
     #[inline(always)]
     fn lower(self, words: Words) -> Words {
         let (v, zero) = (self.0.avx2, self.all(0));
-        [
-            v._mm256_blend_epi32::<0xaa>(words[0], zero),
-            v._mm256_blend_epi32::<0xaa>(words[1], zero),
-        ]
+        [v._mm256_blend_epi32::<0xaa>(words[0], zero), v._mm256_blend_epi32::<0xaa>(words[1], zero)]
     }
 
     /// Four sums divided by `R`.
@@ -127,10 +107,8 @@ impl Narrow {
     #[inline(always)]
     fn reduce_product(self, product: Register, four: Four) -> Register {
         let v = self.0.avx2;
-        let residue = v._mm256_sub_epi64(
-            v._mm256_srli_epi64::<32>(product),
-            self.taken(product, four),
-        );
+        let residue =
+            v._mm256_sub_epi64(v._mm256_srli_epi64::<32>(product), self.taken(product, four));
         // Below zero both halves are large, and the prime more than the residue above it makes up
         // for that.
         v._mm256_min_epu32(residue, v._mm256_add_epi64(residue, four.prime))
@@ -156,28 +134,18 @@ impl Arithmetic for Narrow {
     #[inline(always)]
     fn none(self) -> Sum {
         let none = [self.all(0); 2];
-        Sum {
-            recent: none,
-            low: none,
-            high: none,
-        }
+        Sum { recent: none, low: none, high: none }
     }
     #[inline(always)]
     fn add_product(self, sum: Sum, left: &Lanes, right: &Lanes) -> Sum {
         let product = self.multiply(self.words(left), self.words(right));
-        Sum {
-            recent: self.both(sum.recent, product),
-            ..sum
-        }
+        Sum { recent: self.both(sum.recent, product), ..sum }
     }
     #[inline(always)]
     fn add_multiple(self, sum: Sum, left: u64, right: &Lanes) -> Sum {
         let left = self.all(left);
         let product = self.multiply([left; 2], self.words(right));
-        Sum {
-            recent: self.both(sum.recent, product),
-            ..sum
-        }
+        Sum { recent: self.both(sum.recent, product), ..sum }
     }
     #[inline(always)]
     fn carry(self, sum: Sum) -> Sum {
@@ -208,20 +176,16 @@ impl Arithmetic for Narrow {
     fn reduce(self, sum: Sum, moduli: &Moduli) -> Lanes {
         let Sum { low, high, .. } = self.carry(sum);
         let [first, second] = self.fours(moduli);
-        let residues: Words = [
-            self.reduce_four(low[0], high[0], first),
-            self.reduce_four(low[1], high[1], second),
-        ];
+        let residues: Words =
+            [self.reduce_four(low[0], high[0], first), self.reduce_four(low[1], high[1], second)];
         Lanes(pulp::cast(residues))
     }
     #[inline(always)]
     fn product(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {
         let products = self.multiply(self.words(left), self.words(right));
         let [first, second] = self.fours(moduli);
-        let residues: Words = [
-            self.reduce_product(products[0], first),
-            self.reduce_product(products[1], second),
-        ];
+        let residues: Words =
+            [self.reduce_product(products[0], first), self.reduce_product(products[1], second)];
         Lanes(pulp::cast(residues))
     }
     #[inline(always)]
@@ -239,11 +203,7 @@ impl Arithmetic for Narrow {
     #[inline(always)]
     fn difference(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {
         let v = self.0.avx2;
-        let (left, right, prime) = (
-            self.words(left),
-            self.words(right),
-            self.words(&moduli.prime),
-        );
+        let (left, right, prime) = (self.words(left), self.words(right), self.words(&moduli.prime));
         let first = v._mm256_sub_epi64(left[0], right[0]);
         let second = v._mm256_sub_epi64(left[1], right[1]);
         let residues: Words = [

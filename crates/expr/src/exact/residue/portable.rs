@@ -36,11 +36,7 @@ impl Arithmetic for Portable {
     #[inline(always)]
     fn none(self) -> Sum {
         let none = Lanes([0; WIDTH]);
-        Sum {
-            recent: none,
-            low: none,
-            high: none,
-        }
+        Sum { recent: none, low: none, high: none }
     }
     #[inline(always)]
     fn add_product(self, mut sum: Sum, left: &Lanes, right: &Lanes) -> Sum {

@@ -30,10 +30,7 @@ pub struct Remainders<A> {
 impl<A: Arithmetic> Remainders<A> {
     /// For these primes, at most 2^13.
     pub fn new(arithmetic: A, moduli: &[Modulus]) -> Self {
-        let product: Integer = moduli
-            .iter()
-            .map(|modulus| Integer::from(modulus.prime))
-            .product();
+        let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
         let blocks = (product.bits() / u64::from(A::DIGIT)) as usize / WIDTH + 1;
         let mut cofactors = vec![Lanes::default(); blocks * moduli.len()];
         for (i, modulus) in moduli.iter().enumerate() {
@@ -55,10 +52,7 @@ impl<A: Arithmetic> Remainders<A> {
         Self {
             arithmetic,
             moduli: moduli.to_vec(),
-            reciprocals: moduli
-                .iter()
-                .map(|modulus| 1.0 / modulus.prime as f64)
-                .collect(),
+            reciprocals: moduli.iter().map(|modulus| 1.0 / modulus.prime as f64).collect(),
             product: digits::<A>(&product, blocks * WIDTH),
             cofactors,
             inverses,
@@ -78,8 +72,7 @@ impl<A: Arithmetic> Remainders<A> {
     /// the residues are used up.
     pub fn lift(&self, residues: &mut [Lanes], weights: &[u64], numbers: &mut Numbers) {
         numbers.digits.resize(self.product.len(), Lanes::default());
-        self.arithmetic
-            .vectorize(Lift(self, residues, weights, numbers));
+        self.arithmetic.vectorize(Lift(self, residues, weights, numbers));
     }
 
     /// One number, from its plain residues.
@@ -91,12 +84,7 @@ impl<A: Arithmetic> Remainders<A> {
     }
 }
 
-struct Lift<'a, A>(
-    &'a Remainders<A>,
-    &'a mut [Lanes],
-    &'a [u64],
-    &'a mut Numbers,
-);
+struct Lift<'a, A>(&'a Remainders<A>, &'a mut [Lanes], &'a [u64], &'a mut Numbers);
 
 impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
     type Output = ();
@@ -109,10 +97,7 @@ impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
         let arithmetic = remainders.arithmetic;
         let count = remainders.moduli.len();
         let mut quotients = [0.0; WIDTH];
-        let primes = weights
-            .iter()
-            .zip(&remainders.moduli)
-            .zip(&remainders.reciprocals);
+        let primes = weights.iter().zip(&remainders.moduli).zip(&remainders.reciprocals);
         for (own, ((weight, modulus), reciprocal)) in residues.iter_mut().zip(primes) {
             *own = arithmetic.product(own, &Lanes::all(*weight), &Moduli::all(modulus));
             for (quotient, residue) in quotients.iter_mut().zip(own.0) {
@@ -128,9 +113,8 @@ impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
         let mask = (1_u64 << A::DIGIT) - 1;
         let mut carries = [0_i64; WIDTH];
         let digits = numbers.digits.chunks_exact_mut(TOGETHER);
-        for (lot, (digits, product)) in digits
-            .zip(remainders.product.chunks_exact(TOGETHER))
-            .enumerate()
+        for (lot, (digits, product)) in
+            digits.zip(remainders.product.chunks_exact(TOGETHER)).enumerate()
         {
             let (block, first) = (lot * TOGETHER / WIDTH, lot * TOGETHER % WIDTH);
             let mut sums = [arithmetic.none(); TOGETHER];
@@ -152,9 +136,8 @@ impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
                 let taken =
                     arithmetic.parts(arithmetic.add_multiple(arithmetic.none(), *product, &times));
                 for (j, carry) in carries.iter_mut().enumerate() {
-                    let value = (low.0[j] as i64)
-                        .wrapping_sub(taken.0.0[j] as i64)
-                        .wrapping_add(*carry);
+                    let value =
+                        (low.0[j] as i64).wrapping_sub(taken.0.0[j] as i64).wrapping_add(*carry);
                     digit.0[j] = value as u64 & mask;
                     let above = (high.0[j] as i64).wrapping_sub(taken.1.0[j] as i64);
                     *carry = (value >> A::DIGIT).wrapping_add(above << (A::RADIX - A::DIGIT));
@@ -177,10 +160,7 @@ fn digits<A: Arithmetic>(number: &Integer, count: usize) -> Vec<u64> {
     let words = number.to_words();
     let word = |place: usize| words.get(place).copied().unwrap_or(0);
     let digit = |place: usize| {
-        let (word_at, shift) = (
-            place * A::DIGIT as usize / 64,
-            place * A::DIGIT as usize % 64,
-        );
+        let (word_at, shift) = (place * A::DIGIT as usize / 64, place * A::DIGIT as usize % 64);
         let both = u128::from(word(word_at)) | u128::from(word(word_at + 1)) << 64;
         (both >> shift) as u64 & ((1 << A::DIGIT) - 1)
     };
@@ -214,14 +194,8 @@ impl Numbers {
             }
         }
         let count = self.digits.len();
-        let mut residues = arithmetic
-            .vectorize(Residues(
-                arithmetic,
-                modulus,
-                &powers[..count],
-                &self.digits,
-            ))
-            .0;
+        let mut residues =
+            arithmetic.vectorize(Residues(arithmetic, modulus, &powers[..count], &self.digits)).0;
         let above = modulus.plain(powers[count]);
         for (residue, negative) in residues.iter_mut().zip(self.negative) {
             if negative {
@@ -264,11 +238,7 @@ impl Numbers {
 pub fn fraction(residue: &Integer, modulus: &Integer) -> Option<(Integer, Integer)> {
     const ROOM: u64 = 24;
     let bound = modulus.bits() / 2;
-    let positive = if residue.is_negative() {
-        residue + modulus
-    } else {
-        residue.clone()
-    };
+    let positive = if residue.is_negative() { residue + modulus } else { residue.clone() };
     let (mut larger, mut smaller) = (modulus.clone(), positive);
     let (mut before, mut denominator) = (Integer::zero(), Integer::one());
     while smaller.bits() > bound {
@@ -296,27 +266,18 @@ mod tests {
 
         fn by<A: Arithmetic>(self, arithmetic: A) {
             let primes: Vec<u64> = primes_below(A::BITS, 16).take(40).collect();
-            let moduli: Vec<Modulus> = primes
-                .iter()
-                .map(|prime| Modulus::new(*prime, A::RADIX))
-                .collect();
+            let moduli: Vec<Modulus> =
+                primes.iter().map(|prime| Modulus::new(*prime, A::RADIX)).collect();
             let check = Modulus::new(primes[39], A::RADIX);
             let remainders = Remainders::new(arithmetic, &moduli[..39]);
-            for (power, factor) in [
-                (0, 0),
-                (1, 1),
-                (3, -1),
-                (600, 17),
-                (600, -17),
-                (1000, 3),
-                (1000, -1),
-            ] {
+            for (power, factor) in
+                [(0, 0), (1, 1), (3, -1), (600, 17), (600, -17), (1000, 3), (1000, -1)]
+            {
                 let number = Integer::from(3).pow(power / 2) * Integer::from(factor);
                 let weights: Vec<u64> = remainders.weights(|modulus| modulus.one).collect();
                 // Eight numbers beside each other: this one and its multiples.
-                let all: Vec<Integer> = (0..WIDTH as i64)
-                    .map(|k| &number * Integer::from(3 - 2 * k))
-                    .collect();
+                let all: Vec<Integer> =
+                    (0..WIDTH as i64).map(|k| &number * Integer::from(3 - 2 * k)).collect();
                 let mut residues = vec![Lanes::default(); 39];
                 for (own, modulus) in residues.iter_mut().zip(&moduli) {
                     for (residue, number) in own.0.iter_mut().zip(&all) {
@@ -354,15 +315,9 @@ mod tests {
             rest.is_zero().then_some(quotient)
         });
         let residue = (inverse.expect("a prime") * Integer::from(-17)).mod_floor(&modulus);
+        assert_eq!(fraction(&residue, &modulus), Some((Integer::from(-17), Integer::from(96))));
         assert_eq!(
-            fraction(&residue, &modulus),
-            Some((Integer::from(-17), Integer::from(96)))
-        );
-        assert_eq!(
-            fraction(
-                &Integer::from(3_000_000_001_i64).pow(2).mod_floor(&modulus),
-                &modulus
-            ),
+            fraction(&Integer::from(3_000_000_001_i64).pow(2).mod_floor(&modulus), &modulus),
             None
         );
     }

@@ -43,11 +43,7 @@ pub fn convolve<A: Arithmetic>(
             let Self(residues, products, tables, order) = self;
             let arithmetic = residues.arithmetic;
             // The first orders are as fast one by one.
-            let start = if order < 2 * TOGETHER {
-                0
-            } else {
-                order - order % TOGETHER
-            };
+            let start = if order < 2 * TOGETHER { 0 } else { order - order % TOGETHER };
             // Point by point: what one product has read, the next finds in the cache.
             for point in 0..tables.rows() {
                 if order == start && start > 0 {
@@ -87,9 +83,7 @@ pub fn convolve<A: Arithmetic>(
             }
         }
     }
-    residues
-        .arithmetic
-        .vectorize(Convolve(residues, products, tables, order));
+    residues.arithmetic.vectorize(Convolve(residues, products, tables, order));
 }
 
 /// The part of a product at the orders from `start` on in which both factors are of orders before
@@ -103,10 +97,7 @@ fn prepare<A: Arithmetic>(
     start: usize,
 ) {
     let arithmetic = residues.arithmetic;
-    let (orders, place) = (
-        tables.row(product.to, point).len(),
-        tables.place(product.to, start),
-    );
+    let (orders, place) = (tables.row(product.to, point).len(), tables.place(product.to, start));
     for first in [start, start + TOGETHER / 2] {
         let left = &tables.row(product.left, point)[..start];
         let right = &tables.row(product.right, point)[..start];

@@ -27,12 +27,7 @@ impl<'m> Tables<'m> {
             places.push((stride, *length));
             stride += length;
         }
-        Self {
-            rows,
-            stride,
-            places,
-            entries,
-        }
+        Self { rows, stride, places, entries }
     }
 
     /// How many rows each table has.
@@ -46,11 +41,7 @@ impl<'m> Tables<'m> {
     #[inline(always)]
     pub fn place(&self, table: usize, order: usize) -> usize {
         let length = self.places[table].1;
-        if order < length {
-            order
-        } else {
-            order % length
-        }
+        if order < length { order } else { order % length }
     }
 
     /// All entries of a row.
@@ -64,21 +55,14 @@ impl<'m> Tables<'m> {
     #[inline(always)]
     pub fn entry(&mut self, table: usize, row: usize, place: usize) -> &mut Lanes {
         let begin = self.places[table].0;
-        &mut self.entries[row
-            .wrapping_mul(self.stride)
-            .wrapping_add(begin)
-            .wrapping_add(place)]
+        &mut self.entries[row.wrapping_mul(self.stride).wrapping_add(begin).wrapping_add(place)]
     }
 
     /// Writes the same place of the first rows.
     #[inline(always)]
     pub fn write(&mut self, table: usize, place: usize, values: &[Lanes]) {
         let begin = self.places[table].0;
-        for (row, value) in self
-            .entries
-            .chunks_exact_mut(self.stride.max(1))
-            .zip(values)
-        {
+        for (row, value) in self.entries.chunks_exact_mut(self.stride.max(1)).zip(values) {
             row[begin + place] = *value;
         }
     }

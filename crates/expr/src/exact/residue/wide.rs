@@ -78,18 +78,12 @@ impl Arithmetic for Wide {
     fn carry(self, (low, high): Self::Sum) -> Self::Sum {
         let f = self.avx512f;
         let low_digits = f._mm512_and_si512(low, self.all((1 << 52) - 1));
-        (
-            low_digits,
-            f._mm512_add_epi64(high, f._mm512_srli_epi64::<52>(low)),
-        )
+        (low_digits, f._mm512_add_epi64(high, f._mm512_srli_epi64::<52>(low)))
     }
     #[inline(always)]
     fn merge(self, left: Self::Sum, right: Self::Sum) -> Self::Sum {
         let f = self.avx512f;
-        (
-            f._mm512_add_epi64(left.0, right.0),
-            f._mm512_add_epi64(left.1, right.1),
-        )
+        (f._mm512_add_epi64(left.0, right.0), f._mm512_add_epi64(left.1, right.1))
     }
     #[inline(always)]
     fn join(self, left: Self::Sum, right: Self::Sum) -> Self::Sum {
@@ -127,10 +121,7 @@ impl Arithmetic for Wide {
         let multiple = ifma._mm512_madd52lo_epu64(zero, low, pulp::cast(moduli.inverse.0));
         let taken = ifma._mm512_madd52hi_epu64(zero, multiple, prime);
         let residue = f._mm512_sub_epi64(high, taken);
-        Lanes(pulp::cast(f._mm512_min_epu64(
-            residue,
-            f._mm512_add_epi64(residue, prime),
-        )))
+        Lanes(pulp::cast(f._mm512_min_epu64(residue, f._mm512_add_epi64(residue, prime))))
     }
     #[inline(always)]
     fn sum(self, left: &Lanes, right: &Lanes, moduli: &Moduli) -> Lanes {

@@ -47,13 +47,7 @@ fn typed_term(
     around: Option<Arc<Around>>,
 ) -> TypedTerm {
     let (negative, rest) = unsigned(tokens);
-    TypedTerm {
-        value,
-        span: span(rest),
-        negative,
-        right,
-        around,
-    }
+    TypedTerm { value, span: span(rest), negative, right, around }
 }
 
 /// The terms inside the one bracket of a term that the rest of it scales; `None` where there is no
@@ -70,9 +64,7 @@ fn opened<'a>(
         token.kind == Kind::Name && (name == coordinate.name() || name == "t")
     };
     let factors = split(rest, |kind| matches!(kind, Kind::Times | Kind::Divide));
-    let mut moving = factors
-        .iter()
-        .filter(|factor| rest[(*factor).clone()].iter().any(moves));
+    let mut moving = factors.iter().filter(|factor| rest[(*factor).clone()].iter().any(moves));
     let (factor, None) = (moving.next()?, moving.next()) else {
         return None;
     };
@@ -95,10 +87,7 @@ fn opened<'a>(
     // What stands around the bracket multiplies it, and so does what stands around the term in its
     // turn.
     let (scale, outer) = match &term.around {
-        Some(outer) => (
-            &scale * &outer.scale,
-            (&*outer.opening, &*outer.closing, outer.negative),
-        ),
+        Some(outer) => (&scale * &outer.scale, (&*outer.opening, &*outer.closing, outer.negative)),
         None => (scale, ("", "", false)),
     };
     let bare = before.is_empty() && after.is_empty();
@@ -116,12 +105,7 @@ fn opened<'a>(
         // The sign between two terms belongs to the second.
         let tokens = &inner[range.start.saturating_sub(1)..range.end];
         let value = parse_expression(&text[span(tokens)]).ok()?;
-        let term = typed_term(
-            &around.scale * &value,
-            tokens,
-            term.right,
-            Some(around.clone()),
-        );
+        let term = typed_term(&around.scale * &value, tokens, term.right, Some(around.clone()));
         Some((term, tokens))
     });
     pieces.collect()
@@ -129,13 +113,8 @@ fn opened<'a>(
 
 /// The signs before a term or a factor, whether they are a minus together, and what follows them.
 fn unsigned(tokens: &[Token]) -> (bool, &[Token]) {
-    let signs = tokens
-        .iter()
-        .take_while(|token| matches!(token.kind, Kind::Plus | Kind::Minus));
-    let minuses = signs
-        .clone()
-        .filter(|sign| sign.kind == Kind::Minus)
-        .count();
+    let signs = tokens.iter().take_while(|token| matches!(token.kind, Kind::Plus | Kind::Minus));
+    let minuses = signs.clone().filter(|sign| sign.kind == Kind::Minus).count();
     (minuses % 2 == 1, &tokens[signs.count()..])
 }
 

@@ -45,12 +45,7 @@ impl ParseError {
     pub(super) fn new(text: &str, span: Range<usize>, message: &str, help: &str) -> Self {
         let excerpt = excerpt(text, &span);
         let help = (!help.is_empty()).then(|| help.to_string());
-        Self {
-            message: message.to_string(),
-            span,
-            help,
-            excerpt,
-        }
+        Self { message: message.to_string(), span, help, excerpt }
     }
 }
 
@@ -58,41 +53,21 @@ impl ParseError {
 pub fn excerpt(text: &str, span: &Range<usize>) -> [String; 2] {
     const WIDTH: usize = 100;
     let start = text[..span.start].rfind(['\n', '\r', '\u{feff}']);
-    let start = start.map_or(0, |place| {
-        place + text[place..].chars().next().map_or(0, char::len_utf8)
-    });
-    let end = text[span.start..]
-        .find(['\n', '\r'])
-        .map_or(text.len(), |length| span.start + length);
+    let start =
+        start.map_or(0, |place| place + text[place..].chars().next().map_or(0, char::len_utf8));
+    let end =
+        text[span.start..].find(['\n', '\r']).map_or(text.len(), |length| span.start + length);
     let line = &text[start..end];
     let column = text[start..span.start].chars().count();
-    let length = text[span.start..span.end.min(end).max(span.start)]
-        .chars()
-        .count()
-        .max(1);
+    let length = text[span.start..span.end.min(end).max(span.start)].chars().count().max(1);
     // The place stands in the first third of a window that is cut on both sides.
-    let skipped = if column > WIDTH * 2 / 3 {
-        column - WIDTH / 3
-    } else {
-        0
-    };
-    let shown: String = line
-        .chars()
-        .skip(skipped)
-        .take(WIDTH)
-        .map(visible)
-        .collect();
+    let skipped = if column > WIDTH * 2 / 3 { column - WIDTH / 3 } else { 0 };
+    let shown: String = line.chars().skip(skipped).take(WIDTH).map(visible).collect();
     let cut = line.chars().nth(skipped + WIDTH).is_some();
-    let (before, after) = (
-        if skipped > 0 { "..." } else { "" },
-        if cut { "..." } else { "" },
-    );
+    let (before, after) = (if skipped > 0 { "..." } else { "" }, if cut { "..." } else { "" });
     let indent = before.len() + column - skipped;
     let carets = length.min(WIDTH.saturating_sub(column - skipped).max(1));
-    [
-        format!("{before}{shown}{after}"),
-        format!("{}{}", " ".repeat(indent), "^".repeat(carets)),
-    ]
+    [format!("{before}{shown}{after}"), format!("{}{}", " ".repeat(indent), "^".repeat(carets))]
 }
 
 /// The text, cut to what fits into a message.
@@ -100,10 +75,6 @@ pub(super) fn shortened(text: &str) -> String {
     const LONGEST: usize = 40;
     match text.char_indices().nth(LONGEST) {
         None => text.chars().map(visible).collect(),
-        Some((cut, _)) => text[..cut]
-            .chars()
-            .map(visible)
-            .chain("...".chars())
-            .collect(),
+        Some((cut, _)) => text[..cut].chars().map(visible).chain("...".chars()).collect(),
     }
 }

@@ -67,17 +67,9 @@ impl<'a> Lexer<'a> {
                 '0'..='9' | '.' => self.number()?,
                 _ => self.sign(letter)?,
             };
-            tokens.push(Token {
-                kind,
-                start,
-                end: self.position,
-            });
+            tokens.push(Token { kind, start, end: self.position });
         }
-        tokens.push(Token {
-            kind: Kind::End,
-            start: self.position,
-            end: self.position,
-        });
+        tokens.push(Token { kind: Kind::End, start: self.position, end: self.position });
         Ok(tokens)
     }
 
@@ -86,11 +78,9 @@ impl<'a> Lexer<'a> {
         self.skip_while(|letter| letter.is_ascii_alphanumeric() || letter == '_');
         self.skip_while(|letter| letter == '\'');
         match self.position - start > LONGEST_NAME {
-            true => Err(self.error(
-                start,
-                &format!("a name of more than {LONGEST_NAME} letters"),
-                "",
-            )),
+            true => {
+                Err(self.error(start, &format!("a name of more than {LONGEST_NAME} letters"), ""))
+            }
             false => Ok(Kind::Name),
         }
     }
@@ -141,17 +131,11 @@ impl<'a> Lexer<'a> {
                 return Ok(Kind::Power);
             }
             '*' => return Ok(Kind::Times),
-            '\'' => (
-                "a prime stands directly after its letter".into(),
-                "try `x'`",
-            ),
+            '\'' => ("a prime stands directly after its letter".into(), "try `x'`"),
             '"' => ("a double quote is no pair of primes".into(), "try `x''`"),
             '[' | '{' => (format!("`{letter}` is no parenthesis here"), "try `(`"),
             ']' | '}' => (format!("`{letter}` is no parenthesis here"), "try `)`"),
-            '|' => (
-                "`|` is no sign here".into(),
-                "the absolute value is `abs(x)`",
-            ),
+            '|' => ("`|` is no sign here".into(), "the absolute value is `abs(x)`"),
             '_' => ("a name begins with a letter".into(), ""),
             '\\' if self.rest().starts_with("ddot") => {
                 return Err(self.latex_derivative(start, "x''"));
@@ -159,16 +143,14 @@ impl<'a> Lexer<'a> {
             '\\' if self.rest().starts_with("dot") => {
                 return Err(self.latex_derivative(start, "x'"));
             }
-            '\\' => (
-                "LaTeX is written, not read".into(),
-                "functions are `sin(x)`, fractions `a/b`",
-            ),
+            '\\' => {
+                ("LaTeX is written, not read".into(), "functions are `sin(x)`, fractions `a/b`")
+            }
             '\0' => ("a NUL character".into(), ""),
             _ if letter.is_ascii_graphic() => (format!("`{letter}` is no sign here"), ""),
-            _ if letter.is_control() => (
-                format!("a control character, U+{:04X}", u32::from(letter)),
-                "",
-            ),
+            _ if letter.is_control() => {
+                (format!("a control character, U+{:04X}", u32::from(letter)), "")
+            }
             _ => {
                 let name = match visible(letter) == letter && !letter.is_whitespace() {
                     true => format!("`{letter}` (U+{:04X})", u32::from(letter)),

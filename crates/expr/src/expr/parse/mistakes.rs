@@ -70,26 +70,14 @@ impl Parser<'_> {
     /// Derivatives spelt otherwise: `dx/dt`, `d2x/dt2`, `d^2x/dt^2`, `x_dot`, `diff(x, t)`.
     pub(super) fn refuse_other_derivatives(&self) -> Result<(), ParseError> {
         let text = |token: &Token| &self.text[token.span()];
-        for (index, token) in self
-            .tokens
-            .iter()
-            .enumerate()
-            .filter(|(_, token)| token.kind == Kind::Name)
+        for (index, token) in
+            self.tokens.iter().enumerate().filter(|(_, token)| token.kind == Kind::Name)
         {
             let name = text(token);
             let rest = &self.tokens[index..];
             let called = rest.get(1).is_some_and(|next| next.kind == Kind::Open);
             if called
-                && [
-                    "diff",
-                    "D",
-                    "Diff",
-                    "Derivative",
-                    "derivative",
-                    "dot",
-                    "ddot",
-                ]
-                .contains(&name)
+                && ["diff", "D", "Diff", "Derivative", "derivative", "dot", "ddot"].contains(&name)
             {
                 let end = matching_close(rest, 1).map_or(token.end, |place| rest[place].end);
                 return Err(self.derivative_error(token.start..end, "x", None));
@@ -99,8 +87,7 @@ impl Parser<'_> {
             }
             let kinds: Vec<Kind> = rest.iter().take(8).map(|token| token.kind).collect();
             let is_time = |place: usize| {
-                rest.get(place)
-                    .is_some_and(|token| ["dt", "dt2"].contains(&text(token)))
+                rest.get(place).is_some_and(|token| ["dt", "dt2"].contains(&text(token)))
             };
             // d, d2x, dx over dt; then d^2 x over dt^2.
             let numerator = name.strip_prefix('d');
@@ -117,19 +104,15 @@ impl Parser<'_> {
                     Kind::Name,
                     ..,
                 ] if name == "d" && is_time(5) => (5, Some(text(&rest[3])), 2),
-                [
-                    Kind::Name,
-                    Kind::Power,
-                    Kind::Number,
-                    Kind::Divide,
-                    Kind::Name,
-                    ..,
-                ] if name == "d" && is_time(4) => (4, Some(""), 2),
+                [Kind::Name, Kind::Power, Kind::Number, Kind::Divide, Kind::Name, ..]
+                    if name == "d" && is_time(4) =>
+                {
+                    (4, Some(""), 2)
+                }
                 _ => continue,
             };
-            let Some(letter) = letter
-                .map(|rest| rest.trim_start_matches('2'))
-                .filter(|letter| letter.len() <= 1)
+            let Some(letter) =
+                letter.map(|rest| rest.trim_start_matches('2')).filter(|letter| letter.len() <= 1)
             else {
                 continue;
             };
@@ -150,10 +133,7 @@ impl Parser<'_> {
         letter: &str,
         order: Option<usize>,
     ) -> ParseError {
-        let message = format!(
-            "{}: derivatives are written with primes",
-            self.quoted(span.clone())
-        );
+        let message = format!("{}: derivatives are written with primes", self.quoted(span.clone()));
         let help = match order {
             Some(order) => format!("try `{letter}{}`", "'".repeat(order)),
             None => "try `x'` for the velocity, `x''` for the acceleration".into(),
@@ -176,24 +156,16 @@ impl Parser<'_> {
         };
         let mut right = self.next;
         if self.peek() == Kind::Name
-            && self
-                .tokens
-                .get(right + 1)
-                .is_some_and(|next| next.kind == Kind::Open)
+            && self.tokens.get(right + 1).is_some_and(|next| next.kind == Kind::Open)
         {
             right += 1;
         }
         if self.tokens[right].kind == Kind::Open {
             right = matching_close(&self.tokens, right).unwrap_or(right);
         }
-        let (left, right) = (
-            self.tokens[left].start..previous.end,
-            self.token().start..self.tokens[right].end,
-        );
-        let message = format!(
-            "{}: a product needs its sign",
-            self.quoted(left.start..right.end)
-        );
+        let (left, right) =
+            (self.tokens[left].start..previous.end, self.token().start..self.tokens[right].end);
+        let message = format!("{}: a product needs its sign", self.quoted(left.start..right.end));
         let help = format!(
             "try `{}*{}`",
             shortened(&self.text[left.clone()]),
@@ -227,40 +199,23 @@ impl Parser<'_> {
             .map_or(token.end, |place| self.tokens[place].end);
         let product = format!("{name}*{}", shortened(&self.text[token.end..argument]));
         if name.trim_end_matches('\'').len() == 1 || name == "pi" {
-            let message = format!(
-                "{}: a product needs its sign",
-                self.quoted(token.start..argument)
-            );
+            let message =
+                format!("{}: a product needs its sign", self.quoted(token.start..argument));
             return self.error(token.start..argument, &message, &format!("try `{product}`"));
         }
-        let names: Vec<&str> = Function::all()
-            .map(Function::name)
-            .chain(["sqrt"])
-            .collect();
-        let help = format!(
-            "the functions are {}; a product is `{product}`",
-            names.join(" ")
-        );
-        self.error(
-            token.span(),
-            &format!("there is no function `{name}`"),
-            &help,
-        )
+        let names: Vec<&str> = Function::all().map(Function::name).chain(["sqrt"]).collect();
+        let help = format!("the functions are {}; a product is `{product}`", names.join(" "));
+        self.error(token.span(), &format!("there is no function `{name}`"), &help)
     }
 
     pub(super) fn missing_operand(&self) -> ParseError {
         let token = self.token();
-        let previous = self
-            .next
-            .checked_sub(1)
-            .and_then(|place| self.tokens.get(place));
+        let previous = self.next.checked_sub(1).and_then(|place| self.tokens.get(place));
         match (previous, token.kind) {
             (None, Kind::Close) => self.unexpected(),
             (Some(previous), _) => {
-                let message = format!(
-                    "something is missing after {}",
-                    self.quoted(previous.span())
-                );
+                let message =
+                    format!("something is missing after {}", self.quoted(previous.span()));
                 self.error(previous.span(), &message, "")
             }
             (None, _) => {
@@ -353,10 +308,7 @@ fn similar_function(name: &str) -> Option<&'static str> {
     if name.len() < 2 || name.ends_with('\'') {
         return None;
     }
-    let names = Function::all()
-        .map(Function::name)
-        .chain(["sqrt"])
-        .filter(|known| known.len() > 1);
+    let names = Function::all().map(Function::name).chain(["sqrt"]).filter(|known| known.len() > 1);
     let closest = names
         .map(|known| (osa_distance(&folded, known), known))
         .min_by_key(|(distance, _)| *distance)?;

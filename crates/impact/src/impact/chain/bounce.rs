@@ -126,11 +126,7 @@ impl Barrier {
         if share.is_nan() || share < LEANS || depth > DEEPEST {
             return None;
         }
-        let Numbers {
-            duration: [zeroth, first, second],
-            area,
-            loss,
-        } = &*NUMBERS;
+        let Numbers { duration: [zeroth, first, second], area, loss } = &*NUMBERS;
         // The less the barrier takes of the work, the less is lost in it.
         let loss = hunt_crossley::loss(
             product * (1.0 - share) * (1.0 + share * (LOSS_OF_A_FALL / loss - 1.0)),

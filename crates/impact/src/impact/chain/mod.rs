@@ -122,11 +122,8 @@ pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulat
         t: 0.0,
         state: [start.x, start.velocity],
         count: 0,
-        remembered: [Remembered {
-            ratio: (-3.0 * model.zeta).exp(),
-            change: 0.0,
-            guessed: true,
-        }; 2],
+        remembered: [Remembered { ratio: (-3.0 * model.zeta).exp(), change: 0.0, guessed: true };
+            2],
         impacts: Vec::with_capacity(MANY),
         turns: Vec::with_capacity(2 * MANY),
         path: Path::new(),
@@ -168,14 +165,7 @@ struct Leg {
 impl Leg {
     /// A leg of the free swing, of so much time and area, on which friction does nothing.
     fn free(time: f64, area: f64) -> Self {
-        Self {
-            time,
-            area,
-            length: 0.0,
-            lag: 0.0,
-            rubbed: 0.0,
-            phase: (0.0, 1.0),
-        }
+        Self { time, area, length: 0.0, lag: 0.0, rubbed: 0.0, phase: (0.0, 1.0) }
     }
 }
 
@@ -227,11 +217,7 @@ impl<'a> Chain<'a> {
             let side = if x > 0.0 { Side::Right } else { Side::Left };
             Place::Turn(side, Spot::at(x.abs()), None)
         } else {
-            let to = if velocity > 0.0 {
-                Side::Right
-            } else {
-                Side::Left
-            };
+            let to = if velocity > 0.0 { Side::Right } else { Side::Left };
             let spot = Spot::at(to.sign() * x);
             let touched = self.barrier(to).filter(|barrier| barrier.spot == spot);
             let place = Place::Leaving(to, spot, energy);
@@ -276,10 +262,7 @@ impl<'a> Chain<'a> {
         let loss = leg.area / leg.time * growth;
         match alpha == 0.0 || leg.length == 0.0 {
             true => (loss, growth),
-            false => (
-                loss + alpha * leg.length,
-                growth + alpha / Spot::turn(swing.energy).x.sin(),
-            ),
+            false => (loss + alpha * leg.length, growth + alpha / Spot::turn(swing.energy).x.sin()),
         }
     }
 
@@ -325,11 +308,7 @@ impl<'a> Chain<'a> {
                 let ratio = reference / energy;
                 self.remembered[kind as usize] = Remembered {
                     ratio,
-                    change: if last.guessed {
-                        0.0
-                    } else {
-                        ratio - last.ratio
-                    },
+                    change: if last.guessed { 0.0 } else { ratio - last.ratio },
                     guessed: false,
                 };
                 return Some((swing, leg));
@@ -342,9 +321,7 @@ impl<'a> Chain<'a> {
     /// passed with another energy.
     fn later(swing: &Swing, (sine, cosine): (f64, f64), spot: &Spot, energy: f64) -> f64 {
         let (own_sine, own_cosine) = spot.phase(energy);
-        let change = (own_sine * cosine - own_cosine * sine)
-            .clamp(-1.0, 1.0)
-            .asin();
+        let change = (own_sine * cosine - own_cosine * sine).clamp(-1.0, 1.0).asin();
         change / (1.0 - 0.5 * swing.energy * sine * sine).sqrt()
     }
 
@@ -421,19 +398,13 @@ impl<'a> Chain<'a> {
         // The mean energy on the way there is greater, on the way back less: dK/dE = area/(8 m (1 -
         // m)) with E = 2 m.
         let stretched = swing.quarter.area / (swing.energy * (2.0 - swing.energy));
-        for (energies, turn, side) in [
-            ([from, first], first, side.opposite()),
-            ([first, second], second, side),
-        ] {
+        for (energies, turn, side) in
+            [([from, first], first, side.opposite()), ([first, second], second, side)]
+        {
             let [before, after] = energies;
             let mean = 0.5 * (before.energy + after.energy);
             let time = leg.time + stretched * (mean - swing.energy);
-            self.swing(
-                [before.energy, after.energy],
-                time,
-                side,
-                [-before.x, after.x],
-            );
+            self.swing([before.energy, after.energy], time, side, [-before.x, after.x]);
             self.turned(side, turn, None)?;
             if self.stop.is_some() {
                 return None;
@@ -488,12 +459,7 @@ impl<'a> Chain<'a> {
             if let Some((swing, leg)) = self.reference(energy, Kind::FromPlace, crossing) {
                 let arrived = swing.energy - self.below(&leg);
                 if arrived > ahead.spot.energy {
-                    self.swing(
-                        [energy, arrived],
-                        2.0 * leg.time,
-                        to,
-                        [spot.x, ahead.spot.x],
-                    );
+                    self.swing([energy, arrived], 2.0 * leg.time, to, [spot.x, ahead.spot.x]);
                     return self.contact(ahead, (2.0 * (arrived - ahead.spot.energy)).sqrt());
                 }
             }
@@ -538,11 +504,7 @@ impl<'a> Chain<'a> {
             self.held(x);
             return None;
         }
-        if self
-            .settings
-            .rest_energy
-            .is_some_and(|rest| turn.energy <= rest)
-        {
+        if self.settings.rest_energy.is_some_and(|rest| turn.energy <= rest) {
             self.stop = Some(Stop::RestEnergy);
         } else if self.settings.stop_at_rest && has_rested(self.model, &self.turns, self.level) {
             self.stop = Some(Stop::AtRest);
@@ -625,10 +587,7 @@ impl<'a> Chain<'a> {
 
     /// What has no closed form: the rest of the motion is followed by Taylor series.
     fn integrate(&mut self) -> Option<Place> {
-        let left = Settings {
-            duration: self.settings.duration - self.t,
-            ..*self.settings
-        };
+        let left = Settings { duration: self.settings.duration - self.t, ..*self.settings };
         let [x, velocity] = self.state;
         let motion = taylor::alone(*self.model, Start { x, velocity }, left);
         self.stop = Some(motion.stop.later(self.t));
@@ -650,13 +609,9 @@ impl<'a> Chain<'a> {
                     .turns
                     .iter()
                     .filter(|turn| turn.t > 0.0)
-                    .map(|turn| Turn {
-                        t: from + turn.t,
-                        ..*turn
-                    }),
+                    .map(|turn| Turn { t: from + turn.t, ..*turn }),
             );
-            self.impacts
-                .extend(motion.impacts.iter().map(|impact| impact.later(from)));
+            self.impacts.extend(motion.impacts.iter().map(|impact| impact.later(from)));
             self.path.extend(&motion.path, from);
         }
         let [end_x, end_velocity] = self.state;
@@ -714,11 +669,7 @@ fn rubbed(turn: f64, alpha: f64) -> f64 {
     let mut next = turn - 2.0 * alpha;
     for _ in 0..MOST_NEWTON {
         let half = 0.5 * (turn + next);
-        let spread = if half.abs() < 1e-8 {
-            1.0
-        } else {
-            half / half.sin()
-        };
+        let spread = if half.abs() < 1e-8 { 1.0 } else { half / half.sin() };
         let found = turn - 2.0 * (alpha * spread).min(1.0).asin();
         let change = found - next;
         next = found;
@@ -755,10 +706,7 @@ pub(super) fn actions(model: &Model, amplitude: f64) -> (f64, f64) {
         Some(x) => swing.reach(&Spot::at(side.sign() * x)).area,
         None => swing.quarter.area,
     };
-    (
-        4.0 * swing.quarter.area,
-        2.0 * (reach(Side::Left) + reach(Side::Right)),
-    )
+    (4.0 * swing.quarter.area, 2.0 * (reach(Side::Left) + reach(Side::Right)))
 }
 
 /// The closed form of a stretch between two energies and two places, towards a side.
@@ -771,9 +719,7 @@ fn closed(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) -> ClosedFo
     // own.
     let phase = |energy: f64, place: f64| {
         let (sine, _) = Spot::at(place).phase(energy);
-        middle
-            .reach(&Spot::at(2.0 * (mean * sine).clamp(-1.0, 1.0).asin()))
-            .time
+        middle.reach(&Spot::at(2.0 * (mean * sine).clamp(-1.0, 1.0).asin())).time
     };
     let [start, end] = [0, 1].map(|index| phase(energies[index], places[index]));
     ClosedForm::Swing {
@@ -802,44 +748,22 @@ mod tests {
 
     #[test]
     fn without_damping_the_chain_is_the_exact_pendulum() {
-        let model = Model {
-            right: None,
-            ..Model::default()
-        };
-        let settings = Settings {
-            duration: 40.0,
-            ..Settings::default()
-        };
+        let model = Model { right: None, ..Model::default() };
+        let settings = Settings { duration: 40.0, ..Settings::default() };
         for amplitude in [0.01, 1.5, 3.0] {
-            let start = Start {
-                x: -amplitude,
-                velocity: 0.0,
-            };
+            let start = Start { x: -amplitude, velocity: 0.0 };
             let formulas = chain(&model, start, &settings).expect("a chain");
             let truth = taylor::alone(model, start, settings);
             let difference = formulas.difference(&truth, 2001);
-            assert!(
-                difference.displacement < 1e-9 * amplitude,
-                "{amplitude}: {difference:?}"
-            );
-            assert!(
-                difference.velocity < 1e-9 * amplitude,
-                "{amplitude}: {difference:?}"
-            );
+            assert!(difference.displacement < 1e-9 * amplitude, "{amplitude}: {difference:?}");
+            assert!(difference.velocity < 1e-9 * amplitude, "{amplitude}: {difference:?}");
         }
     }
 
     #[test]
     fn dry_friction_alone_turns_where_the_energy_says() {
-        let model = Model {
-            alpha: 0.03,
-            right: None,
-            ..Model::default()
-        };
-        let settings = Settings {
-            duration: 120.0,
-            ..Settings::default()
-        };
+        let model = Model { alpha: 0.03, right: None, ..Model::default() };
+        let settings = Settings { duration: 120.0, ..Settings::default() };
         let formulas = chain(&model, Start::default(), &settings).expect("a chain");
         let turns: Vec<f64> = formulas.turns.iter().map(|turn| turn.x.abs()).collect();
         for pair in turns.windows(2).take(10) {
@@ -848,12 +772,7 @@ mod tests {
         }
         // Held where the weight is less than the friction, as by the integration, to the end.
         let truth = taylor::alone(model, Start::default(), settings);
-        assert!(
-            (formulas.end_x - truth.end_x).abs() < 1e-3,
-            "{} {}",
-            formulas.end_x,
-            truth.end_x
-        );
+        assert!((formulas.end_x - truth.end_x).abs() < 1e-3, "{} {}", formulas.end_x, truth.end_x);
         assert_eq!(formulas.end_velocity, 0.0);
     }
 
@@ -867,14 +786,8 @@ mod tests {
             left: Some(-0.6),
             ..Model::default()
         };
-        let start = Start {
-            x: 0.1,
-            velocity: 1.2,
-        };
-        let settings = Settings {
-            duration: 30.0,
-            ..Settings::default()
-        };
+        let start = Start { x: 0.1, velocity: 1.2 };
+        let settings = Settings { duration: 30.0, ..Settings::default() };
         let motion = chain(&model, start, &settings).expect("a chain");
         let pieces = motion.path.pieces();
         assert!(pieces.len() > 10);
@@ -886,11 +799,7 @@ mod tests {
                 continue;
             };
             let (left, right) = (before.at(pair[0].end - pair[0].start).0, after.at(0.0).0);
-            assert!(
-                (left - right).abs() < 1e-8,
-                "{left} {right} at {}",
-                pair[0].end
-            );
+            assert!((left - right).abs() < 1e-8, "{left} {right} at {}", pair[0].end);
         }
     }
 
@@ -898,41 +807,19 @@ mod tests {
     fn what_has_no_chain_says_why() {
         let start = Start::default();
         let refused = |model: Model, start: Start| {
-            chain(&model, start, &Settings::default())
-                .unwrap_err()
-                .to_string()
+            chain(&model, start, &Settings::default()).unwrap_err().to_string()
         };
-        let driven = Model {
-            beta: 0.1,
-            frequency_ratio: 1.0,
-            ..Model::default()
-        };
+        let driven = Model { beta: 0.1, frequency_ratio: 1.0, ..Model::default() };
         assert!(refused(driven, start).contains("beta = 0.1"));
-        let arctangent = Model {
-            alpha: 0.1,
-            friction: Friction::Arctangent,
-            ..Model::default()
-        };
+        let arctangent = Model { alpha: 0.1, friction: Friction::Arctangent, ..Model::default() };
         assert!(refused(arctangent, start).contains("exact"));
-        let heavy = Model {
-            zeta: 0.7,
-            ..Model::default()
-        };
+        let heavy = Model { zeta: 0.7, ..Model::default() };
         assert!(refused(heavy, start).contains("0.7"));
-        let over = Start {
-            x: 0.0,
-            velocity: 2.1,
-        };
+        let over = Start { x: 0.0, velocity: 2.1 };
         assert!(refused(Model::default(), over).contains("turns over"));
-        let upright = Start {
-            x: -3.2,
-            velocity: 0.0,
-        };
+        let upright = Start { x: -3.2, velocity: 0.0 };
         assert!(refused(Model::default(), upright).contains("starts at x = -3.2"));
-        let inside = Start {
-            x: 0.4,
-            velocity: 0.0,
-        };
+        let inside = Start { x: 0.4, velocity: 0.0 };
         assert!(refused(Model::default(), inside).contains("right barrier"));
     }
 }

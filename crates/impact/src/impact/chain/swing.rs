@@ -40,30 +40,18 @@ impl Spot {
     /// The spot at this angle.
     pub fn at(x: f64) -> Self {
         let half = (0.5 * x).sin();
-        Self {
-            x,
-            half,
-            energy: 2.0 * half * half,
-        }
+        Self { x, half, energy: 2.0 * half * half }
     }
 
     /// The turning point of a swing of this energy, on the side of positive angles.
     pub fn turn(energy: f64) -> Self {
         let half = (0.5 * energy.max(0.0)).sqrt().min(1.0);
-        Self {
-            x: 2.0 * half.asin(),
-            half,
-            energy,
-        }
+        Self { x: 2.0 * half.asin(), half, energy }
     }
 
     /// The same on the other side.
     pub fn mirrored(&self) -> Self {
-        Self {
-            x: -self.x,
-            half: -self.half,
-            ..*self
-        }
+        Self { x: -self.x, half: -self.half, ..*self }
     }
 
     /// (sin phi, cos phi) of the swing of this energy here; 1 and 0 at its turning point and beyond
@@ -102,10 +90,7 @@ impl Swing {
             }
             false => 4.0 * (ellpe(parameter) - (1.0 - parameter) * time),
         };
-        Self {
-            energy,
-            quarter: Stretch { time, area },
-        }
+        Self { energy, quarter: Stretch { time, area } }
     }
 
     /// From the bottom to this spot, on the way to the right; beyond the turning point as far as
@@ -121,10 +106,7 @@ impl Swing {
         let parameter = 0.5 * self.energy;
         let (first, second) = symmetric_integrals(cosine * cosine, 1.0 - parameter * sine * sine);
         let time = sine * first;
-        Stretch {
-            time,
-            area: 4.0 * parameter * (time - sine * sine * sine * second / 3.0),
-        }
+        Stretch { time, area: 4.0 * parameter * (time - sine * sine * sine * second / 3.0) }
     }
 }
 
@@ -187,10 +169,7 @@ mod tests {
             let swing = Swing::new(Spot::at(amplitude).energy);
             let m = 0.5 * swing.energy;
             let (first, second) = (ellipk(m).unwrap(), ellipe(m).unwrap());
-            assert!(
-                (swing.quarter.time / first - 1.0).abs() < 1e-13,
-                "{amplitude}"
-            );
+            assert!((swing.quarter.time / first - 1.0).abs() < 1e-13, "{amplitude}");
             let area = 4.0 * (second - (1.0 - m) * first);
             assert!((swing.quarter.area - area).abs() < 1e-14, "{amplitude}");
             for part in [-0.999_999, -0.6, -0.1, 1e-9, 0.2, 0.5, 0.9, 0.999] {
@@ -236,10 +215,7 @@ mod tests {
             let [below, above] = [energy - step, energy + step]
                 .map(|energy| Swing::new(energy).reach(&Spot::at(x)).area);
             let time = Swing::new(energy).reach(&Spot::at(x)).time;
-            assert!(
-                ((above - below) / (2.0 * step) / time - 1.0).abs() < 1e-7,
-                "{amplitude} {x}"
-            );
+            assert!(((above - below) / (2.0 * step) / time - 1.0).abs() < 1e-7, "{amplitude} {x}");
         }
     }
 }

@@ -141,10 +141,7 @@ impl ExactContact {
         } else {
             let (w, rate) = invert(&self.second, (0.5 * self.duration - time).abs());
             let shallower = 1.0 - w * w;
-            (
-                self.depth * shallower * shallower,
-                4.0 * self.depth.sqrt() * w / rate,
-            )
+            (self.depth * shallower * shallower, 4.0 * self.depth.sqrt() * w / rate)
         };
         (depth, if falling { -speed } else { speed })
     }
@@ -175,12 +172,7 @@ impl ExactContact {
         // Half the contact is enough, and its middle is where the sines add up to the most.
         let times = (1..=256).map(|part| 0.5 * duration * f64::from(part) / 256.0);
         let mut left: Vec<(f64, f64)> = times
-            .map(|time| {
-                (
-                    time,
-                    self.position(time) - series.parabola * time * (duration - time),
-                )
-            })
+            .map(|time| (time, self.position(time) - series.parabola * time * (duration - time)))
             .collect();
         for coefficient in self.coefficients() {
             let angle = (2 * series.harmonics.len() + 1) as f64 * PI / duration;
@@ -225,10 +217,8 @@ impl ExactContact {
         });
         let harmonic = |number: usize| {
             let k = (2 * number + 1) as f64;
-            let sum: f64 = elements
-                .iter()
-                .map(|(angle, element)| (k * angle).cos() * element)
-                .sum();
+            let sum: f64 =
+                elements.iter().map(|(angle, element)| (k * angle).cos() * element).sum();
             4.0 / (k * PI) * (sum - self.force_at_touch / (k * wave) / (k * wave))
         };
         (0..MOST_HARMONICS).map(harmonic).collect()
@@ -257,13 +247,7 @@ impl SineSeries {
     /// The series of these numbers, a motion of its own: T, the coefficient of s (T - s), and b_1,
     /// b_3, ..
     pub fn new(duration: f64, parabola: f64, harmonics: Vec<f64>) -> Self {
-        Self {
-            duration,
-            parabola,
-            harmonics,
-            even: vec![],
-            deviation: 0.0,
-        }
+        Self { duration, parabola, harmonics, even: vec![], deviation: 0.0 }
     }
 
     /// The series of a motion from touch to release, given at any time and as deep as `depth`: as
@@ -288,10 +272,7 @@ impl SineSeries {
         depth: f64,
         tolerance: f64,
     ) -> Self {
-        let mut series = Self {
-            deviation: f64::INFINITY,
-            ..Self::new(duration, parabola, vec![])
-        };
+        let mut series = Self { deviation: f64::INFINITY, ..Self::new(duration, parabola, vec![]) };
         let sine = |number: usize, part: usize| {
             (PI * ((number * part) % (2 * PARTS)) as f64 / PARTS as f64).sin()
         };
@@ -308,9 +289,7 @@ impl SineSeries {
                 continue;
             }
             // The trapezium is exact but for harmonics beyond twice the number of parts.
-            let sum: f64 = (1..PARTS)
-                .map(|part| left[part - 1] * sine(number, part))
-                .sum();
+            let sum: f64 = (1..PARTS).map(|part| left[part - 1] * sine(number, part)).sum();
             let coefficient = 2.0 / PARTS as f64 * sum;
             for part in 1..PARTS {
                 left[part - 1] -= coefficient * sine(number, part);
@@ -319,10 +298,8 @@ impl SineSeries {
                 0 => series.even.push(coefficient),
                 _ => series.harmonics.push(coefficient),
             }
-            series.deviation = left
-                .iter()
-                .fold(0.0, |worst: f64, rest| worst.max(rest.abs()))
-                / depth;
+            series.deviation =
+                left.iter().fold(0.0, |worst: f64, rest| worst.max(rest.abs())) / depth;
             if series.deviation <= tolerance {
                 break;
             }
@@ -388,10 +365,7 @@ impl SineSeries {
                 (false, _) => "+ ",
                 (true, _) => "- ",
             };
-            text += &format!(
-                " {sign}{} {function}",
-                significant(coefficient.abs(), digits)
-            );
+            text += &format!(" {sign}{} {function}", significant(coefficient.abs(), digits));
         }
         text
     }
@@ -411,11 +385,7 @@ struct Running<F> {
 
 impl<F: Fn(f64) -> f64> Running<F> {
     fn new(integrand: F, whole: f64) -> Self {
-        Self {
-            integrand,
-            whole,
-            known: RefCell::default(),
-        }
+        Self { integrand, whole, known: RefCell::default() }
     }
 
     fn up_to(&self, place: f64) -> Result<f64, QuadratureError> {
@@ -443,11 +413,7 @@ fn work_by_sections(
     const PIECES: i32 = 60;
     const SECTION: f64 = 0.618_033_988_749_894_9;
     let end_of = |piece: i32| {
-        if piece < PIECES {
-            q - q * SECTION.powi(piece)
-        } else {
-            q
-        }
+        if piece < PIECES { q - q * SECTION.powi(piece) } else { q }
     };
     (0..PIECES)
         .map(|piece| {
@@ -482,9 +448,7 @@ fn deepest_root(force: impl Fn(f64) -> f64, speed: f64) -> Result<f64, ContactEr
     }
     let mut deepest = find_root(left, low, high)?;
     // A force that turns it back before, by a hump that the search stepped over.
-    let earlier = (1..64)
-        .map(|part| deepest * f64::from(part) / 64.0)
-        .find(|&q| left(q) < 0.0);
+    let earlier = (1..64).map(|part| deepest * f64::from(part) / 64.0).find(|&q| left(q) < 0.0);
     if let Some(beyond) = earlier {
         (low, high) = (beyond - deepest / 64.0, beyond);
         deepest = find_root(left, low, high)?;
@@ -515,10 +479,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn integrated(force: &dyn Fn(f64) -> f64, contact: &ExactContact) -> Trajectory {
-        by_runge_kutta(
-            |d, _| force(d),
-            [contact.speed, contact.depth, 2.0 * contact.duration],
-        )
+        by_runge_kutta(|d, _| force(d), [contact.speed, contact.depth, 2.0 * contact.duration])
     }
 
     #[test]
@@ -569,9 +530,7 @@ mod tests {
     fn a_jump_on_the_way_is_met_in_closed_form() {
         let (stiffness, speed) = (400.0_f64, 1.0_f64);
         let omega = stiffness.sqrt();
-        let places = (0..200)
-            .map(|part| (2e-4 * f64::from(part), 1e-4))
-            .chain([(0.02, 1e-11)]);
+        let places = (0..200).map(|part| (2e-4 * f64::from(part), 1e-4)).chain([(0.02, 1e-11)]);
         for (jump_at, bound) in places {
             for jump in [1e-3, 1.0, 30.0] {
                 let contact = ExactContact::new(
@@ -638,9 +597,8 @@ mod tests {
                 "{case}: {}",
                 contact.duration
             );
-            let fastest = path
-                .samples(201)
-                .fold(0.0_f64, |fastest, state| fastest.max(state.v.abs()));
+            let fastest =
+                path.samples(201).fold(0.0_f64, |fastest, state| fastest.max(state.v.abs()));
             for state in path.samples(201) {
                 let (depth, velocity) = contact.at(state.t);
                 assert!(
@@ -670,12 +628,9 @@ mod tests {
 
     #[test]
     fn a_spring_with_a_preload_is_its_closed_form() {
-        for (a, stiffness, speed) in [
-            (0.3, 1e4, 1.0),
-            (-0.3, 1.0, 1e-3),
-            (5.0, 2.0, 1e-4),
-            (-2.0, 1e9, 1e-6),
-        ] {
+        for (a, stiffness, speed) in
+            [(0.3, 1e4, 1.0), (-0.3, 1.0, 1e-3), (5.0, 2.0, 1e-4), (-2.0, 1e9, 1e-6)]
+        {
             let contact = ExactContact::new(|d| a + stiffness * d, speed).unwrap();
             let wave = f64::sqrt(stiffness);
             let centre = a / stiffness;
@@ -721,27 +676,15 @@ mod tests {
                 "barrier {barrier}, gamma {stiffness}, v {speed}: {} harmonics",
                 series.harmonics.len()
             );
-            assert!(
-                series.deviation <= 1e-6,
-                "{case}, {} left",
-                series.deviation
-            );
+            assert!(series.deviation <= 1e-6, "{case}, {} left", series.deviation);
             assert!(series.harmonics.len() <= allowed, "{case}");
             let mut worst = 0.0_f64;
             for part in 0..=777 {
                 let time = contact.duration * f64::from(part) / 777.0;
                 worst = worst.max((series.at(time).0 - contact.position(time)).abs());
             }
-            assert!(
-                worst <= 1.1e-6 * contact.depth,
-                "{case}: {}",
-                worst / contact.depth
-            );
-            assert!(
-                series.closed_form(9).starts_with("d(s) = "),
-                "{}",
-                series.closed_form(9)
-            );
+            assert!(worst <= 1.1e-6 * contact.depth, "{case}: {}", worst / contact.depth);
+            assert!(series.closed_form(9).starts_with("d(s) = "), "{}", series.closed_form(9));
         }
         // Whatever is asked for, what is left is told.
         let hertz = ExactContact::new(|d| 1e6 * d.powf(1.5), 1.0).unwrap();
@@ -760,36 +703,20 @@ mod tests {
     #[test]
     fn what_is_no_contact_is_refused() {
         for speed in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(
-                ExactContact::new(|d| d, speed),
-                Err(ContactError::NotPositive(_))
-            ));
+            assert!(matches!(ExactContact::new(|d| d, speed), Err(ContactError::NotPositive(_))));
         }
-        assert!(matches!(
-            ExactContact::new(|d| d, 1e-200),
-            Err(ContactError::Range { .. })
-        ));
-        for force in [
-            |_: f64| 0.0,
-            |_: f64| -1.0,
-            |d: f64| (-d).exp(),
-            |d: f64| (1.0 - d * d).sqrt() / 9.0,
-        ] {
+        assert!(matches!(ExactContact::new(|d| d, 1e-200), Err(ContactError::Range { .. })));
+        for force in
+            [|_: f64| 0.0, |_: f64| -1.0, |d: f64| (-d).exp(), |d: f64| (1.0 - d * d).sqrt() / 9.0]
+        {
             let refused = ExactContact::new(force, 5.0).unwrap_err();
-            assert!(
-                matches!(refused, ContactError::NeverTurns { .. }),
-                "{refused}"
-            );
+            assert!(matches!(refused, ContactError::NeverTurns { .. }), "{refused}");
         }
         assert!(ExactContact::new(|_| f64::NAN, 1.0).is_err());
         // Up to a hump it turns, over it it does not: the search finds the first place.
         let hump = |d: f64| 10.0 * (2.0 * d).sin();
         let contact = ExactContact::new(hump, 4.0).unwrap();
-        assert!(
-            (10.0 * contact.depth.sin().powi(2) - 8.0).abs() < 1e-12,
-            "{}",
-            contact.depth
-        );
+        assert!((10.0 * contact.depth.sin().powi(2) - 8.0).abs() < 1e-12, "{}", contact.depth);
     }
 
     fn wild() -> impl Strategy<Value = f64> {

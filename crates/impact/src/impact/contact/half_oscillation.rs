@@ -164,16 +164,8 @@ impl HalfOscillation<'_> {
         if size.is_nan() || size > 1e-9 || unknown[count] <= 0.0 {
             return Err(ContactError::NotOscillating);
         }
-        let harmonics = unknown
-            .iter()
-            .take(count)
-            .map(|part| scale * part)
-            .collect();
-        Ok(SineSeries::new(
-            PI / (frequency * unknown[count]),
-            0.0,
-            harmonics,
-        ))
+        let harmonics = unknown.iter().take(count).map(|part| scale * part).collect();
+        Ok(SineSeries::new(PI / (frequency * unknown[count]), 0.0, harmonics))
     }
 }
 
@@ -181,10 +173,7 @@ impl HalfOscillation<'_> {
 fn quarter() -> impl Iterator<Item = (f64, f64)> {
     let end = FRAC_PI_2.sqrt();
     (0..4).flat_map(move |panel| {
-        let (from, to) = (
-            end * f64::from(panel) / 4.0,
-            end * f64::from(panel + 1) / 4.0,
-        );
+        let (from, to) = (end * f64::from(panel) / 4.0, end * f64::from(panel + 1) / 4.0);
         nodes_and_weights(from, to).map(|(u, weight)| (u * u, 2.0 * u * weight))
     })
 }
@@ -236,10 +225,7 @@ fn newton_step(
         let (mut above, mut below) = (at.clone(), at.clone());
         above[column] += step;
         below[column] -= step;
-        jacobian.set_column(
-            column,
-            &((residual(&above) - residual(&below)) / (2.0 * step)),
-        );
+        jacobian.set_column(column, &((residual(&above) - residual(&below)) / (2.0 * step)));
     }
     jacobian.lu().solve(&residual(at))
 }

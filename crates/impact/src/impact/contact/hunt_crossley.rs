@@ -99,19 +99,14 @@ impl HuntCrossley {
         let damping = not_negative("damping lambda", damping)?;
         let x = damping * speed;
         if x > LARGEST {
-            return Err(ContactError::Range {
-                quantity: "product of damping and speed",
-            });
+            return Err(ContactError::Range { quantity: "product of damping and speed" });
         }
         let (m, inverse) = (exponent + 1.0, 1.0 / (exponent + 1.0));
         let undamped =
             (0.5 * m).powf(inverse) * speed.powf(2.0 * inverse) * stiffness.powf(-inverse);
         let depth = in_range("depth", undamped * (1.0 + excess(x)).powf(inverse))?;
         let loss = loss(x);
-        let motion = Motion {
-            x,
-            whole: signed_root(x),
-        };
+        let motion = Motion { x, whole: signed_root(x) };
 
         let scale = depth / speed;
         let half_way = 0.5_f64.powf(0.5 * inverse);
@@ -142,9 +137,7 @@ impl HuntCrossley {
 
         let energy_lost = 0.5 * speed * loss * (2.0 - loss) * speed;
         if !energy_lost.is_finite() {
-            return Err(ContactError::Range {
-                quantity: "energy lost",
-            });
+            return Err(ContactError::Range { quantity: "energy lost" });
         }
         let (peak_depth, factor) = motion.peak(exponent);
         // gamma D^n = (m v^2/2) (1 + psi)/D.
@@ -184,10 +177,7 @@ impl HuntCrossley {
             let (phi, _) = invert(&self.turning, time - length(&self.loading));
             (phi.sin().powf(2.0 / m), phi.cos())
         };
-        (
-            self.depth * part,
-            self.speed * self.motion().speed_ratio(sigma),
-        )
+        (self.depth * part, self.speed * self.motion().speed_ratio(sigma))
     }
 
     /// The depth at a time since touch, in the unit of x.
@@ -225,9 +215,8 @@ impl HuntCrossley {
 
     fn at_depth(&self, depth: f64, sign: f64) -> (f64, f64) {
         let depth = within(depth, self.depth);
-        let ratio = self
-            .motion()
-            .speed_ratio(sign * remaining(depth / self.depth, self.exponent + 1.0));
+        let ratio =
+            self.motion().speed_ratio(sign * remaining(depth / self.depth, self.exponent + 1.0));
         let force =
             self.stiffness * depth.powf(self.exponent) * (1.0 + self.damping * self.speed * ratio);
         (self.speed * ratio, force)
@@ -235,10 +224,7 @@ impl HuntCrossley {
 
     fn motion(&self) -> Motion {
         let x = self.damping * self.speed;
-        Motion {
-            x,
-            whole: signed_root(x),
-        }
+        Motion { x, whole: signed_root(x) }
     }
 }
 
@@ -307,9 +293,7 @@ pub(in crate::impact) fn excess(z: f64) -> f64 {
     }
     // 9^-17 < 2^-53, and 100^-8.
     let terms = if u.abs() < 0.1 { 9 } else { 18 };
-    let series = (1..terms)
-        .rev()
-        .fold(0.0, |sum, k| sum * (u * u) + ODD_RECIPROCALS[k]);
+    let series = (1..terms).rev().fold(0.0, |sum, k| sum * (u * u) + ODD_RECIPROCALS[k]);
     -u - u * (1.0 - u) * (1.0 - u) * series
 }
 
@@ -446,11 +430,7 @@ impl Motion {
 
     /// sigma v/u at the greatest depth.
     fn slope_at_rest(&self) -> f64 {
-        if self.x < 1e-9 {
-            1.0 + self.x / 3.0
-        } else {
-            self.x / self.whole
-        }
+        if self.x < 1e-9 { 1.0 + self.x / 3.0 } else { self.x / self.whole }
     }
 
     /// d/D at which the force is greatest, and the force there in units of gamma D^n.
@@ -461,11 +441,7 @@ impl Motion {
             self.x * self.speed_ratio(sigma)
                 - 0.5 * m / n * self.whole * self.whole * (1.0 - sigma * sigma)
         };
-        let sigma = if self.x == 0.0 {
-            0.0
-        } else {
-            find_root(late, 0.0, 1.0).unwrap_or(0.0)
-        };
+        let sigma = if self.x == 0.0 { 0.0 } else { find_root(late, 0.0, 1.0).unwrap_or(0.0) };
         let y = ((1.0 - sigma) * (1.0 + sigma)).powf(1.0 / m);
         (y, y.powf(n) * (1.0 + self.x * self.speed_ratio(sigma)))
     }
@@ -489,15 +465,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn integrated(contact: &HuntCrossley) -> Trajectory {
-        let HuntCrossley {
-            exponent,
-            stiffness,
-            damping,
-            speed,
-            depth,
-            duration,
-            ..
-        } = *contact;
+        let HuntCrossley { exponent, stiffness, damping, speed, depth, duration, .. } = *contact;
         by_runge_kutta(
             |d, v| stiffness * d.max(0.0).powf(exponent) * (1.0 + damping * v),
             [speed, depth, 2.0 * duration],
@@ -509,11 +477,7 @@ mod tests {
 
     #[test]
     fn restitution_of_the_literature_and_by_its_law() {
-        for (x, e) in [
-            (0.1, 0.937_475_580),
-            (0.3, 0.832_869_792),
-            (1.0, 0.593_624_260),
-        ] {
+        for (x, e) in [(0.1, 0.937_475_580), (0.3, 0.832_869_792), (1.0, 0.593_624_260)] {
             assert!((restitution(x).unwrap() - e).abs() < 6e-10, "{x}");
         }
         for power in -60..60 {
@@ -526,10 +490,7 @@ mod tests {
             }
             if x < 0.01 {
                 let series = 1.0 - 2.0 / 3.0 * x + 4.0 / 9.0 * x * x - 44.0 / 135.0 * x * x * x;
-                assert!(
-                    (e - series).abs() < x.powi(4) + 1e-15,
-                    "{x}: {e} against {series}"
-                );
+                assert!((e - series).abs() < x.powi(4) + 1e-15, "{x}: {e} against {series}");
                 assert!((loss(x) / x - 2.0 / 3.0 + 4.0 / 9.0 * x).abs() < x * x + 1e-14);
             }
             if x > 30.0 {
@@ -540,10 +501,7 @@ mod tests {
             if (1e-3..15.0).contains(&x) {
                 assert!((back / x - 1.0).abs() < 1e-11, "{x}: {back}");
             }
-            assert!(
-                (restitution(back).unwrap() - e).abs() < 1e-13 * e.max(x),
-                "{x}: {back}"
-            );
+            assert!((restitution(back).unwrap() - e).abs() < 1e-13 * e.max(x), "{x}: {back}");
         }
         // The linear law, to 1 % below 0.15 and no further.
         let linear = |x: f64| (1.0 - 2.0 / 3.0 * x) / restitution(x).unwrap() - 1.0;
@@ -649,10 +607,7 @@ mod tests {
                         "{case}: peak {peak}"
                     );
                     let lost = 0.5 * speed * speed - 0.5 * path.end().v.powi(2);
-                    assert!(
-                        (contact.energy_lost / lost - 1.0).abs() < 1e-7,
-                        "{case}: {lost}"
-                    );
+                    assert!((contact.energy_lost / lost - 1.0).abs() < 1e-7, "{case}: {lost}");
                 }
             }
         }
@@ -704,10 +659,7 @@ mod tests {
                 }
                 let lost = contact.energy_lost / (0.5 * 0.7 * 0.7);
                 let expected = 4.0 / 3.0 * damping * 0.7;
-                assert!(
-                    (lost - expected).abs() <= 1e-7 * expected,
-                    "{lost} against {expected}"
-                );
+                assert!((lost - expected).abs() <= 1e-7 * expected, "{lost} against {expected}");
             }
         }
     }
@@ -738,20 +690,10 @@ mod tests {
     fn the_simulator_loses_as_much() {
         for e in [0.99, 0.8, 0.5, 0.2] {
             let gamma = 3e12;
-            let start = Start {
-                x: 0.323,
-                velocity: 1.3,
-            };
+            let start = Start { x: 0.323, velocity: 1.3 };
             let lambda = damping_for(e).unwrap() / start.velocity;
-            let model = Model {
-                gamma,
-                mu: lambda * gamma,
-                ..Model::default()
-            };
-            let settings = Settings {
-                duration: 0.1,
-                ..Settings::default()
-            };
+            let model = Model { gamma, mu: lambda * gamma, ..Model::default() };
+            let settings = Settings { duration: 0.1, ..Settings::default() };
             let contact = HuntCrossley::new(1.5, gamma, lambda, start.velocity).unwrap();
             let motion = simulate(&model, start, Integrator::Taylor, &settings).unwrap();
             let impact = &motion.impacts[0];
@@ -763,10 +705,7 @@ mod tests {
             );
             assert!((impact.penetration / contact.depth - 1.0).abs() < 1e-4);
             let duration = impact.exit_time.unwrap() - impact.entry_time;
-            assert!(
-                (duration / contact.duration - 1.0).abs() < 2e-4,
-                "{e}: {duration}"
-            );
+            assert!((duration / contact.duration - 1.0).abs() < 2e-4, "{e}: {duration}");
         }
     }
 
@@ -785,10 +724,7 @@ mod tests {
                 HuntCrossley::new(1.5, 1.0, 1.0, bad),
                 Err(ContactError::NotPositive(_))
             ));
-            assert!(matches!(
-                damping_for(bad),
-                Err(ContactError::Restitution(_))
-            ));
+            assert!(matches!(damping_for(bad), Err(ContactError::Restitution(_))));
         }
         for bad in [-1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(

@@ -182,10 +182,7 @@ impl Touch<'_> {
         finite("position of the barrier", self.barrier)?;
         finite("force at touch", (self.restoring_force)(self.barrier))?;
         let force = |depth: f64| self.force(depth);
-        let half = HalfOscillation {
-            force: &force,
-            speed: self.speed,
-        };
+        let half = HalfOscillation { force: &force, speed: self.speed };
         let form = match law {
             ContactLaw::Line(rule) => Form::Line(self.line(rule)?),
             ContactLaw::Homotopy => Form::Sines(half.perturbed(Order::First)?),
@@ -218,11 +215,7 @@ impl Touch<'_> {
 
     fn power_law(&self) -> Result<PowerLaw, ContactError> {
         let exponent = self.exponent.ok_or(ContactError::NoPowerLaw)?;
-        PowerLaw::new(
-            exponent,
-            self.stiffness * (self.elastic_force)(1.0),
-            self.speed,
-        )
+        PowerLaw::new(exponent, self.stiffness * (self.elastic_force)(1.0), self.speed)
     }
 
     /// The line of the rule over the depth that the elastic force alone allows, and what it drives.
@@ -315,13 +308,7 @@ impl ContactMotion {
             Form::Corrected(contact) => 0.5 * contact.preload,
             Form::PowerLaw(_) => 0.0,
         };
-        SineSeries::of(
-            |time| self.position(time),
-            self.duration,
-            parabola,
-            self.depth,
-            tolerance,
-        )
+        SineSeries::of(|time| self.position(time), self.duration, parabola, self.depth, tolerance)
     }
 
     /// The formula as people write it, so many significant digits: s is the time since touch. The
@@ -344,18 +331,13 @@ impl ContactMotion {
         match &self.form {
             Form::Line(line) => {
                 let frequency = text(line.frequency);
-                let swing = format!(
-                    "d(s) = {} sin({frequency} s)",
-                    text(line.speed / line.frequency)
-                );
+                let swing =
+                    format!("d(s) = {} sin({frequency} s)", text(line.speed / line.frequency));
                 match line.centre {
                     0.0 => swing,
                     centre => {
                         let sign = if centre > 0.0 { '-' } else { '+' };
-                        format!(
-                            "{swing} {sign} {} (1 - cos({frequency} s))",
-                            text(centre.abs())
-                        )
+                        format!("{swing} {sign} {} (1 - cos({frequency} s))", text(centre.abs()))
                     }
                 }
             }
@@ -363,11 +345,7 @@ impl ContactMotion {
             Form::PowerLaw(contact) => {
                 let m = contact.exponent + 1.0;
                 let (half, depth) = (text(0.5 * contact.duration), text(contact.depth));
-                format!(
-                    "s = {half} I(x; {}, 0.5), x = (d/{depth})^{}",
-                    text(1.0 / m),
-                    text(m)
-                )
+                format!("s = {half} I(x; {}, 0.5), x = (d/{depth})^{}", text(1.0 / m), text(m))
             }
             Form::Corrected(contact) => contact.closed_form(digits),
             Form::Exact(contact) => contact.sine_series(tolerance).closed_form(digits),
@@ -432,11 +410,7 @@ pub struct ContactRow {
 pub fn comparison(touch: &Touch) -> Result<Vec<ContactRow>, ContactError> {
     let exact = touch.by(ContactLaw::Exact)?;
     let row = |law| {
-        let motion = if law == ContactLaw::Exact {
-            Ok(exact.clone())
-        } else {
-            touch.by(law)
-        };
+        let motion = if law == ContactLaw::Exact { Ok(exact.clone()) } else { touch.by(law) };
         ContactRow {
             law,
             outcome: motion.map(|motion| {
@@ -474,10 +448,7 @@ mod tests {
     fn percent(exponent: f64, stiffness: f64, speed: f64, law: ContactLaw) -> (f64, f64) {
         let force = move |d: f64| d.powf(exponent);
         let touch = alone(exponent, &force, stiffness, speed);
-        let errors = touch
-            .by(law)
-            .unwrap()
-            .errors(&touch.by(ContactLaw::Exact).unwrap());
+        let errors = touch.by(law).unwrap().errors(&touch.by(ContactLaw::Exact).unwrap());
         (100.0 * errors.duration, 100.0 * errors.depth)
     }
 
@@ -497,22 +468,14 @@ mod tests {
             for (law, duration, depth) in table {
                 let found = percent(1.5, stiffness, speed, law.parse().unwrap());
                 let digit = |expected: f64| {
-                    if (expected * 10.0).fract() == 0.0 {
-                        0.051
-                    } else {
-                        0.0051
-                    }
+                    if (expected * 10.0).fract() == 0.0 { 0.051 } else { 0.0051 }
                 };
                 assert!(
                     (found.0 - duration).abs() < digit(duration),
                     "{law}: duration {}",
                     found.0
                 );
-                assert!(
-                    (found.1 - depth).abs() < digit(depth),
-                    "{law}: depth {}",
-                    found.1
-                );
+                assert!((found.1 - depth).abs() < digit(depth), "{law}: depth {}", found.1);
             }
         }
     }
@@ -537,41 +500,26 @@ mod tests {
                 let iterated = touch.by(ContactLaw::Iteration).unwrap();
                 let square = (PI / iterated.duration).powi(2);
                 let law = stiffness * factor * iterated.depth.powf(exponent - 1.0);
-                assert!(
-                    (square / law - 1.0).abs() < 1e-12,
-                    "{exponent}: {square} against {law}"
-                );
+                assert!((square / law - 1.0).abs() < 1e-12, "{exponent}: {square} against {law}");
             }
         }
         // The cubic, to the last digit: s_3 = -A^3/4, x_1 = (A^3/32 Omega^2)(..), Omega^4 - (3/4)
         // A^2 Omega^2 + (3/128) A^4 = 0.
         let cube = |d: f64| d.powi(3);
-        let motion = alone(3.0, &cube, 1.0, 1.0)
-            .by(ContactLaw::SecondHomotopy)
-            .unwrap();
+        let motion = alone(3.0, &cube, 1.0, 1.0).by(ContactLaw::SecondHomotopy).unwrap();
         let square = (PI / motion.duration).powi(2) / (motion.depth * motion.depth);
         let expected = 0.5 * (0.75 + f64::sqrt(0.75 * 0.75 - 4.0 * 3.0 / 128.0));
-        assert!(
-            (square / expected - 1.0).abs() < 1e-7,
-            "{square} against {expected}"
-        );
+        assert!((square / expected - 1.0).abs() < 1e-7, "{square} against {expected}");
     }
 
     #[test]
     fn the_balance_of_two_harmonics_of_a_cube_is_that_of_its_equations() {
         let cube = |d: f64| d.powi(3);
-        let motion = alone(3.0, &cube, 1.0, 1.0)
-            .by(ContactLaw::TwoHarmonics)
-            .unwrap();
-        let Form::Sines(sines) = &motion.form else {
-            panic!("sines")
-        };
+        let motion = alone(3.0, &cube, 1.0, 1.0).by(ContactLaw::TwoHarmonics).unwrap();
+        let Form::Sines(sines) = &motion.form else { panic!("sines") };
         // The cosines of the literature, cos 3 theta = -sin 3 phi.
-        let (a1, a3, square) = (
-            sines.harmonics[0],
-            -sines.harmonics[1],
-            (PI / sines.duration).powi(2),
-        );
+        let (a1, a3, square) =
+            (sines.harmonics[0], -sines.harmonics[1], (PI / sines.duration).powi(2));
         let first = -square * a1 + 0.75 * a1.powi(3) + 0.75 * a1 * a1 * a3 + 1.5 * a1 * a3 * a3;
         let third = -9.0 * square * a3 + 0.25 * a1.powi(3) + 1.5 * a1 * a1 * a3 + 0.75 * a3.powi(3);
         assert!(first.abs() < 1e-9 && third.abs() < 1e-9, "{first} {third}");
@@ -590,10 +538,7 @@ mod tests {
                 error(ContactLaw::TwoHarmonics),
                 error(ContactLaw::ThreeHarmonics),
             );
-            assert!(
-                two < 0.3 * one && three < 0.5 * two,
-                "{exponent}: {one} {two} {three}"
-            );
+            assert!(two < 0.3 * one && three < 0.5 * two, "{exponent}: {one} {two} {three}");
             assert!(
                 error(ContactLaw::Iteration) < one && error(ContactLaw::SecondHomotopy) < one,
                 "{exponent}"
@@ -620,10 +565,7 @@ mod tests {
 
     #[test]
     fn every_law_ends_where_it_began_and_meets_its_depth_in_the_middle() {
-        let touch = Touch {
-            stiffness: 1e5,
-            ..Touch::default()
-        };
+        let touch = Touch { stiffness: 1e5, ..Touch::default() };
         let rows = comparison(&touch).unwrap();
         assert_eq!(rows.len(), ContactLaw::ALL.len());
         for row in rows {
@@ -639,26 +581,18 @@ mod tests {
                 (start.1 + end.1).abs() < 1e-9 && middle.1.abs() < 1e-9,
                 "{law}: {start:?} {middle:?} {end:?}"
             );
-            assert!(
-                (middle.0 / motion.depth - 1.0).abs() < 1e-9,
-                "{law}: {middle:?}"
-            );
+            assert!((middle.0 / motion.depth - 1.0).abs() < 1e-9, "{law}: {middle:?}");
             assert!((motion.position(0.1), motion.velocity(0.1)) == motion.at(0.1));
             let known = matches!(law, ContactLaw::CorrectedPowerLaw);
             assert!(
                 (start.1 / touch.speed - 1.0).abs() < if known { 1e-2 } else { 1e-9 },
                 "{law}: {start:?}"
             );
-            assert!(
-                errors.motion < 0.25 && errors.duration.abs() < 0.1,
-                "{law}: {errors:?}"
-            );
+            assert!(errors.motion < 0.25 && errors.duration.abs() < 0.1, "{law}: {errors:?}");
         }
         let corrected = touch.by(ContactLaw::CorrectedPowerLaw).unwrap();
-        let (exact, plain) = (
-            touch.by(ContactLaw::Exact).unwrap(),
-            touch.by(ContactLaw::PowerLaw).unwrap(),
-        );
+        let (exact, plain) =
+            (touch.by(ContactLaw::Exact).unwrap(), touch.by(ContactLaw::PowerLaw).unwrap());
         let (with, without) = (corrected.errors(&exact), plain.errors(&exact));
         assert!(
             with.duration.abs() < 1e-2 * without.duration.abs()
@@ -675,13 +609,8 @@ mod tests {
             (-0.4, 1e6, 1e-3),
             (-1.2, 1.0, 1e-3),
         ] {
-            let touch = Touch {
-                barrier,
-                stiffness,
-                speed,
-                slope: f64::cos(barrier),
-                ..Touch::default()
-            };
+            let touch =
+                Touch { barrier, stiffness, speed, slope: f64::cos(barrier), ..Touch::default() };
             for row in comparison(&touch).unwrap() {
                 match row.outcome {
                     Ok((motion, errors)) => {
@@ -706,11 +635,7 @@ mod tests {
 
     #[test]
     fn formulas_are_those_of_the_motion() {
-        let touch = Touch {
-            stiffness: 1e4,
-            speed: 1.0,
-            ..Touch::default()
-        };
+        let touch = Touch { stiffness: 1e4, speed: 1.0, ..Touch::default() };
         for row in comparison(&touch).unwrap() {
             let (motion, _) = row.outcome.unwrap();
             let formula = motion.closed_form(5, 1e-3);
@@ -723,20 +648,12 @@ mod tests {
                 ContactLaw::PowerLaw | ContactLaw::CorrectedPowerLaw => 0,
             };
             assert_eq!(waves, expected, "{}: {formula}", row.law);
-            assert!(
-                !formula.contains("NaN") && formula.contains("s"),
-                "{formula}"
-            );
+            assert!(!formula.contains("NaN") && formula.contains("s"), "{formula}");
         }
         let line = touch.by(ContactLaw::Line(Rule::LeastSquares)).unwrap();
-        let Form::Line(turn) = &line.form else {
-            panic!("a line")
-        };
+        let Form::Line(turn) = &line.form else { panic!("a line") };
         assert!(turn.centre < 0.0 && line.closed_form(5, 1e-3).contains(" + "));
-        let corrected = touch
-            .by(ContactLaw::CorrectedPowerLaw)
-            .unwrap()
-            .closed_form(4, 1e-3);
+        let corrected = touch.by(ContactLaw::CorrectedPowerLaw).unwrap().closed_form(4, 1e-3);
         assert!(
             corrected.starts_with("d(s) = 0.1587 s (0.0") && corrected.contains(" Y(s/0.0"),
             "{corrected}"
@@ -749,12 +666,7 @@ mod tests {
             assert_eq!(law.to_string().parse(), Ok(law));
         }
         let unknown = "hertz".parse::<ContactLaw>().unwrap_err().to_string();
-        assert!(
-            ContactLaw::ALL
-                .into_iter()
-                .all(|law| unknown.contains(law.name())),
-            "{unknown}"
-        );
+        assert!(ContactLaw::ALL.into_iter().all(|law| unknown.contains(law.name())), "{unknown}");
         assert_eq!(ContactLaw::default(), ContactLaw::Exact);
     }
 
@@ -763,59 +675,30 @@ mod tests {
         for law in ContactLaw::ALL {
             for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
                 assert!(
-                    Touch {
-                        speed: bad,
-                        ..Touch::default()
-                    }
-                    .by(law)
-                    .is_err(),
+                    Touch { speed: bad, ..Touch::default() }.by(law).is_err(),
                     "{law} at {bad}"
                 );
                 assert!(
-                    Touch {
-                        stiffness: bad,
-                        ..Touch::default()
-                    }
-                    .by(law)
-                    .is_err(),
+                    Touch { stiffness: bad, ..Touch::default() }.by(law).is_err(),
                     "{law} at {bad}"
                 );
             }
             for bad in [f64::NAN, f64::INFINITY] {
                 assert!(
-                    Touch {
-                        barrier: bad,
-                        ..Touch::default()
-                    }
-                    .by(law)
-                    .is_err(),
+                    Touch { barrier: bad, ..Touch::default() }.by(law).is_err(),
                     "{law} at {bad}"
                 );
                 // Only a line and the correction ask for the slope.
                 let asks = matches!(law, ContactLaw::Line(_) | ContactLaw::CorrectedPowerLaw);
-                let found = Touch {
-                    slope: bad,
-                    ..Touch::default()
-                }
-                .by(law);
+                let found = Touch { slope: bad, ..Touch::default() }.by(law);
                 assert_eq!(found.is_err(), asks, "{law} at {bad}");
             }
             let nowhere: &dyn Fn(f64) -> f64 = &|_| f64::NAN;
-            let refused = Touch {
-                elastic_force: nowhere,
-                ..Touch::default()
-            }
-            .by(law);
+            let refused = Touch { elastic_force: nowhere, ..Touch::default() }.by(law);
             assert!(refused.is_err(), "{law}");
         }
-        let unnamed = Touch {
-            exponent: None,
-            ..Touch::default()
-        };
-        assert_eq!(
-            unnamed.by(ContactLaw::PowerLaw),
-            Err(ContactError::NoPowerLaw)
-        );
+        let unnamed = Touch { exponent: None, ..Touch::default() };
+        assert_eq!(unnamed.by(ContactLaw::PowerLaw), Err(ContactError::NoPowerLaw));
         assert!(unnamed.by(ContactLaw::Exact).is_ok());
     }
 

@@ -62,9 +62,6 @@ impl LineContact {
         let (sine, cosine) = (0.5 * self.frequency * time).sin_cos();
         let depth = 2.0 * sine * (swing * cosine - self.centre * sine);
         let (sine, cosine) = (self.frequency * time).sin_cos();
-        (
-            depth,
-            self.speed * cosine - self.centre * self.frequency * sine,
-        )
+        (depth, self.speed * cosine - self.centre * self.frequency * sine)
     }
 }

@@ -179,19 +179,9 @@ fn by_runge_kutta(
     [speed, depth, time]: [f64; 3],
 ) -> crate::numeric::ode::Trajectory {
     use crate::numeric::ode::{Event, Options, State, integrate};
-    let options = Options {
-        absolute_tolerance: 1e-14 * depth,
-        ..Options::with_tolerance(1e-13)
-    };
-    let events = [
-        Event::record(|_, _, v| v),
-        Event::stop(|_, d, _| d).falling(),
-    ];
-    let start = State {
-        t: 0.0,
-        x: 0.0,
-        v: speed,
-    };
+    let options = Options { absolute_tolerance: 1e-14 * depth, ..Options::with_tolerance(1e-13) };
+    let events = [Event::record(|_, _, v| v), Event::stop(|_, d, _| d).falling()];
+    let start = State { t: 0.0, x: 0.0, v: speed };
     integrate(|_, d, v| -force(d, v), start, time, &events, &options).expect("a path")
 }
 
@@ -212,20 +202,12 @@ mod tests {
 
     fn assert_table(header: &str, rows: &[String]) {
         let computed = rows.join("\n");
-        assert_eq!(
-            table(header).join("\n"),
-            computed,
-            "under {header}:\n{computed}\n"
-        );
+        assert_eq!(table(header).join("\n"), computed, "under {header}:\n{computed}\n");
     }
 
     fn percent(part: f64) -> String {
         let text = format!("{:+.4}", 100.0 * part);
-        if text.ends_with("0.0000") {
-            "0".to_owned()
-        } else {
-            text
-        }
+        if text.ends_with("0.0000") { "0".to_owned() } else { text }
     }
 
     fn row(cells: impl IntoIterator<Item = String>) -> String {
@@ -234,11 +216,7 @@ mod tests {
 
     #[test]
     fn the_numbers_of_the_power_law_are_those_of_the_page() {
-        let numbers = [
-            ("Hertz", "3/2", 1.5),
-            ("cone", "2", 2.0),
-            ("cube", "3", 3.0),
-        ];
+        let numbers = [("Hertz", "3/2", 1.5), ("cone", "2", 2.0), ("cube", "3", 3.0)];
         for (force, name, exponent) in numbers {
             let line = row([
                 force.to_owned(),
@@ -253,10 +231,7 @@ mod tests {
     fn the_corrections_are_those_of_the_page() {
         let header = "| gamma | T, power law | T, first order | its estimate | T, second order | its estimate | D, second order |";
         let rows = [1e8, 1e6, 1e4, 1e2].map(|stiffness| {
-            let touch = Touch {
-                stiffness,
-                ..Touch::default()
-            };
+            let touch = Touch { stiffness, ..Touch::default() };
             let exact = touch.by(ContactLaw::Exact).unwrap();
             let plain = PowerLaw::new(1.5, stiffness, touch.speed).unwrap();
             let preload = touch.barrier.sin();
@@ -284,19 +259,11 @@ mod tests {
             (1.0, 0.5),
         ]
         .map(|(stiffness, speed)| {
-            let touch = Touch {
-                stiffness,
-                speed,
-                ..Touch::default()
-            };
+            let touch = Touch { stiffness, speed, ..Touch::default() };
             let contact = ExactContact::new(|d| touch.force(d), speed).unwrap();
             let (coarse, fine) = (contact.sine_series(1e-3), contact.sine_series(1e-6));
             row([
-                format!(
-                    "gamma {}, v = {}",
-                    significant(stiffness, 3),
-                    significant(speed, 5)
-                ),
+                format!("gamma {}, v = {}", significant(stiffness, 3), significant(speed, 5)),
                 coarse.harmonics.len().to_string(),
                 fine.harmonics.len().to_string(),
                 format!("{:.1e}", fine.deviation),
@@ -333,11 +300,9 @@ mod tests {
         let rows = [0.99, 0.9, 0.7, 0.5, 0.3, 0.1].map(|e: f64| {
             let rules = [1.5 * (1.0 - e), 0.75 * (1.0 - e * e), 1.6 * (1.0 - e) / e];
             let reached = rules.map(|x| format!("{:.4}", restitution(x).unwrap()));
-            row(
-                [significant(e, 2), format!("{:.5}", damping_for(e).unwrap())]
-                    .into_iter()
-                    .chain(reached),
-            )
+            row([significant(e, 2), format!("{:.5}", damping_for(e).unwrap())]
+                .into_iter()
+                .chain(reached))
         });
         assert_table(
             "| e wanted | lambda v | Hunt-Crossley | Lankarani-Nikravesh | Flores |",
@@ -347,16 +312,9 @@ mod tests {
 
     #[test]
     fn the_errors_of_the_laws_are_those_of_the_page() {
-        let soft = Touch {
-            stiffness: 1e3,
-            ..Touch::default()
-        };
-        let alone = Touch {
-            stiffness: 1e6,
-            restoring_force: &|_| 0.0,
-            slope: 0.0,
-            ..Touch::default()
-        };
+        let soft = Touch { stiffness: 1e3, ..Touch::default() };
+        let alone =
+            Touch { stiffness: 1e6, restoring_force: &|_| 0.0, slope: 0.0, ..Touch::default() };
         let rows = |touch: &Touch| -> Vec<String> {
             let line = |row_of: ContactRow| {
                 let (_, errors) = row_of.outcome.unwrap();
@@ -370,9 +328,8 @@ mod tests {
             comparison(touch).unwrap().into_iter().map(line).collect()
         };
         let header = "| law | T | D | peak force | motion |";
-        let (first, second) = PAGE
-            .split_once("Errors in % for the paper's pendulum at a soft barrier")
-            .unwrap();
+        let (first, second) =
+            PAGE.split_once("Errors in % for the paper's pendulum at a soft barrier").unwrap();
         for (part, touch) in [(first, &alone), (second, &soft)] {
             let lines = part.lines().skip_while(|line| *line != header).skip(2);
             let printed: Vec<&str> = lines.take_while(|line| line.starts_with('|')).collect();

@@ -154,28 +154,21 @@ impl PowerLaw {
         slope: f64,
         order: u32,
     ) -> Result<CorrectedPowerLaw, ContactError> {
-        let (preload, slope) = (
-            finite("force at touch", preload)?,
-            finite("slope of the force", slope)?,
-        );
+        let (preload, slope) =
+            (finite("force at touch", preload)?, finite("slope of the force", slope)?);
         if !(1..=HIGHEST_ORDER).contains(&order) {
-            return Err(ContactError::Order {
-                order,
-                highest: HIGHEST_ORDER,
-            });
+            return Err(ContactError::Order { order, highest: HIGHEST_ORDER });
         }
         let scale = self.depth / self.speed;
         let by_preload = 2.0 * preload / self.speed * scale;
         let by_slope = slope * scale * scale;
         let m = self.exponent + 1.0;
-        let (ratio, depth_error) = double_series(order, [-by_preload, -by_slope], |p, q| {
-            depth_coefficient(m, p, q)
-        });
+        let (ratio, depth_error) =
+            double_series(order, [-by_preload, -by_slope], |p, q| depth_coefficient(m, p, q));
         let whole = duration_coefficient(m, 0, 0);
         let at_depth = [by_preload * ratio, by_slope * ratio * ratio];
-        let (factor, duration_error) = double_series(order, at_depth, |p, q| {
-            duration_coefficient(m, p, q) / whole
-        });
+        let (factor, duration_error) =
+            double_series(order, at_depth, |p, q| duration_coefficient(m, p, q) / whole);
         let corrected = CorrectedPowerLaw {
             contact: *self,
             preload,
@@ -241,12 +234,7 @@ pub struct CorrectedPowerLaw {
 impl CorrectedPowerLaw {
     /// The greatest force a + k D + gamma D^n, per unit of mass.
     pub fn peak_force(&self) -> f64 {
-        let PowerLaw {
-            exponent,
-            peak_force,
-            depth,
-            ..
-        } = self.contact;
+        let PowerLaw { exponent, peak_force, depth, .. } = self.contact;
         self.preload + self.slope * self.depth + peak_force * (self.depth / depth).powf(exponent)
     }
 
@@ -282,10 +270,7 @@ impl CorrectedPowerLaw {
         if self.preload == 0.0 {
             return format!("d(s) = {shape}");
         }
-        format!(
-            "d(s) = {} s ({duration} - s) + {shape}",
-            significant(0.5 * self.preload, digits)
-        )
+        format!("d(s) = {} s ({duration} - s) + {shape}", significant(0.5 * self.preload, digits))
     }
 
     /// By how much the motion misses the speed of touch, relative to it: a measure of how far its
@@ -317,11 +302,7 @@ pub fn exponent_of(force: impl Fn(f64) -> f64) -> Option<f64> {
     let slope = (force(4.0) / unit).log2() / 2.0;
     // Exponents are written with few digits; the logarithm has all but the last.
     let written = (slope * 1e6).round() / 1e6;
-    let exponent = if (slope - written).abs() < 1e-13 * written {
-        written
-    } else {
-        slope
-    };
+    let exponent = if (slope - written).abs() < 1e-13 * written { written } else { slope };
     let is_power = |power: i32| {
         let depth = 2.0_f64.powi(power);
         (force(depth) / unit / depth.powf(exponent) - 1.0).abs() < 1e-11
@@ -341,11 +322,7 @@ pub fn duration_factor(exponent: f64) -> f64 {
 pub fn pulse(exponent: f64, part: f64) -> (f64, f64) {
     let part = within(part, 1.0);
     let (m, inverse) = (exponent + 1.0, 1.0 / (exponent + 1.0));
-    let (since, sign) = if part <= 0.5 {
-        (2.0 * part, 1.0)
-    } else {
-        (2.0 * (1.0 - part), -1.0)
-    };
+    let (since, sign) = if part <= 0.5 { (2.0 * part, 1.0) } else { (2.0 * (1.0 - part), -1.0) };
     // Up to x = 1/2 the depth is the unknown, from there on the velocity: neither then is a
     // difference of nearly equal numbers.
     let (depth, velocity) = if since <= incbet(inverse, 0.5, 0.5) {
@@ -380,10 +357,7 @@ fn double_series(order: u32, small: [f64; 2], coefficient: impl Fn(i32, i32) -> 
             last += term.abs();
         }
     }
-    (
-        sum,
-        last.max(before * (small[0].abs() + small[1].abs()).powi(2)),
-    )
+    (sum, last.max(before * (small[0].abs() + small[1].abs()).powi(2)))
 }
 
 /// The coefficient of (-E1)^p (-E2)^q in D/D0.
@@ -446,24 +420,14 @@ mod tests {
         let smooth = |w: f64| 2.0 * w / (-(m * (-w * w).ln_1p()).exp_m1()).sqrt();
         // y = q^(1/..) is smooth at zero for whole powers only: the quadrature halves its panels
         // there.
-        let whole = |from: f64| {
-            integrate_smooth(smooth, 0.0, (1.0 - from).sqrt(), 1e-14)
-                .unwrap()
-                .0
-        };
+        let whole =
+            |from: f64| integrate_smooth(smooth, 0.0, (1.0 - from).sqrt(), 1e-14).unwrap().0;
         whole(0.0) - whole(y)
     }
 
     /// The contact with a force at touch and a slope, by Runge-Kutta.
     fn integrated(contact: &PowerLaw, preload: f64, slope: f64) -> Trajectory {
-        let PowerLaw {
-            exponent,
-            stiffness,
-            speed,
-            depth,
-            duration,
-            ..
-        } = *contact;
+        let PowerLaw { exponent, stiffness, speed, depth, duration, .. } = *contact;
         by_runge_kutta(
             |d, _| preload + slope * d + stiffness * d.max(0.0).powf(exponent),
             [speed, depth, 100.0 * duration],
@@ -512,10 +476,7 @@ mod tests {
                 }
             }
         }
-        assert_eq!(
-            PowerLaw::default(),
-            PowerLaw::new(1.5, DEFAULT_STIFFNESS, 1.0).unwrap()
-        );
+        assert_eq!(PowerLaw::default(), PowerLaw::new(1.5, DEFAULT_STIFFNESS, 1.0).unwrap());
     }
 
     #[test]
@@ -618,18 +579,13 @@ mod tests {
         let (gamma, speed, a, k) = (1e4, 1.0, 3.0, 150.0);
         let w = f64::sqrt(gamma + k);
         let c = a / (w * w);
-        let (depth, duration) = (
-            (c * c + (speed / w).powi(2)).sqrt() - c,
-            2.0 / w * (speed / w).atan2(c),
-        );
+        let (depth, duration) =
+            ((c * c + (speed / w).powi(2)).sqrt() - c, 2.0 / w * (speed / w).atan2(c));
         let contact = PowerLaw::new(1.0, gamma, speed).unwrap();
         let mut previous = f64::INFINITY;
         for order in 1..=HIGHEST_ORDER {
             let corrected = contact.corrected(a, k, order).unwrap();
-            let errors = [
-                corrected.depth / depth - 1.0,
-                corrected.duration / duration - 1.0,
-            ];
+            let errors = [corrected.depth / depth - 1.0, corrected.duration / duration - 1.0];
             assert!(
                 errors[0].abs() <= corrected.depth_error
                     && errors[1].abs() <= corrected.duration_error,
@@ -651,10 +607,8 @@ mod tests {
             for (preload, slope) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.3, -0.5)] {
                 for order in 1..=3_u32 {
                     let error = |part: f64| {
-                        let (a, k) = (
-                            part * preload * contact.speed * scale,
-                            part * slope * scale * scale,
-                        );
+                        let (a, k) =
+                            (part * preload * contact.speed * scale, part * slope * scale * scale);
                         let corrected = contact.corrected(a, k, order).unwrap();
                         let path = integrated(&contact, a, k);
                         let depth = corrected.depth / path.occurrences()[0].state.x - 1.0;
@@ -704,10 +658,7 @@ mod tests {
                 }
                 let allowed = corrected.shape_error();
                 assert!(allowed < 0.2 * part.abs(), "{exponent}, {part}: {allowed}");
-                assert!(
-                    worst.0 < allowed + 1e-6,
-                    "{exponent}, {part}: {worst:?} above {allowed}"
-                );
+                assert!(worst.0 < allowed + 1e-6, "{exponent}, {part}: {worst:?} above {allowed}");
                 assert!(
                     worst.1 < 1.5 * allowed + 1e-6,
                     "{exponent}, {part}: {worst:?} above {allowed}"
@@ -721,41 +672,23 @@ mod tests {
     #[test]
     fn what_is_no_contact_is_refused() {
         for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(
-                PowerLaw::new(bad, 1.0, 1.0),
-                Err(ContactError::NotPositive(_))
-            ));
-            assert!(matches!(
-                PowerLaw::new(1.0, bad, 1.0),
-                Err(ContactError::NotPositive(_))
-            ));
-            assert!(matches!(
-                PowerLaw::new(1.0, 1.0, bad),
-                Err(ContactError::NotPositive(_))
-            ));
+            assert!(matches!(PowerLaw::new(bad, 1.0, 1.0), Err(ContactError::NotPositive(_))));
+            assert!(matches!(PowerLaw::new(1.0, bad, 1.0), Err(ContactError::NotPositive(_))));
+            assert!(matches!(PowerLaw::new(1.0, 1.0, bad), Err(ContactError::NotPositive(_))));
         }
         let contact = PowerLaw::default();
-        assert!(matches!(
-            contact.corrected(f64::NAN, 0.0, 2),
-            Err(ContactError::NotFinite { .. })
-        ));
+        assert!(matches!(contact.corrected(f64::NAN, 0.0, 2), Err(ContactError::NotFinite { .. })));
         assert!(matches!(
             contact.corrected(0.0, f64::INFINITY, 2),
             Err(ContactError::NotFinite { .. })
         ));
         for order in [0, HIGHEST_ORDER + 1, u32::MAX] {
-            assert!(matches!(
-                contact.corrected(1.0, 1.0, order),
-                Err(ContactError::Order { .. })
-            ));
+            assert!(matches!(contact.corrected(1.0, 1.0, order), Err(ContactError::Order { .. })));
         }
         let refused = PowerLaw::new(0.01, 1e300, 1e-300).unwrap_err();
         assert_eq!(refused, ContactError::Range { quantity: "depth" });
         let refused = contact.corrected(1e9, 0.0, 2).unwrap_err();
-        assert!(
-            refused.to_string().ends_with("take the exact contact"),
-            "{refused}"
-        );
+        assert!(refused.to_string().ends_with("take the exact contact"), "{refused}");
     }
 
     fn wild() -> impl Strategy<Value = f64> {

@@ -65,9 +65,7 @@ pub(super) fn expand(
         let half = 0.5 * (to - from);
         let (function, rate) = (coefficients(&values), coefficients(&rates[..POINTS]));
         let resolved = |series: &[f64; POINTS]| {
-            let largest = series
-                .iter()
-                .fold(0.0_f64, |largest, term| largest.max(term.abs()));
+            let largest = series.iter().fold(0.0_f64, |largest, term| largest.max(term.abs()));
             series[POINTS - 2].abs() + series[POINTS - 1].abs() <= RESOLVED * largest
         };
         if !(resolved(&function) && resolved(&rate)) && to - from > 1e-15 * to {
@@ -87,14 +85,7 @@ pub(super) fn expand(
         }
         let start = panels.last().map_or(0.0, |panel| panel.end);
         let end = start + legendre_sum(&time, 1.0);
-        panels.push(Panel {
-            from,
-            to,
-            start,
-            end,
-            function,
-            time,
-        });
+        panels.push(Panel { from, to, start, end, function, time });
     }
     Ok(panels)
 }
@@ -132,18 +123,13 @@ pub(super) fn length(panels: &[Panel]) -> f64 {
 
 /// The place at which the time has this value, and the function there.
 pub(super) fn invert(panels: &[Panel], time: f64) -> (f64, f64) {
-    let number = panels
-        .partition_point(|panel| panel.end < time)
-        .min(panels.len().saturating_sub(1));
+    let number =
+        panels.partition_point(|panel| panel.end < time).min(panels.len().saturating_sub(1));
     let Some(panel) = panels.get(number) else {
         return (0.0, f64::INFINITY);
     };
     let late = |at: f64| panel.time_at(at) - time;
-    let nearer = if time - panel.start < panel.end - time {
-        panel.from
-    } else {
-        panel.to
-    };
+    let nearer = if time - panel.start < panel.end - time { panel.from } else { panel.to };
     let at = find_root(late, panel.from, panel.to).unwrap_or(nearer);
     (at, panel.function_at(at))
 }

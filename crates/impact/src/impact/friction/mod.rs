@@ -41,11 +41,7 @@ pub const DEFAULT_ALPHA: f64 = 0.05;
 impl Default for FrictionSetup {
     /// The default swing, at [`DEFAULT_ALPHA`].
     fn default() -> Self {
-        Self {
-            alpha: DEFAULT_ALPHA,
-            amplitude: DEFAULT_AMPLITUDE,
-            speeds: Vec::new(),
-        }
+        Self { alpha: DEFAULT_ALPHA, amplitude: DEFAULT_AMPLITUDE, speeds: Vec::new() }
     }
 }
 
@@ -113,11 +109,7 @@ pub struct FrictionStudy {
 /// # Ok::<(), lindstedt::impact::friction::FrictionError>(())
 /// ```
 pub fn study(setup: FrictionSetup) -> Result<FrictionStudy, FrictionError> {
-    let FrictionSetup {
-        alpha,
-        amplitude,
-        ref speeds,
-    } = setup;
+    let FrictionSetup { alpha, amplitude, ref speeds } = setup;
     if !(alpha > 0.0 && alpha < 1.0) {
         return Err(FrictionError::Alpha(alpha));
     }

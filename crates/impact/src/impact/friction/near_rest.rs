@@ -155,26 +155,13 @@ fn swing(
     x: f64,
     duration: f64,
 ) -> Result<Simulation, FrictionError> {
-    let model = Model {
-        alpha,
-        friction,
-        right: None,
-        ..Model::default()
-    };
+    let model = Model { alpha, friction, right: None, ..Model::default() };
     followed(&model, x, duration)
 }
 
 fn followed(model: &Model, x: f64, duration: f64) -> Result<Simulation, FrictionError> {
-    let settings = Settings {
-        duration,
-        ..Settings::default()
-    };
-    let motion = simulate(
-        model,
-        Start { x, velocity: 0.0 },
-        Integrator::Taylor,
-        &settings,
-    )?;
+    let settings = Settings { duration, ..Settings::default() };
+    let motion = simulate(model, Start { x, velocity: 0.0 }, Integrator::Taylor, &settings)?;
     match motion.stop {
         Stop::Duration => Ok(motion),
         _ => Err(FrictionError::Restless(model.alpha)),
@@ -186,21 +173,11 @@ fn stop(alpha: f64, amplitude: f64) -> Result<(Turn, usize), FrictionError> {
     let mut duration = 50.0;
     loop {
         let motion = swing(alpha, Friction::Exact, -amplitude, duration)?;
-        let held = motion
-            .path
-            .pieces()
-            .last()
-            .filter(|piece| piece.regime == Regime::Stuck);
+        let held = motion.path.pieces().last().filter(|piece| piece.regime == Regime::Stuck);
         if let Some(held) = held {
-            let half_swings = motion
-                .turns
-                .iter()
-                .filter(|turn| turn.t > 0.0 && turn.t <= held.start)
-                .count();
-            let stop = Turn {
-                t: held.start,
-                x: motion.end_x,
-            };
+            let half_swings =
+                motion.turns.iter().filter(|turn| turn.t > 0.0 && turn.t <= held.start).count();
+            let stop = Turn { t: held.start, x: motion.end_x };
             return Ok((stop, half_swings));
         }
         duration *= 2.0;
@@ -236,18 +213,12 @@ fn first_cycle(motion: &Simulation) -> FirstCycle {
         .collect();
     let law = |speed: f64| FRAC_2_PI * (STEEPNESS * speed).atan();
     let part = |error: f64| {
-        speeds
-            .iter()
-            .filter(|speed| 1.0 - law(**speed) > error)
-            .count() as f64
+        speeds.iter().filter(|speed| 1.0 - law(**speed) > error).count() as f64
             / speeds.len() as f64
     };
     let way: f64 = speeds.iter().sum();
     let work: f64 = speeds.iter().map(|speed| law(*speed) * speed).sum();
-    let at_the_turn = motion
-        .path
-        .at(until)
-        .map_or(0.0, |(_, velocity)| velocity.abs());
+    let at_the_turn = motion.path.at(until).map_or(0.0, |(_, velocity)| velocity.abs());
     let slowest = speeds.iter().copied().fold(at_the_turn, f64::min);
     FirstCycle {
         until,
@@ -268,10 +239,8 @@ fn creep(alpha: f64, x: f64) -> Result<Creep, FrictionError> {
     // Eight times slower than the rate |100 x'| is small, and the motion is that of the linear
     // equation.
     let step = (0.5 / rate_linear).min(1.0);
-    let rate = rate_of(
-        [0.0, 1.0, 2.0, 3.0].map(|number| at(8.0 / rate_linear + number * step)),
-        step,
-    );
+    let rate =
+        rate_of([0.0, 1.0, 2.0, 3.0].map(|number| at(8.0 / rate_linear + number * step)), step);
     let without_inertia = match creeps {
         true => Some(WithoutInertia::from_rest(alpha, x, duration)?),
         false => None,
@@ -304,10 +273,7 @@ fn rate_of([x0, x1, x2, x3]: [f64; 4], step: f64) -> Option<f64> {
         // One exponential is left.
         true => x1 / x0,
         false => {
-            let (p, q) = (
-                (x1 * x2 - x0 * x3) / determinant,
-                (x1 * x3 - x2 * x2) / determinant,
-            );
+            let (p, q) = ((x1 * x2 - x0 * x3) / determinant, (x1 * x3 - x2 * x2) / determinant);
             match 0.25 * p * p + q {
                 square if square > 0.0 => 0.5 * p + square.sqrt(),
                 _ => (-q).sqrt(),
@@ -333,10 +299,7 @@ impl WithoutInertia {
     fn from_rest(alpha: f64, x: f64, duration: f64) -> Result<Self, FrictionError> {
         const TOLERANCE: f64 = 1e-10;
         let rate = 0.5 * PI / (STEEPNESS * alpha);
-        let start = Point {
-            t: 0.0,
-            y: [(0.5 * PI * (x.abs().sin() / alpha).min(1.0)).sin().ln()],
-        };
+        let start = Point { t: 0.0, y: [(0.5 * PI * (x.abs().sin() / alpha).min(1.0)).sin().ln()] };
         let falls = move |_: f64, [log]: &[f64; 1], rates: &mut [f64; 1]| {
             *rates = [-rate * place(alpha, *log).cos()]
         };
@@ -370,15 +333,9 @@ fn rest_times(
     creep: f64,
 ) -> Result<RestTimes, FrictionError> {
     let rest = |friction, creep: f64| {
-        let model = Model {
-            alpha,
-            friction,
-            ..Model::default()
-        };
+        let model = Model { alpha, friction, ..Model::default() };
         Ok::<_, FrictionError>(
-            followed(&model, -amplitude, (4.0 * stop).max(50.0) + creep)?
-                .rest()
-                .time,
+            followed(&model, -amplitude, (4.0 * stop).max(50.0) + creep)?.rest().time,
         )
     };
     Ok(RestTimes {
@@ -396,19 +353,10 @@ mod tests {
         let places = |motion: fn(f64) -> f64| [8.0, 8.5, 9.0, 9.5].map(motion);
         for (found, rate) in [
             (rate_of(places(|t| 2.0 * (-0.3 * t).exp()), 0.5), 0.3),
-            (
-                rate_of(places(|t| (-0.9 * t).exp() - 3.0 * (-1.1 * t).exp()), 0.5),
-                0.9,
-            ),
-            (
-                rate_of(places(|t| (-0.4 * t).exp() * (0.9 * t).cos()), 0.5),
-                0.4,
-            ),
+            (rate_of(places(|t| (-0.9 * t).exp() - 3.0 * (-1.1 * t).exp()), 0.5), 0.9),
+            (rate_of(places(|t| (-0.4 * t).exp() * (0.9 * t).cos()), 0.5), 0.4),
         ] {
-            assert!(
-                (found.unwrap() / rate - 1.0).abs() < 1e-9,
-                "{found:?} {rate}"
-            );
+            assert!((found.unwrap() / rate - 1.0).abs() < 1e-9, "{found:?} {rate}");
         }
         assert_eq!(rate_of([0.0; 4], 0.5), None);
     }
@@ -431,12 +379,7 @@ mod tests {
     /// beyond |x| = alpha.
     #[test]
     fn the_creep_solves_its_equation() {
-        for (alpha, start) in [
-            (0.3, 0.2),
-            (0.95, -1.058),
-            (0.8, -0.479),
-            (0.5, 0.5_f64.asin()),
-        ] {
+        for (alpha, start) in [(0.3, 0.2), (0.95, -1.058), (0.8, -0.479), (0.5, 0.5_f64.asin())] {
             let creep = WithoutInertia::from_rest(alpha, start, 100.0).expect("a creep");
             let at = |t: f64| creep.at(t).expect("a place");
             assert!((at(0.0) - start).abs() < 1e-13, "{alpha}: {}", at(0.0));

@@ -57,10 +57,7 @@ const NUDGE: f64 = 1e-14;
 const MOTIONS: usize = 4;
 
 fn index(place: Place, stuck: bool) -> usize {
-    let region = REGIONS
-        .iter()
-        .position(|region| *region == place.region)
-        .unwrap_or(0);
+    let region = REGIONS.iter().position(|region| *region == place.region).unwrap_or(0);
     let motion = match place.direction {
         _ if stuck => 3,
         1.0 => 1,
@@ -80,14 +77,10 @@ impl Coordinate {
     /// x itself, or the depth in the barrier of a region.
     fn of(model: &Model, region: Regime) -> Self {
         match region {
-            Regime::Contact(side) | Regime::Detached(side) => Self {
-                sign: side.sign(),
-                origin: model.barrier(side).unwrap_or_default(),
-            },
-            Regime::Free | Regime::Stuck => Self {
-                sign: 1.0,
-                origin: 0.0,
-            },
+            Regime::Contact(side) | Regime::Detached(side) => {
+                Self { sign: side.sign(), origin: model.barrier(side).unwrap_or_default() }
+            }
+            Regime::Free | Regime::Stuck => Self { sign: 1.0, origin: 0.0 },
         }
     }
 }
@@ -119,10 +112,7 @@ fn pushed_into(model: &Model, region: Regime, x: f64, direction: f64) -> Option<
     let on = |side: &Side| {
         region == Regime::Free && model.barrier(*side) == Some(x) && direction == side.sign()
     };
-    [Side::Left, Side::Right]
-        .into_iter()
-        .find(on)
-        .map(Regime::Contact)
+    [Side::Left, Side::Right].into_iter().find(on).map(Regime::Contact)
 }
 
 /// The region in which a motion begins, and how fast it moves there in the coordinate of that
@@ -135,11 +125,7 @@ fn beginning(model: &Model, start: Start) -> Regime {
         };
     }
     // At rest the force decides, and where there is none yet, the one that comes.
-    let rates = [
-        start.velocity,
-        model.field(0.0, start.x),
-        model.field_rate(0.0, start.x),
-    ];
+    let rates = [start.velocity, model.field(0.0, start.x), model.field_rate(0.0, start.x)];
     let held = model.sticks() && start.velocity == 0.0;
     rates
         .into_iter()
@@ -168,11 +154,7 @@ fn phase<'a>(
         Regime::Contact(side) | Regime::Detached(side) => ends_of_contact(model, place, side),
     };
     watched.push(turning(model, place));
-    watched.extend(
-        settings
-            .rest_energy
-            .map(|energy| fall_to_rest(model, region, energy)),
-    );
+    watched.extend(settings.rest_energy.map(|energy| fall_to_rest(model, region, energy)));
     let (events, meanings) = watched.into_iter().unzip();
     let coordinate = Coordinate::of(model, region);
     let swing =
@@ -199,14 +181,7 @@ fn letting_go(model: &Model, Place { region, .. }: Place) -> Watched<'_> {
         // anybody's.
         let v = NUDGE * direction * sign;
         let (region, state) = match pushed_into(model, region, state.x, direction) {
-            Some(contact) => (
-                contact,
-                ode::State {
-                    x: 0.0,
-                    v: NUDGE,
-                    ..state
-                },
-            ),
+            Some(contact) => (contact, ode::State { x: 0.0, v: NUDGE, ..state }),
             None => (region, ode::State { v, ..state }),
         };
         (index(Place { region, direction }, false), state)
@@ -219,10 +194,7 @@ fn touches(model: &Model, direction: f64) -> Vec<Watched<'_>> {
     let touch = |side: Side| {
         let barrier = model.barrier(side)?;
         let next = move |state: ode::State| {
-            let contact = Place {
-                region: Regime::Contact(side),
-                direction,
-            };
+            let contact = Place { region: Regime::Contact(side), direction };
             // It moves inwards, whatever rounding says of one that rests there.
             let v = (side.sign() * state.v).max(0.0);
             (index(contact, false), ode::State { x: 0.0, v, ..state })
@@ -230,10 +202,7 @@ fn touches(model: &Model, direction: f64) -> Vec<Watched<'_>> {
         let depth = move |_: f64, x: f64, _: f64| side.sign() * (x - barrier);
         Some((Event::switch(depth, next).rising(), Meaning::Touch(side)))
     };
-    [Side::Left, Side::Right]
-        .into_iter()
-        .filter_map(touch)
-        .collect()
+    [Side::Left, Side::Right].into_iter().filter_map(touch).collect()
 }
 
 /// Inside a barrier: back in place, and where the contact is damped, faster or no longer faster
@@ -247,19 +216,10 @@ fn ends_of_contact(
     let to = move |region: Regime| index(Place { region, direction }, false);
     let release = move |state: ode::State| {
         let v = sign * state.v.min(0.0);
-        (
-            to(Regime::Free),
-            ode::State {
-                x: origin,
-                v,
-                ..state
-            },
-        )
+        (to(Regime::Free), ode::State { x: origin, v, ..state })
     };
-    let mut watched = vec![(
-        Event::switch(|_, depth, _| depth, release).falling(),
-        Meaning::Release,
-    )];
+    let mut watched =
+        vec![(Event::switch(|_, depth, _| depth, release).falling(), Meaning::Release)];
     if model.mu > 0.0 {
         let push = move |_: f64, _: f64, speed: f64| model.gamma + model.mu * speed;
         watched.push(match region {
@@ -287,11 +247,7 @@ fn turning(model: &Model, Place { region, direction }: Place) -> Watched<'_> {
     };
     let turn = Event::switch(move |_, _, v| v, next);
     let inwards = direction * Coordinate::of(model, region).sign > 0.0;
-    let turn = if inwards {
-        turn.falling()
-    } else {
-        turn.rising()
-    };
+    let turn = if inwards { turn.falling() } else { turn.rising() };
     (turn, Meaning::Turn)
 }
 
@@ -315,19 +271,12 @@ pub(in crate::impact) fn follow(
     settings: &Settings,
 ) -> Result<Simulation, IntegrationError> {
     let settings = &scaled(settings, model, start);
-    let (phases, meanings): (Vec<_>, Vec<_>) = (0..REGIONS.len() * MOTIONS)
-        .map(|number| phase(model, settings, number))
-        .unzip();
+    let (phases, meanings): (Vec<_>, Vec<_>) =
+        (0..REGIONS.len() * MOTIONS).map(|number| phase(model, settings, number)).unzip();
     let region = beginning(model, start);
     let Coordinate { sign, origin } = Coordinate::of(model, region);
     let first = match start.velocity {
-        _ if !model.sticks() => index(
-            Place {
-                region,
-                direction: 0.0,
-            },
-            false,
-        ),
+        _ if !model.sticks() => index(Place { region, direction: 0.0 }, false),
         0.0 => from_rest(model, region, 0.0, sign * (start.x - origin)),
         velocity => {
             let direction = velocity.signum();
@@ -336,11 +285,7 @@ pub(in crate::impact) fn follow(
     };
     // What lets go of a stuck pendulum varies with the excitation, not with the motion.
     let watched = model.sticks() && model.beta != 0.0 && model.frequency_ratio > 0.0;
-    let maximum_step = if watched {
-        1.0 / model.frequency_ratio
-    } else {
-        f64::INFINITY
-    };
+    let maximum_step = if watched { 1.0 / model.frequency_ratio } else { f64::INFINITY };
     let options = ode::Options {
         relative_tolerance: settings.relative_tolerance,
         absolute_tolerance: settings.absolute_tolerance,
@@ -362,13 +307,8 @@ pub(in crate::impact) fn follow(
         v: sign * start.velocity,
     };
     let trajectory = integrate_phases(&phases, first, begin, settings.duration, &options)?;
-    let (impacts, turns) = contacts_and_turns(
-        (model, settings),
-        start,
-        first_region,
-        &trajectory,
-        &meanings,
-    );
+    let (impacts, turns) =
+        contacts_and_turns((model, settings), start, first_region, &trajectory, &meanings);
     let end = trajectory.end();
     let (end_x, end_velocity) = end_in_x(model, &trajectory);
     Ok(Simulation {
@@ -406,13 +346,7 @@ fn contacts_and_turns(
     if start.velocity == 0.0 {
         turns.push(Turn { t: 0.0, x: start.x });
     }
-    for Occurrence {
-        phase,
-        event,
-        state,
-        ..
-    } in trajectory.occurrences().iter().copied()
-    {
+    for Occurrence { phase, event, state, .. } in trajectory.occurrences().iter().copied() {
         let region = place(phase).0.region;
         match meanings.get(phase).and_then(|list| list.get(event)) {
             Some(&Meaning::Touch(side)) => {
@@ -432,10 +366,7 @@ fn contacts_and_turns(
                 {
                     enter(&mut impacts, (model, settings), side, state.t, [0.0, 0.0]);
                 }
-                turns.push(Turn {
-                    t: state.t,
-                    x: Coordinate::of(model, region).x(state.x),
-                });
+                turns.push(Turn { t: state.t, x: Coordinate::of(model, region).x(state.x) });
                 if matches!(region, Regime::Contact(_))
                     && let Some(impact) = impacts.last_mut()
                 {

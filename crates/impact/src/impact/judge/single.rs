@@ -139,14 +139,8 @@ pub fn true_impact(
     collision: &Collision,
     options: &ode::Options,
 ) -> Result<TrueImpact, TrueImpactError> {
-    let &Collision {
-        release,
-        barrier,
-        stiffness,
-        restoring_force,
-        elastic_force,
-        damping,
-    } = collision;
+    let &Collision { release, barrier, stiffness, restoring_force, elastic_force, damping } =
+        collision;
     if barrier <= release {
         return Err(CollisionError::ReleasedBehindBarrier { release, barrier }.into());
     }
@@ -156,23 +150,13 @@ pub fn true_impact(
         stiffness * elastic_force(depth.max(0.0)) * (1.0 + damping * inwards).max(0.0)
     };
     let approach = approach(swing, [release, barrier], &at_scale(options, scale))?;
-    let touch = ode::State {
-        x: barrier,
-        ..approach.end()
-    };
+    let touch = ode::State { x: barrier, ..approach.end() };
     let energy = 0.5 * touch.v * touch.v;
     // A barrier that is soft for this swing lets it through to the other side.
     let size =
         greatest_depth(elastic_force, energy / stiffness).map_or(scale, |depth| depth.min(scale));
-    let touched = ode::State {
-        t: 0.0,
-        x: 0.0,
-        v: touch.v,
-    };
-    let inside = Coordinate {
-        sign: 1.0,
-        origin: barrier,
-    };
+    let touched = ode::State { t: 0.0, x: 0.0, v: touch.v };
+    let inside = Coordinate { sign: 1.0, origin: barrier };
     let events = [
         Event::stop(|_: f64, depth: f64, _: f64| depth).falling(),
         Event::record(|_: f64, _: f64, v: f64| v).falling(),
@@ -191,11 +175,8 @@ pub fn true_impact(
     // A graze too shallow for a turning point in doubles: touch, turn and exit are one.
     let deepest = turn.map_or(touched, |found| found.state);
     let exit = contact.end();
-    let seen = |state: ode::State| ode::State {
-        t: touch.t + state.t,
-        x: inside.x(state.x),
-        v: state.v,
-    };
+    let seen =
+        |state: ode::State| ode::State { t: touch.t + state.t, x: inside.x(state.x), v: state.v };
     let back = match damping > 0.0 {
         true => Some(way_back(swing, barrier, exit, &at_scale(options, scale))?),
         false => None,
@@ -204,10 +185,7 @@ pub fn true_impact(
     Ok(TrueImpact {
         touch,
         deepest: seen(deepest),
-        exit: ode::State {
-            x: barrier,
-            ..seen(exit)
-        },
+        exit: ode::State { x: barrier, ..seen(exit) },
         penetration: deepest.x,
         duration: exit.t,
         period: touch.t + exit.t + back.as_ref().map_or(touch.t, |back| back.end().t),
@@ -226,14 +204,7 @@ fn energy_drift(
     contact: &Trajectory,
     back: Option<&Trajectory>,
 ) -> Result<f64, TrueImpactError> {
-    let &Collision {
-        release,
-        barrier,
-        stiffness,
-        restoring_force,
-        elastic_force,
-        ..
-    } = collision;
+    let &Collision { release, barrier, stiffness, restoring_force, elastic_force, .. } = collision;
     // Counted from the barrier: the energy at release is the kinetic energy at touch.
     let potential = |to: f64| {
         integrate_smooth(restoring_force, barrier, to, 1e-13).map(|(integral, _)| integral)
@@ -245,9 +216,9 @@ fn energy_drift(
         None => largest_change(contact, released, |depth| {
             Ok(potential(barrier + depth)? + stiffness * work(elastic_force, depth)?)
         })?,
-        Some(back) => largest_change(back, 0.5 * exit.v * exit.v, |gone| {
-            potential(barrier - gone)
-        })?,
+        Some(back) => {
+            largest_change(back, 0.5 * exit.v * exit.v, |gone| potential(barrier - gone))?
+        }
     };
     Ok(flight.max(rest) / released.abs())
 }
@@ -271,27 +242,14 @@ fn approach(
 ) -> Result<Trajectory, TrueImpactError> {
     // Counted from the release: near the top of the swing every digit of the distance to it
     // matters.
-    let released = Coordinate {
-        sign: 1.0,
-        origin: release,
-    };
+    let released = Coordinate { sign: 1.0, origin: release };
     let way = barrier - release;
-    let start = ode::State {
-        t: 0.0,
-        x: 0.0,
-        v: 0.0,
-    };
+    let start = ode::State { t: 0.0, x: 0.0, v: 0.0 };
     let events = [
         Event::stop(|_: f64, gone: f64, _: f64| gone - way).rising(),
         Event::stop(|_: f64, _: f64, v: f64| v).falling(),
     ];
-    let approach = integrate(
-        released.flight(swing),
-        start,
-        LONGEST_TIME,
-        &events,
-        options,
-    )?;
+    let approach = integrate(released.flight(swing), start, LONGEST_TIME, &events, options)?;
     match approach.stop_reason() {
         StopReason::Event { event: 0, .. } => Ok(approach),
         StopReason::Event { .. } => Err(CollisionError::NeverReaches {
@@ -311,23 +269,10 @@ fn way_back(
     exit: ode::State,
     options: &ode::Options,
 ) -> Result<Trajectory, TrueImpactError> {
-    let outwards = Coordinate {
-        sign: -1.0,
-        origin: barrier,
-    };
-    let start = ode::State {
-        t: 0.0,
-        x: 0.0,
-        v: -exit.v,
-    };
+    let outwards = Coordinate { sign: -1.0, origin: barrier };
+    let start = ode::State { t: 0.0, x: 0.0, v: -exit.v };
     let events = [Event::stop(|_: f64, _: f64, v: f64| v).falling()];
-    let back = integrate(
-        outwards.flight(swing),
-        start,
-        LONGEST_TIME,
-        &events,
-        options,
-    )?;
+    let back = integrate(outwards.flight(swing), start, LONGEST_TIME, &events, options)?;
     match back.stop_reason() {
         StopReason::Event { .. } => Ok(back),
         reason => Err(TrueImpactError::Stopped(reason)),
@@ -420,13 +365,7 @@ impl TrueImpact {
     /// Time to contact, speed, penetration, duration, period: in the order of
     /// [`ThreePhases::quantities`].
     pub fn quantities(&self) -> [f64; 5] {
-        [
-            self.touch.t,
-            self.touch.v,
-            self.penetration,
-            self.duration,
-            self.period,
-        ]
+        [self.touch.t, self.touch.v, self.penetration, self.duration, self.period]
     }
 
     /// Speed out over speed in: 1 where nothing is lost.
@@ -443,10 +382,7 @@ impl TrueImpact {
             return self.flight(t);
         }
         if t < self.exit.t {
-            let (depth, v) = self
-                .contact
-                .at(t - self.touch.t)
-                .unwrap_or((0.0, self.exit.v));
+            let (depth, v) = self.contact.at(t - self.touch.t).unwrap_or((0.0, self.exit.v));
             return (barrier + depth, v);
         }
         if let Some(back) = &self.back {
@@ -498,18 +434,10 @@ pub fn deviation(closed_form: &ThreePhases, truth: &TrueImpact) -> Deviation {
     let contact = &closed_form.phases[1];
     let inside = |t: f64| (0.0..=truth.period).contains(&t);
     let missed = largest(contact.start, contact.end, |t| {
-        if inside(t) {
-            closed_form.position_at(t) - true_position(t)
-        } else {
-            0.0
-        }
+        if inside(t) { closed_form.position_at(t) - true_position(t) } else { 0.0 }
     });
     let total = phases.iter().copied().fold(missed, f64::max);
-    Deviation {
-        phases,
-        total,
-        aligned,
-    }
+    Deviation { phases, total, aligned }
 }
 
 /// Largest |function| on a grid: enough points that a smooth maximum is right to six digits.
@@ -518,13 +446,12 @@ fn largest(from: f64, to: f64, function: impl Fn(f64) -> f64) -> f64 {
     let values = (0..=points)
         .map(|index| function(from + (to - from) * f64::from(index) / f64::from(points)).abs());
     // A value that is not a number must not be passed over.
-    values.fold(0.0, |worst: f64, value| {
-        if value > worst || value.is_nan() {
-            value
-        } else {
-            worst
-        }
-    })
+    values.fold(
+        0.0,
+        |worst: f64, value| {
+            if value > worst || value.is_nan() { value } else { worst }
+        },
+    )
 }
 
 #[cfg(test)]
@@ -563,18 +490,11 @@ mod tests {
     }
 
     fn pendulum(barrier: f64, stiffness: f64) -> TrueImpact {
-        true_impact(
-            &collision(1.5, barrier, stiffness),
-            &Options::with_tolerance(1e-13),
-        )
-        .unwrap()
+        true_impact(&collision(1.5, barrier, stiffness), &Options::with_tolerance(1e-13)).unwrap()
     }
 
     fn near(value: f64, expected: f64, allowed: f64) {
-        assert!(
-            (value - expected).abs() <= allowed,
-            "{value} against {expected}"
-        );
+        assert!((value - expected).abs() <= allowed, "{value} against {expected}");
     }
 
     /// Depth and duration of the contact from the energy alone: depth = q^2, v^2 = v0^2 - 2 (cos
@@ -586,9 +506,7 @@ mod tests {
         let deepest = find_root(square, 0.0, 1.0).unwrap();
         let slope = |q: f64| 4.0 * q * (barrier + q * q).sin() + 4.0 * stiffness * q.powi(4);
         let quotient = |q: f64| {
-            integrate_smooth(|part| slope(q + part * (deepest - q)), 0.0, 1.0, 1e-14)
-                .unwrap()
-                .0
+            integrate_smooth(|part| slope(q + part * (deepest - q)), 0.0, 1.0, 1e-14).unwrap().0
         };
         let integrand = |w: f64| {
             let q = deepest * (1.0 - w * w);
@@ -602,24 +520,12 @@ mod tests {
     #[test]
     fn speed_depth_and_times_are_those_of_the_energy() {
         let m = 0.75_f64.sin().powi(2);
-        for (barrier, stiffness) in [
-            (0.323, 1e6),
-            (0.323, 3.0407e7),
-            (0.0, 1e4),
-            (-0.7, 1e5),
-            (1.2, 1e8),
-        ] {
+        for (barrier, stiffness) in
+            [(0.323, 1e6), (0.323, 3.0407e7), (0.0, 1e4), (-0.7, 1e5), (1.2, 1e8)]
+        {
             let truth = pendulum(barrier, stiffness);
-            near(
-                truth.touch.v,
-                (2.0 * (barrier.cos() - 1.5_f64.cos())).sqrt(),
-                1e-11,
-            );
-            near(
-                truth.touch.v,
-                collision(1.5, barrier, stiffness).contact_speed().unwrap(),
-                1e-11,
-            );
+            near(truth.touch.v, (2.0 * (barrier.cos() - 1.5_f64.cos())).sqrt(), 1e-11);
+            near(truth.touch.v, collision(1.5, barrier, stiffness).contact_speed().unwrap(), 1e-11);
             near(truth.exit.v, -truth.touch.v, 2e-11);
             let reached = (0.5 * barrier).sin() / 0.75_f64.sin();
             let approach = ellip::ellipk(m).unwrap() + ellip::ellipf(reached.asin(), m).unwrap();
@@ -646,9 +552,7 @@ mod tests {
     fn the_drift_tells_a_loose_run_from_a_tight_one() {
         let run = |tolerance| {
             let options = Options::with_tolerance(tolerance);
-            true_impact(&collision(1.5, 0.323, 1e6), &options)
-                .unwrap()
-                .energy_drift
+            true_impact(&collision(1.5, 0.323, 1e6), &options).unwrap().energy_drift
         };
         assert!(run(1e-5) > 1e3 * run(1e-11));
     }
@@ -674,11 +578,7 @@ mod tests {
             assert!(found.aligned[1] < 0.15 * truth.penetration, "{found:?}");
         }
         let of = |column| {
-            deviation(
-                &three_phases(&swing(0.323, stiffness), column).unwrap(),
-                &truth,
-            )
-            .aligned[1]
+            deviation(&three_phases(&swing(0.323, stiffness), column).unwrap(), &truth).aligned[1]
         };
         assert!(
             of(ContactSpeed::Energy) < 0.7 * of(ContactSpeed::Paper),
@@ -727,31 +627,16 @@ mod tests {
             run(1.5, -1.5),
             TrueImpactError::Collision(CollisionError::ReleasedBehindBarrier { .. })
         ));
-        assert!(matches!(
-            run(f64::NAN, 0.3),
-            TrueImpactError::Integration(_)
-        ));
-        let few = Options {
-            maximum_steps: 5,
-            ..Options::default()
-        };
+        assert!(matches!(run(f64::NAN, 0.3), TrueImpactError::Integration(_)));
+        let few = Options { maximum_steps: 5, ..Options::default() };
         let refused = true_impact(&collision(1.5, 0.323, 1e6), &few).unwrap_err();
         assert!(
-            matches!(
-                refused,
-                TrueImpactError::Stopped(StopReason::MaximumSteps { .. })
-            ),
+            matches!(refused, TrueImpactError::Stopped(StopReason::MaximumSteps { .. })),
             "{refused}"
         );
         // At rest on top: it never gets anywhere.
-        let still = Collision {
-            restoring_force: &|_| 0.0,
-            ..collision(1.0, 0.3, 1.0)
-        };
+        let still = Collision { restoring_force: &|_| 0.0, ..collision(1.0, 0.3, 1.0) };
         let refused = true_impact(&still, &Options::default()).unwrap_err();
-        assert!(
-            matches!(refused, TrueImpactError::Stopped(StopReason::EndReached)),
-            "{refused}"
-        );
+        assert!(matches!(refused, TrueImpactError::Stopped(StopReason::EndReached)), "{refused}");
     }
 }

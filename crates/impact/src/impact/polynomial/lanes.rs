@@ -16,17 +16,8 @@
 const DEGREE: usize = 8;
 
 /// 1/C(8, k).
-const INVERSE_BINOMIALS: [f64; DEGREE + 1] = [
-    1.0,
-    1.0 / 8.0,
-    1.0 / 28.0,
-    1.0 / 56.0,
-    1.0 / 70.0,
-    1.0 / 56.0,
-    1.0 / 28.0,
-    1.0 / 8.0,
-    1.0,
-];
+const INVERSE_BINOMIALS: [f64; DEGREE + 1] =
+    [1.0, 1.0 / 8.0, 1.0 / 28.0, 1.0 / 56.0, 1.0 / 70.0, 1.0 / 56.0, 1.0 / 28.0, 1.0 / 8.0, 1.0];
 
 /// p(u), as even part + u odd part: two short chains of operations instead of a long one.
 #[inline(always)]
@@ -229,24 +220,12 @@ pub(in crate::impact) fn crossings<const L: usize>(
             let high = if side > 0.0 { right[lane] } else { here };
             let newton = here - height / slope[lane];
             let inside = (newton - low) * (high - newton);
-            let next = if inside > 0.0 {
-                newton
-            } else {
-                0.5 * (low + high)
-            };
+            let next = if inside > 0.0 { newton } else { 0.5 * (low + high) };
             let next = if height == 0.0 { here } else { next };
             // The error of a step of Newton's is about the square of the one before; a halving says
             // nothing.
-            let error = if inside > 0.0 {
-                (next - here).abs()
-            } else {
-                span
-            };
-            let error = if (next - low) * (high - next) > 0.0 {
-                error
-            } else {
-                0.0
-            };
+            let error = if inside > 0.0 { (next - here).abs() } else { span };
+            let error = if (next - low) * (high - next) > 0.0 { error } else { 0.0 };
             left[lane] = if error <= 1e-8 * span { next } else { low };
             right[lane] = if error <= 1e-8 * span { next } else { high };
             u[lane] = next;
@@ -273,9 +252,8 @@ mod tests {
         for lane in 0..L {
             let mut own = vec![1.0];
             let real = roots[lane].iter().map(|root| vec![-root, 1.0]);
-            let complex = pairs[lane]
-                .iter()
-                .map(|(re, im)| vec![re * re + im * im, -2.0 * re, 1.0]);
+            let complex =
+                pairs[lane].iter().map(|(re, im)| vec![re * re + im * im, -2.0 * re, 1.0]);
             for factor in real.chain(complex) {
                 let mut next = vec![0.0; own.len() + factor.len() - 1];
                 for (i, a) in own.iter().enumerate() {
@@ -309,15 +287,9 @@ mod tests {
         let several = polynomial(roots, [&far; 8]);
         let changes = changes_of_sign(&several, &[1.0; 8]);
         for (lane, roots) in roots.iter().enumerate() {
-            let inside = roots
-                .iter()
-                .filter(|root| (0.0..1.0).contains(*root))
-                .count() as f64;
+            let inside = roots.iter().filter(|root| (0.0..1.0).contains(*root)).count() as f64;
             // What is not certain is called two, and is looked at.
-            assert!(
-                changes[lane] == inside || changes[lane] >= 2.0,
-                "{roots:?}: {changes:?}"
-            );
+            assert!(changes[lane] == inside || changes[lane] >= 2.0, "{roots:?}: {changes:?}");
         }
         assert_eq!(changes[..5], [0.0, 1.0, 1.0, 0.0, 1.0]);
         // Nothing is certain where there is no number, and where what lies beyond the form is
@@ -337,27 +309,14 @@ mod tests {
         let several = polynomial(real, [&[(2.0, 1.0), (-1.5, 0.5)]; 8]);
         let (from, to) = ([0.0; 8], [1.0; 8]);
         let (start, end) = (values(&several, &from), values(&several, &to));
-        let all = crossings(
-            &several,
-            &[0.0; 8],
-            (&from, &start),
-            (&to, &end),
-            &[true; 8],
-        );
+        let all = crossings(&several, &[0.0; 8], (&from, &start), (&to, &end), &[true; 8]);
         let mut some = [true; 8];
         some[3] = false;
         let without = crossings(&several, &[0.0; 8], (&from, &start), (&to, &end), &some);
         for lane in 0..8 {
-            assert!(
-                (all[lane] - roots[lane]).abs() <= 4e-16,
-                "{} and {}",
-                all[lane],
-                roots[lane]
-            );
-            let own: Vec<[f64; 1]> = several
-                .iter()
-                .map(|coefficient| [coefficient[lane]])
-                .collect();
+            assert!((all[lane] - roots[lane]).abs() <= 4e-16, "{} and {}", all[lane], roots[lane]);
+            let own: Vec<[f64; 1]> =
+                several.iter().map(|coefficient| [coefficient[lane]]).collect();
             let (start, end) = ([start[lane]], [end[lane]]);
             let alone = crossings(&own, &[0.0], (&[0.0], &start), (&[1.0], &end), &[true]);
             assert_eq!(alone[0].to_bits(), all[lane].to_bits());

@@ -30,10 +30,7 @@ impl Roots {
     pub(super) const LIMIT: usize = 16;
 
     pub(super) const fn new() -> Self {
-        Self {
-            values: [0.0; Self::LIMIT],
-            count: 0,
-        }
+        Self { values: [0.0; Self::LIMIT], count: 0 }
     }
 
     pub(super) fn push(&mut self, value: f64) {
@@ -87,10 +84,7 @@ fn curvature(coefficients: &[f64], h: f64) -> f64 {
 /// Every place in (0, h] where p changes sign, and h itself where p is zero there. A zero at 0 does
 /// not count: it was the end of the step before.
 pub(super) fn sign_changes(coefficients: &[f64], h: f64) -> Roots {
-    if coefficients
-        .first()
-        .is_some_and(|first| first.abs() > variation(coefficients, h))
-    {
+    if coefficients.first().is_some_and(|first| first.abs() > variation(coefficients, h)) {
         return Roots::new();
     }
     near_sign_changes(coefficients, h, value(coefficients, h))
@@ -100,20 +94,13 @@ pub(super) fn sign_changes(coefficients: &[f64], h: f64) -> Roots {
 pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots {
     let mut found = Roots::new();
     // Leaving zero is no change of sign: p(u)/u^k has the same sign for u > 0.
-    let zeros = coefficients
-        .iter()
-        .take_while(|coefficient| **coefficient == 0.0)
-        .count();
+    let zeros = coefficients.iter().take_while(|coefficient| **coefficient == 0.0).count();
     let coefficients = &coefficients[zeros..];
     let Some(&first) = coefficients.first() else {
         return found;
     };
     // Where it leaves zero its value at the end is that of p/u^k.
-    let end = if zeros == 0 {
-        end
-    } else {
-        value(coefficients, h)
-    };
+    let end = if zeros == 0 { end } else { value(coefficients, h) };
     let [changes] = changes_of_sign(alone(coefficients), &[h]);
     if changes == 0.0 && first * end > 0.0 {
         return found;
@@ -177,11 +164,7 @@ impl Search<'_> {
             self.add(to);
         } else if right.1.signum() != self.sign {
             let clear = !narrow && left.1 != 0.0 && left.1.signum() == self.sign;
-            self.add(if clear {
-                bracketed(self.coefficients, 0.0, left, right)
-            } else {
-                middle
-            });
+            self.add(if clear { bracketed(self.coefficients, 0.0, left, right) } else { middle });
         }
     }
 
@@ -209,13 +192,8 @@ pub(super) fn bracketed(
     (from, start): (f64, f64),
     (to, end): (f64, f64),
 ) -> f64 {
-    let [place] = crossings(
-        alone(coefficients),
-        &[level],
-        (&[from], &[start]),
-        (&[to], &[end]),
-        &[true],
-    );
+    let [place] =
+        crossings(alone(coefficients), &[level], (&[from], &[start]), (&[to], &[end]), &[true]);
     place
 }
 
@@ -250,10 +228,7 @@ mod tests {
     #[test]
     fn value_slope_and_bounds_of_a_cubic() {
         let cubic = [1.0, -2.0, 0.5, 3.0];
-        assert_eq!(
-            value_and_slope(&cubic, 2.0),
-            (1.0 - 4.0 + 2.0 + 24.0, -2.0 + 2.0 + 36.0)
-        );
+        assert_eq!(value_and_slope(&cubic, 2.0), (1.0 - 4.0 + 2.0 + 24.0, -2.0 + 2.0 + 36.0));
         assert_eq!(variation(&cubic, 2.0), 4.0 + 2.0 + 24.0);
         assert_eq!(curvature(&cubic, 2.0), 1.0 + 36.0);
     }
@@ -262,9 +237,8 @@ mod tests {
     fn a_search_ends_where_there_is_nothing_but_rounding() {
         // Underflow and overflow: nothing can be told, and it says so at once.
         for scale in [5e-324, 1e-310, f64::MAX, f64::INFINITY, f64::NAN] {
-            let noise: Vec<f64> = (0..24)
-                .map(|k| if k % 3 == 0 { scale } else { -scale })
-                .collect();
+            let noise: Vec<f64> =
+                (0..24).map(|k| if k % 3 == 0 { scale } else { -scale }).collect();
             assert!(sign_changes(&noise, 1.0).as_slice().len() <= Roots::LIMIT);
         }
     }
@@ -282,24 +256,13 @@ mod tests {
             (vec![1.0], vec![1.0]),
         ] {
             let found = sign_changes(&with_roots(&roots), 1.0);
-            assert_eq!(
-                found.as_slice().len(),
-                expected.len(),
-                "{roots:?}: {found:?}"
-            );
+            assert_eq!(found.as_slice().len(), expected.len(), "{roots:?}: {found:?}");
             for (found, expected) in found.as_slice().iter().zip(&expected) {
-                assert!(
-                    (found - expected).abs() < 1e-9,
-                    "{found} against {expected}"
-                );
+                assert!((found - expected).abs() < 1e-9, "{found} against {expected}");
             }
         }
         // Two complex roots next to the interval: no real one.
-        assert!(
-            sign_changes(&[0.25 + 1e-12, -1.0, 1.0], 1.0)
-                .as_slice()
-                .is_empty()
-        );
+        assert!(sign_changes(&[0.25 + 1e-12, -1.0, 1.0], 1.0).as_slice().is_empty());
         assert!(sign_changes(&[0.0, 0.0], 1.0).as_slice().is_empty());
     }
 }

@@ -66,11 +66,8 @@ fn derive() -> Result<Accelerations, MechanicsError> {
         "kappa*y^2/2 + 1 - cos(x)",
     )?;
     mechanism.dissipation = own("delta*y'^2/2 + zeta*x'^2");
-    mechanism.forces = [
-        (Symbol::new("x"), own("P + G")),
-        (Symbol::new("y"), own("f*sin(eta*t)")),
-    ]
-    .into();
+    mechanism.forces =
+        [(Symbol::new("x"), own("P + G")), (Symbol::new("y"), own("f*sin(eta*t)"))].into();
     let equations = mechanism.equations()?;
     let accelerations = equations.accelerations()?;
     let [x, y] = accelerations.as_slice() else {
@@ -80,15 +77,10 @@ fn derive() -> Result<Accelerations, MechanicsError> {
     let at_rest: BTreeMap<Symbol, Expr> = [(Symbol::new("x'"), Expr::zero())].into();
     let (mass, rest) = (
         &equations.mass[1][1],
-        equations.rest[1]
-            .substitute_all(&at_rest)
-            .map_err(MechanicsError::from)?,
+        equations.rest[1].substitute_all(&at_rest).map_err(MechanicsError::from)?,
     );
     let held = Expr::divide(&-rest, mass).map_err(MechanicsError::from)?;
-    Ok(Accelerations {
-        free: [x.clone(), y.clone()],
-        held,
-    })
+    Ok(Accelerations { free: [x.clone(), y.clone()], held })
 }
 
 impl Equations {
@@ -108,9 +100,7 @@ impl Equations {
         ];
         Ok(Self {
             accelerations,
-            numbers: numbers
-                .map(|(name, value)| (Symbol::new(name), value))
-                .into(),
+            numbers: numbers.map(|(name, value)| (Symbol::new(name), value)).into(),
             case,
             built: RefCell::default(),
         })
@@ -122,12 +112,7 @@ impl Equations {
         phase: Phase,
         build: impl FnOnce() -> Result<Followed, PrimaryError>,
     ) -> Result<Rc<Followed>, PrimaryError> {
-        let known = self
-            .built
-            .borrow()
-            .iter()
-            .find(|own| own.0 == phase)
-            .map(|own| own.1.clone());
+        let known = self.built.borrow().iter().find(|own| own.0 == phase).map(|own| own.1.clone());
         if let Some(known) = known {
             return Ok(known);
         }
@@ -149,23 +134,13 @@ impl Equations {
 
     /// What the accounts grow by: viscous, friction, contact, dashpot, force.
     fn accounts(&self, friction: Expr, contact: Expr) -> [Expr; ACCOUNTS] {
-        [
-            own("2*zeta*x'^2"),
-            friction,
-            contact,
-            own("delta*y'^2"),
-            own("f*sin(eta*t)*y'"),
-        ]
+        [own("2*zeta*x'^2"), friction, contact, own("delta*y'^2"), own("f*sin(eta*t)*y'")]
     }
 
     fn put(&self, expression: &Expr, values: &[(&str, Expr)]) -> Result<Expr, PrimaryError> {
-        let values: BTreeMap<Symbol, Expr> = values
-            .iter()
-            .map(|(name, value)| (Symbol::new(name), value.clone()))
-            .collect();
-        Ok(expression
-            .substitute_all(&values)
-            .map_err(MechanicsError::from)?)
+        let values: BTreeMap<Symbol, Expr> =
+            values.iter().map(|(name, value)| (Symbol::new(name), value.clone())).collect();
+        Ok(expression.substitute_all(&values).map_err(MechanicsError::from)?)
     }
 
     /// The equations of these states and the accounts that change; `more` are numbers of this phase
@@ -187,20 +162,11 @@ impl Equations {
             .map(|rate| rate.substitute_all(&absent).map_err(MechanicsError::from))
             .collect::<Result<_, _>>()?;
         let (own_rates, account_rates) = right.split_at(states.len());
-        let accounts: Vec<usize> = (0..account_rates.len())
-            .filter(|account| !account_rates[*account].is_zero())
-            .collect();
-        let names = accounts
-            .iter()
-            .map(|account| Symbol::new(&format!("account{account}")));
-        let names: Vec<Symbol> = states
-            .iter()
-            .map(|name| Symbol::new(name))
-            .chain(names)
-            .collect();
-        let rates = accounts
-            .iter()
-            .map(|account| account_rates[*account].clone());
+        let accounts: Vec<usize> =
+            (0..account_rates.len()).filter(|account| !account_rates[*account].is_zero()).collect();
+        let names = accounts.iter().map(|account| Symbol::new(&format!("account{account}")));
+        let names: Vec<Symbol> = states.iter().map(|name| Symbol::new(name)).chain(names).collect();
+        let rates = accounts.iter().map(|account| account_rates[*account].clone());
         let rates: Vec<Expr> = own_rates.iter().cloned().chain(rates).collect();
         let system = System::new(&names, Symbol::new(time), &rates, &self.numbers_and(more))?;
         Ok(Followed { system, accounts })
@@ -230,10 +196,7 @@ impl Equations {
         let put = |acceleration: &Expr| {
             self.put(acceleration, &[("P", Expr::zero()), ("G", torque.clone())])
         };
-        let [x, y] = [
-            put(&self.accelerations.free[0])?,
-            put(&self.accelerations.free[1])?,
-        ];
+        let [x, y] = [put(&self.accelerations.free[0])?, put(&self.accelerations.free[1])?];
         right.extend([x, own("y'"), y]);
         right.extend(self.accounts(power, Expr::zero()));
         self.followed(&["x", "x'", "y", "y'"], "t", &right, &[])
@@ -246,9 +209,7 @@ impl Equations {
         place: f64,
         direction: f64,
     ) -> Result<Rc<Followed>, PrimaryError> {
-        self.once((Some(side), direction), || {
-            self.contact_system(side, place, direction)
-        })
+        self.once((Some(side), direction), || self.contact_system(side, place, direction))
     }
 
     fn contact_system(
@@ -265,11 +226,7 @@ impl Equations {
         let put = |expression: &Expr| {
             self.put(
                 expression,
-                &[
-                    ("P", -(&sign * &force)),
-                    ("G", torque.clone()),
-                    ("x", x.clone()),
-                ],
+                &[("P", -(&sign * &force)), ("G", torque.clone()), ("x", x.clone())],
             )
         };
         let mut right = vec![&sign * &own("x'/2")];
@@ -277,17 +234,8 @@ impl Equations {
         right.push(slow(own("y'")));
         right.push(slow(put(&self.accelerations.free[1])?));
         right.push(own("w"));
-        right.extend(
-            self.accounts(power, own("mu*x'^2*w^3"))
-                .into_iter()
-                .map(slow),
-        );
-        self.followed(
-            &["w", "x'", "y", "y'", "t"],
-            "s",
-            &right,
-            &[("place", place)],
-        )
+        right.extend(self.accounts(power, own("mu*x'^2*w^3")).into_iter().map(slow));
+        self.followed(&["w", "x'", "y", "y'", "t"], "s", &right, &[("place", place)])
     }
 
     /// The main mass alone with the pendulum held at x; the torque on the pendulum is what friction
@@ -310,18 +258,10 @@ impl Equations {
         direction: f64,
     ) -> Result<f64, PrimaryError> {
         let [torque, _] = self.friction(direction);
-        let rate = self.put(
-            &self.accelerations.free[0],
-            &[("P", Expr::zero()), ("G", torque)],
-        )?;
+        let rate = self.put(&self.accelerations.free[0], &[("P", Expr::zero()), ("G", torque)])?;
         let [x, velocity, y, speed] = state;
-        let values = self.numbers_and(&[
-            ("t", t),
-            ("x", x),
-            ("x'", velocity),
-            ("y", y),
-            ("y'", speed),
-        ]);
+        let values =
+            self.numbers_and(&[("t", t), ("x", x), ("x'", velocity), ("y", y), ("y'", speed)]);
         Ok(rate.evaluate(&values).unwrap_or(f64::NAN))
     }
 

@@ -145,12 +145,7 @@ fn offset(name: &str, place: f64) -> Expr {
 impl<'a> Run<'a> {
     fn new(case: PrimaryCase, settings: &'a PrimarySettings) -> Result<Self, PrimaryError> {
         let [x, velocity, y, speed] = case.start;
-        let state = PrimaryState {
-            x,
-            velocity,
-            y,
-            speed,
-        };
+        let state = PrimaryState { x, velocity, y, speed };
         let energy = case.energy(state);
         let mut run = Self {
             case,
@@ -172,9 +167,8 @@ impl<'a> Run<'a> {
             astray: 0.0,
         };
         let inside = case.model.depth(x);
-        let push = inside.map_or(0.0, |(side, depth)| {
-            -side.sign() * case.model.contact(depth, 0.0)
-        });
+        let push =
+            inside.map_or(0.0, |(side, depth)| -side.sign() * case.model.contact(depth, 0.0));
         let direction = run.direction(push);
         if let Some((side, depth)) = inside {
             run.begin_impact(side, depth);
@@ -208,12 +202,7 @@ impl<'a> Run<'a> {
     /// pushed that way, else free.
     fn set_off(&mut self, direction: f64) -> Result<(), PrimaryError> {
         self.regime = Regime::Free(direction);
-        let PrimaryState {
-            x,
-            velocity,
-            y,
-            speed,
-        } = self.state;
+        let PrimaryState { x, velocity, y, speed } = self.state;
         for side in [Side::Left, Side::Right] {
             if x != self.place(side) {
                 continue;
@@ -222,9 +211,7 @@ impl<'a> Run<'a> {
                 // From rest it slips in the direction that friction opposes, if only with its third
                 // derivative.
                 true if direction != 0.0 => direction,
-                true => self
-                    .equations
-                    .acceleration(self.t, [x, velocity, y, speed], direction)?,
+                true => self.equations.acceleration(self.t, [x, velocity, y, speed], direction)?,
                 false => velocity,
             };
             if side.sign() * push > 0.0 {
@@ -244,18 +231,12 @@ impl<'a> Run<'a> {
 
     /// A barrier's place.
     fn place(&self, side: Side) -> f64 {
-        self.case
-            .model
-            .barrier(side)
-            .unwrap_or(f64::INFINITY * side.sign())
+        self.case.model.barrier(side).unwrap_or(f64::INFINITY * side.sign())
     }
 
     /// The states, and behind them the accounts that change in this phase.
     fn with_accounts(&self, states: &[f64], followed: &Followed) -> Vec<f64> {
-        let accounts = followed
-            .accounts
-            .iter()
-            .map(|account| self.accounts[*account]);
+        let accounts = followed.accounts.iter().map(|account| self.accounts[*account]);
         states.iter().copied().chain(accounts).collect()
     }
 
@@ -307,12 +288,7 @@ impl<'a> Run<'a> {
         swings: Option<usize>,
     ) -> Result<End, PrimaryError> {
         let followed = self.equations.flight(direction)?;
-        let PrimaryState {
-            x,
-            velocity,
-            y,
-            speed,
-        } = self.state;
+        let PrimaryState { x, velocity, y, speed } = self.state;
         let start = self.with_accounts(&[x, velocity, y, speed], &followed);
         let path = followed.system.solve(
             self.t,
@@ -322,22 +298,12 @@ impl<'a> Run<'a> {
             &self.options(),
         )?;
         self.turns_of(&path, |state| state[2], |time| time);
-        for met in path
-            .occurrences()
-            .iter()
-            .filter(|met| Some(met.event) == swings)
-        {
-            self.swings
-                .extend(path.at(met.time).map(|state| (met.time, state[0])));
+        for met in path.occurrences().iter().filter(|met| Some(met.event) == swings) {
+            self.swings.extend(path.at(met.time).map(|state| (met.time, state[0])));
         }
         let (reason, end) = (path.reason(), path.end());
         let last = path.at(end).unwrap_or(start);
-        self.state = PrimaryState {
-            x: last[0],
-            velocity: last[1],
-            y: last[2],
-            speed: last[3],
-        };
+        self.state = PrimaryState { x: last[0], velocity: last[1], y: last[2], speed: last[3] };
         self.keep_accounts(&last[4..], &followed);
         self.path.push(self.t, end, Piece::Flight(path));
         self.t = end;
@@ -392,11 +358,7 @@ impl<'a> Run<'a> {
         let followed = self.equations.contact(side, place, direction)?;
         let depth = (side.sign() * (self.state.x - place)).max(0.0);
         // From a touch without speed the variable w would never leave its zero.
-        let w = depth.sqrt().max(if self.state.velocity == 0.0 {
-            1e-12
-        } else {
-            0.0
-        });
+        let w = depth.sqrt().max(if self.state.velocity == 0.0 { 1e-12 } else { 0.0 });
         let mut events = vec![
             Event::record(own("y'")),
             Event::stop(own("w")),
@@ -411,20 +373,13 @@ impl<'a> Run<'a> {
             let sign = Expr::from(side.sign() as i64);
             events.push(Event::stop(own("gamma") + sign * own("mu*x'")).falling());
         }
-        let PrimaryState {
-            velocity, y, speed, ..
-        } = self.state;
+        let PrimaryState { velocity, y, speed, .. } = self.state;
         let start = self.with_accounts(&[w, velocity, y, speed, self.t], &followed);
-        let path = followed
-            .system
-            .solve(0.0, &start, LONGEST_CONTACT, &events, &self.options())?;
+        let path = followed.system.solve(0.0, &start, LONGEST_CONTACT, &events, &self.options())?;
         self.turns_of(&path, |state| state[2], |_| f64::NAN);
         let turns = path.occurrences().iter().filter(|met| met.event == 3);
         let turns: Vec<Vec<f64>> = turns.filter_map(|met| path.at(met.time)).collect();
-        let deepest = turns
-            .iter()
-            .map(|state| state[0] * state[0])
-            .fold(depth, f64::max);
+        let deepest = turns.iter().map(|state| state[0] * state[0]).fold(depth, f64::max);
         let swing = |state: &Vec<f64>| (state[4], place + side.sign() * state[0] * state[0]);
         self.swings.extend(turns.iter().map(swing));
         let reason = path.reason();
@@ -441,8 +396,7 @@ impl<'a> Run<'a> {
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest).max(w * w);
         }
-        self.path
-            .push(self.t, end, Piece::Contact { path, side, place });
+        self.path.push(self.t, end, Piece::Contact { path, side, place });
         self.t = end;
         match reason {
             End::Event(1) => self.leave(side, direction),
@@ -489,9 +443,8 @@ impl<'a> Run<'a> {
     fn hold(&mut self) -> Result<End, PrimaryError> {
         let PrimaryState { x, y, speed, .. } = self.state;
         let inside = self.case.model.depth(x);
-        let contact = inside.map_or(0.0, |(side, depth)| {
-            -side.sign() * self.case.model.contact(depth, 0.0)
-        });
+        let contact =
+            inside.map_or(0.0, |(side, depth)| -side.sign() * self.case.model.contact(depth, 0.0));
         let (followed, torque) = self.equations.held(x, contact)?;
         let bound = self.case.model.alpha;
         let mut events = vec![Event::record(own("y'"))];
@@ -510,12 +463,7 @@ impl<'a> Run<'a> {
         self.turns_of(&path, |state| state[0], |time| time);
         let (reason, end) = (path.reason(), path.end());
         let last = path.at(end).unwrap_or(start);
-        self.state = PrimaryState {
-            x,
-            velocity: 0.0,
-            y: last[0],
-            speed: last[1],
-        };
+        self.state = PrimaryState { x, velocity: 0.0, y: last[0], speed: last[1] };
         self.keep_accounts(&last[2..], &followed);
         self.path.push(self.t, end, Piece::Held { path, x });
         self.t = end;
@@ -535,11 +483,7 @@ impl<'a> Run<'a> {
             if let Some(state) = path.at(met.time) {
                 let t = time(met.time);
                 // In a contact the time is a state of its own.
-                let t = if t.is_nan() {
-                    state.get(4).copied().unwrap_or(self.t)
-                } else {
-                    t
-                };
+                let t = if t.is_nan() { state.get(4).copied().unwrap_or(self.t) } else { t };
                 self.turns.push((t, y(&state)));
             }
         }
@@ -584,11 +528,7 @@ impl<'a> Run<'a> {
                 contact,
                 dashpot,
                 force,
-                residual: if self.largest > 0.0 {
-                    self.astray / self.largest
-                } else {
-                    0.0
-                },
+                residual: if self.largest > 0.0 { self.astray / self.largest } else { 0.0 },
             },
             path: self.path,
         }

@@ -35,10 +35,7 @@ pub struct Others {
 impl Primary {
     /// The two linear cases beside the damper.
     pub fn others(&self) -> Others {
-        Others {
-            without: self.alone(self.mass),
-            locked: self.alone(self.mass + 1.0),
-        }
+        Others { without: self.alone(self.mass), locked: self.alone(self.mass + 1.0) }
     }
 
     fn alone(&self, mass: f64) -> Alone {
@@ -62,9 +59,7 @@ impl Primary {
             frequency: square.max(0.0).sqrt(),
             rest_time: (!driven && decay > 0.0 && square > 0.0)
                 .then(|| -REST_FRACTION.ln() / decay),
-            amplitude: driven
-                .then_some(amplitude)
-                .filter(|amplitude| amplitude.is_finite()),
+            amplitude: driven.then_some(amplitude).filter(|amplitude| amplitude.is_finite()),
         }
     }
 
@@ -115,18 +110,10 @@ impl PrimaryMotion {
         }
         let level = REST_FRACTION * first;
         let mut envelope = vec![(0.0, first)];
-        let turns: Vec<(f64, f64)> = self
-            .turns
-            .iter()
-            .filter(|(t, _)| *t > 0.0)
-            .map(|(t, y)| (*t, y.abs()))
-            .collect();
+        let turns: Vec<(f64, f64)> =
+            self.turns.iter().filter(|(t, _)| *t > 0.0).map(|(t, y)| (*t, y.abs())).collect();
         for pair in turns.windows(2) {
-            let larger = if pair[1].1 > pair[0].1 {
-                pair[1]
-            } else {
-                pair[0]
-            };
+            let larger = if pair[1].1 > pair[0].1 { pair[1] } else { pair[0] };
             if envelope.last() != Some(&larger) {
                 envelope.push(larger);
             }
@@ -145,11 +132,7 @@ impl PrimaryMotion {
         };
         let above = envelope[index];
         let Some(below) = envelope.get(index + 1) else {
-            return Err(if self.is_complete() {
-                NoRest::StaysAbove
-            } else {
-                NoRest::BrokeOff
-            });
+            return Err(if self.is_complete() { NoRest::StaysAbove } else { NoRest::BrokeOff });
         };
         let height = |point: (f64, f64)| point.1.max(1e-12 * level).ln();
         let share = (level.ln() - height(above)) / (height(*below) - height(above));

@@ -224,22 +224,13 @@ impl PrimaryCase {
             ("mass", primary.mass, positive, f64::MIN_POSITIVE),
             ("stiffness", primary.stiffness, positive, f64::MIN_POSITIVE),
             ("damping", primary.damping, not_negative, 0.0),
-            (
-                "frequency of the force",
-                primary.frequency,
-                not_negative,
-                0.0,
-            ),
+            ("frequency of the force", primary.frequency, not_negative, 0.0),
             ("force", primary.force, "a number", f64::MIN),
             ("displacement", self.start[2], "a number", f64::MIN),
             ("speed", self.start[3], "a number", f64::MIN),
         ] {
             if !(value >= least && value.is_finite()) {
-                return Err(PrimaryError::Number {
-                    name,
-                    wanted,
-                    value,
-                });
+                return Err(PrimaryError::Number { name, wanted, value });
             }
         }
         let [x, velocity, ..] = self.start;
@@ -252,12 +243,7 @@ impl PrimaryCase {
 
     /// The energy of both bodies, swing and spring and barrier, in units of m g L.
     pub fn energy(&self, state: PrimaryState) -> f64 {
-        let PrimaryState {
-            x,
-            velocity,
-            y,
-            speed,
-        } = state;
+        let PrimaryState { x, velocity, y, speed } = state;
         let along = speed + velocity * x.cos();
         let across = velocity * x.sin();
         let kinetic = 0.5 * (self.primary.mass * speed * speed + along * along + across * across);
@@ -309,11 +295,7 @@ impl PrimaryMotion {
 
     /// The largest |y| from this time on, by its turning points and the end.
     pub fn largest_since(&self, time: f64) -> f64 {
-        let turns = self
-            .turns
-            .iter()
-            .filter(|(at, _)| *at >= time)
-            .map(|(_, y)| y.abs());
+        let turns = self.turns.iter().filter(|(at, _)| *at >= time).map(|(_, y)| y.abs());
         let end = self.at(self.end).map_or(0.0, |state| state.y.abs());
         turns.fold(end, f64::max)
     }

@@ -51,9 +51,7 @@ impl PrimaryParameter {
     /// parameters of its excitation are not among them.
     pub fn all() -> impl Iterator<Item = Self> {
         let excited = [Parameter::Beta, Parameter::FrequencyRatio];
-        let carried = Parameter::ALL
-            .into_iter()
-            .filter(move |own| !excited.contains(own));
+        let carried = Parameter::ALL.into_iter().filter(move |own| !excited.contains(own));
         Self::OWN.into_iter().chain(carried.map(Self::Pendulum))
     }
 
@@ -157,10 +155,7 @@ impl FromStr for PrimaryParameter {
     fn from_str(name: &str) -> Result<Self, UnknownPrimaryParameter> {
         let is_meant = |parameter: &Self| {
             let (section, key) = parameter.key();
-            name == key
-                || name
-                    .strip_suffix(key)
-                    .is_some_and(|rest| rest == format!("{section}."))
+            name == key || name.strip_suffix(key).is_some_and(|rest| rest == format!("{section}."))
         };
         let meant: Vec<Self> = Self::all().filter(is_meant).collect();
         match meant[..] {
@@ -189,15 +184,9 @@ mod tests {
             assert_eq!(format!("{section}.{key}").parse(), Ok(parameter));
         }
         let ambiguous = "mass".parse::<PrimaryParameter>().unwrap_err().to_string();
-        assert!(
-            ambiguous.contains("primary.mass or design.mass"),
-            "{ambiguous}"
-        );
+        assert!(ambiguous.contains("primary.mass or design.mass"), "{ambiguous}");
         let unknown = "frequncy".parse::<PrimaryParameter>().unwrap_err();
         assert_eq!(unknown.help().as_deref(), Some("did you mean `frequency`?"));
-        assert!(
-            unknown.to_string().contains("mass_ratio, stiffness"),
-            "{unknown}"
-        );
+        assert!(unknown.to_string().contains("mass_ratio, stiffness"), "{unknown}");
     }
 }

@@ -35,12 +35,7 @@ impl Piece {
         match self {
             Self::Flight(path) => {
                 let state = path.at(time.min(path.end()))?;
-                Some(PrimaryState {
-                    x: state[0],
-                    velocity: state[1],
-                    y: state[2],
-                    speed: state[3],
-                })
+                Some(PrimaryState { x: state[0], velocity: state[1], y: state[2], speed: state[3] })
             }
             Self::Contact { path, side, place } => {
                 let state = path.at(own_time(path, time)?)?;
@@ -53,12 +48,7 @@ impl Piece {
             }
             Self::Held { path, x } => {
                 let state = path.at(time.min(path.end()))?;
-                Some(PrimaryState {
-                    x: *x,
-                    velocity: 0.0,
-                    y: state[0],
-                    speed: state[1],
-                })
+                Some(PrimaryState { x: *x, velocity: 0.0, y: state[0], speed: state[1] })
             }
         }
     }
@@ -101,10 +91,7 @@ impl PrimaryPath {
     /// The contacts that begin in this interval of time: their paths in s, and the sides of their
     /// barriers.
     pub(super) fn contacts(&self, [from, until]: [f64; 2]) -> impl Iterator<Item = (&Path, Side)> {
-        let within = self
-            .pieces
-            .iter()
-            .filter(move |(start, _)| (from..=until).contains(start));
+        let within = self.pieces.iter().filter(move |(start, _)| (from..=until).contains(start));
         within.filter_map(|(_, piece)| match piece {
             Piece::Contact { path, side, .. } => Some((path, *side)),
             Piece::Flight(_) | Piece::Held { .. } => None,

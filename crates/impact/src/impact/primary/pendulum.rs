@@ -46,19 +46,12 @@ impl PrimaryMotion {
                 envelope.extend(outside.map(|(t, angle)| (*t, angle.abs())));
             }
             None => envelope.extend(turns.windows(2).map(|pair| {
-                let larger = if pair[1].1.abs() > pair[0].1.abs() {
-                    pair[1]
-                } else {
-                    pair[0]
-                };
+                let larger = if pair[1].1.abs() > pair[0].1.abs() { pair[1] } else { pair[0] };
                 (larger.0, larger.1.abs())
             })),
         }
         envelope.dedup();
-        let largest = envelope
-            .iter()
-            .map(|(_, height)| *height)
-            .fold(0.0, f64::max);
+        let largest = envelope.iter().map(|(_, height)| *height).fold(0.0, f64::max);
         match largest > 0.0 {
             true => self.falls_to(REST_FRACTION * largest, &envelope),
             false => Err(NoRest::NoAmplitude),
@@ -69,9 +62,7 @@ impl PrimaryMotion {
     /// units of m g.
     pub fn peak_force(&self, impact: &PrimaryImpact) -> f64 {
         let model = &self.case.model;
-        let contacts = self
-            .path
-            .contacts([impact.entry, impact.exit.unwrap_or(self.end)]);
+        let contacts = self.path.contacts([impact.entry, impact.exit.unwrap_or(self.end)]);
         let peaks = contacts.map(|(path, side)| {
             let force = |s: f64| match path.at(s) {
                 Some(state) => hertz::force(

@@ -57,10 +57,8 @@ impl ClosedForm {
         // In units of the depth a_1 + 3 a_3 + 2 a_2 and a_1 + 3 a_3 - 2 a_2 are the speeds in units
         // of pi D/T, a_1 - a_3 = 1.
         let unit = PI * depth / duration;
-        let (mean, half) = (
-            0.5 * (speed_in + speed_out) / unit,
-            0.5 * (speed_in - speed_out) / unit,
-        );
+        let (mean, half) =
+            (0.5 * (speed_in + speed_out) / unit, 0.5 * (speed_in - speed_out) / unit);
         let third = 0.25 * (mean - 1.0);
         Self::Contact {
             barrier,
@@ -72,14 +70,7 @@ impl ClosedForm {
     /// Displacement (rad) and velocity at this time since the beginning.
     pub fn at(&self, t: f64) -> (f64, f64) {
         match *self {
-            Self::Swing {
-                sign,
-                modulus,
-                rate,
-                speed,
-                phase,
-                parameter,
-            } => {
+            Self::Swing { sign, modulus, rate, speed, phase, parameter } => {
                 let (sn, cn, dn, _) = ellpj(speed * t + phase, parameter);
                 let modulus = modulus * (-rate * t).exp();
                 let sine = (modulus * sn).clamp(-1.0, 1.0);
@@ -89,11 +80,7 @@ impl ClosedForm {
                     2.0 * sign * modulus * (speed * cn * dn - rate * sn) / cosine,
                 )
             }
-            Self::Contact {
-                barrier,
-                duration,
-                sines,
-            } => {
+            Self::Contact { barrier, duration, sines } => {
                 let (mut place, mut rate) = (barrier, 0.0);
                 for (j, sine) in (1..).zip(sines) {
                     let wave = f64::from(j) * PI / duration;
@@ -114,14 +101,7 @@ impl fmt::Display for ClosedForm {
             false => format!(" + {}", decimal(value)),
         };
         match *self {
-            Self::Swing {
-                sign,
-                modulus,
-                rate,
-                speed,
-                phase,
-                parameter,
-            } => {
+            Self::Swing { sign, modulus, rate, speed, phase, parameter } => {
                 let minus = if sign < 0.0 { "-" } else { "" };
                 let decay = match rate == 0.0 {
                     true => String::new(),
@@ -139,11 +119,7 @@ impl fmt::Display for ClosedForm {
                     decimal(parameter)
                 )
             }
-            Self::Contact {
-                barrier,
-                duration,
-                sines,
-            } => {
+            Self::Contact { barrier, duration, sines } => {
                 write!(formatter, "{}", decimal(barrier))?;
                 for (j, amplitude) in (1..).zip(sines) {
                     if amplitude != 0.0 {

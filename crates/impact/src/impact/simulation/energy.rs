@@ -75,20 +75,10 @@ impl Simulation {
     pub fn energy_points(&self, longest: f64, mut each: impl FnMut(EnergyPoint)) {
         let model = &self.model;
         let start = model.energy(self.start.x, self.start.velocity);
-        let mut book = EnergyBook {
-            start,
-            end: start,
-            ..EnergyBook::default()
-        };
-        each(EnergyPoint {
-            t: 0.0,
-            energy: start,
-            book,
-        });
+        let mut book = EnergyBook { start, end: start, ..EnergyBook::default() };
+        each(EnergyPoint { t: 0.0, energy: start, book });
         for piece in self.path.pieces() {
-            let parts = ((piece.end - piece.start) / longest)
-                .ceil()
-                .clamp(1.0, MOST_PARTS) as u32;
+            let parts = ((piece.end - piece.start) / longest).ceil().clamp(1.0, MOST_PARTS) as u32;
             let stored = |fraction: f64| {
                 let node = self.path.node(piece, fraction);
                 (model.elastic_energy(self.depth(piece.regime, &node)), node)
@@ -98,11 +88,7 @@ impl Simulation {
                 for node in self.path.quadrature(piece, span) {
                     let v = node.velocity;
                     book.viscous -= node.weight * 2.0 * model.zeta * v * v;
-                    let direction = if piece.regime == Regime::Stuck {
-                        0.0
-                    } else {
-                        v.signum()
-                    };
+                    let direction = if piece.regime == Regime::Stuck { 0.0 } else { v.signum() };
                     let dry = match model.friction {
                         Friction::Exact => model.alpha * direction * v,
                         Friction::Arctangent => -(model.damping(v, 0.0) + 2.0 * model.zeta * v) * v,

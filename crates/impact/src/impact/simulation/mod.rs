@@ -179,11 +179,9 @@ impl fmt::Display for Stop {
                 "the allowed number of steps was used up at t = {}: raise step_limit in [run], or shorten the duration",
                 time(t)
             ),
-            Self::Interrupted { t } => write!(
-                formatter,
-                "the run was stopped from outside at t = {}",
-                time(t)
-            ),
+            Self::Interrupted { t } => {
+                write!(formatter, "the run was stopped from outside at t = {}", time(t))
+            }
             Self::StepTooSmall { t } => write!(
                 formatter,
                 "the tolerance could not be reached at t = {}: the steps became too small; loosen it",
@@ -269,16 +267,9 @@ impl Contact {
 
 /// How far or how fast a motion goes, about; zero for one that hangs at rest.
 pub(super) fn size(model: &Model, start: Start) -> f64 {
-    let stored = model
-        .depth(start.x)
-        .map_or(0.0, |(_, depth)| model.elastic_energy(depth));
+    let stored = model.depth(start.x).map_or(0.0, |(_, depth)| model.elastic_energy(depth));
     let released = (2.0 * stored).sqrt();
-    start
-        .x
-        .abs()
-        .max(start.velocity.abs())
-        .max(released)
-        .max(model.beta.abs())
+    start.x.abs().max(start.velocity.abs()).max(released).max(model.beta.abs())
 }
 
 /// The same accuracy for a motion of this size: the absolute tolerance is that of a motion of size
@@ -433,11 +424,7 @@ impl Simulation {
     /// Compares the paths at so many times, as far as both go.
     pub fn difference(&self, other: &Self, count: usize) -> Difference {
         let until = self.end_time.min(other.end_time);
-        let mut difference = Difference {
-            displacement: 0.0,
-            velocity: 0.0,
-            until,
-        };
+        let mut difference = Difference { displacement: 0.0, velocity: 0.0, until };
         for index in 0..count {
             let t = until * (index as f64 / (count.max(2) - 1) as f64);
             if let (Some((x, v)), Some((other_x, other_v))) = (self.path.at(t), other.path.at(t)) {
@@ -454,10 +441,7 @@ impl Simulation {
         let relative =
             |found: f64, truth: f64| Some(found / truth - 1.0).filter(|error| error.is_finite());
         let error = |(index, found): (usize, &Contact)| {
-            let truth = truth
-                .impacts
-                .get(index)
-                .filter(|truth| truth.side == found.side)?;
+            let truth = truth.impacts.get(index).filter(|truth| truth.side == found.side)?;
             let duration = |contact: &Contact| Some(contact.exit_time? - contact.entry_time);
             let both = |found: Option<f64>, truth: Option<f64>| relative(found?, truth?);
             let depth = |contact: &Contact| contact.exit_time.map(|_| contact.penetration);
@@ -476,8 +460,7 @@ impl Simulation {
     /// says at once that it rests, whatever energy is left.
     pub fn is_caged(&self) -> bool {
         let rest = self.rest();
-        self.model
-            .is_caged(rest.place, REST_FRACTION * rest.amplitude)
+        self.model.is_caged(rest.place, REST_FRACTION * rest.amplitude)
     }
 
     /// Whether a barrier was touched at all.
@@ -500,8 +483,6 @@ impl Simulation {
         let barriers = [self.model.left, self.model.right].into_iter().flatten();
         !self.touches()
             && self.model.beta == 0.0
-            && barriers
-                .into_iter()
-                .all(|barrier| out_of_reach(barrier) || upright(barrier))
+            && barriers.into_iter().all(|barrier| out_of_reach(barrier) || upright(barrier))
     }
 }

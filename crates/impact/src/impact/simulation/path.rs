@@ -100,18 +100,11 @@ pub(in crate::impact) struct Node {
 
 impl Path {
     pub(in crate::impact) fn new() -> Self {
-        Self {
-            pieces: Vec::new(),
-            pool: Vec::new(),
-            judge: None,
-        }
+        Self { pieces: Vec::new(), pool: Vec::new(), judge: None }
     }
 
     pub(in crate::impact) fn judged(judge: Trajectory) -> Self {
-        Self {
-            judge: Some(judge),
-            ..Self::new()
-        }
+        Self { judge: Some(judge), ..Self::new() }
     }
 
     /// Displacement (rad) and velocity at a time; nothing outside the time covered.
@@ -120,10 +113,7 @@ impl Path {
         if !(self.pieces.first()?.start..=last.end).contains(&t) {
             return None;
         }
-        let index = self
-            .pieces
-            .partition_point(|piece| piece.start <= t)
-            .checked_sub(1)?;
+        let index = self.pieces.partition_point(|piece| piece.start <= t).checked_sub(1)?;
         let piece = self.pieces.get(index)?;
         let node = self.node_at(piece, t);
         Some((node.x, node.velocity))
@@ -140,10 +130,7 @@ impl Path {
         if t > last.end {
             return None;
         }
-        let index = self
-            .pieces
-            .partition_point(|piece| piece.start <= t)
-            .checked_sub(1)?;
+        let index = self.pieces.partition_point(|piece| piece.start <= t).checked_sub(1)?;
         Some(self.pieces.get(index)?.regime)
     }
 
@@ -181,12 +168,8 @@ impl Path {
             (Regime::Contact(side), Some(barrier)) => Some([barrier, side.sign()]),
             _ => None,
         };
-        let form = Representation::Series {
-            offset,
-            terms: series.map(<[f64]>::len),
-            length,
-            behind,
-        };
+        let form =
+            Representation::Series { offset, terms: series.map(<[f64]>::len), length, behind };
         self.push(span, regime, form);
     }
 
@@ -233,12 +216,7 @@ impl Path {
     }
 
     fn push(&mut self, [start, end]: [f64; 2], regime: Regime, form: Representation) {
-        self.pieces.push(Piece {
-            start,
-            end,
-            regime,
-            form,
-        });
+        self.pieces.push(Piece { start, end, regime, form });
     }
 
     /// Points and weights of a quadrature over a part of a piece, from one fraction of it to
@@ -251,10 +229,7 @@ impl Path {
         let piece = *piece;
         nodes_and_weights(from, to).map(move |(fraction, weight)| {
             let node = self.node(&piece, fraction);
-            Node {
-                weight: weight * node.weight,
-                ..node
-            }
+            Node { weight: weight * node.weight, ..node }
         })
     }
 
@@ -270,12 +245,7 @@ impl Path {
     pub(in crate::impact) fn node(&self, piece: &Piece, fraction: f64) -> Node {
         let length = piece.end - piece.start;
         match piece.form {
-            Representation::Series {
-                offset,
-                terms,
-                length,
-                behind,
-            } => {
+            Representation::Series { offset, terms, length, behind } => {
                 let u = fraction * length;
                 let [place, velocity, time] = self.series(offset, terms);
                 let (place, velocity) = (value(place, u), value(velocity, u));
@@ -297,28 +267,14 @@ impl Path {
                     },
                 }
             }
-            _ => Node {
-                weight: length,
-                ..self.node_at(piece, piece.start + fraction * length)
-            },
+            _ => Node { weight: length, ..self.node_at(piece, piece.start + fraction * length) },
         }
     }
 
     fn node_at(&self, piece: &Piece, t: f64) -> Node {
-        let node = |x: f64, velocity: f64| Node {
-            t,
-            x,
-            velocity,
-            depth: 0.0,
-            weight: 0.0,
-        };
+        let node = |x: f64, velocity: f64| Node { t, x, velocity, depth: 0.0, weight: 0.0 };
         match piece.form {
-            Representation::Series {
-                offset,
-                terms,
-                length,
-                ..
-            } => {
+            Representation::Series { offset, terms, length, .. } => {
                 let [_, _, time] = self.series(offset, terms);
                 let wanted = t - piece.start;
                 let u = match wanted {
@@ -326,10 +282,7 @@ impl Path {
                     _ if t >= piece.end => length,
                     _ => crossing_of(|u| value(time, u) - wanted, 0.0, length),
                 };
-                Node {
-                    t,
-                    ..self.node(piece, u / length)
-                }
+                Node { t, ..self.node(piece, u / length) }
             }
             Representation::Constant { x } => node(x, 0.0),
             Representation::Closed(form) => {
@@ -340,19 +293,13 @@ impl Path {
                     }
                     _ => 0.0,
                 };
-                Node {
-                    depth,
-                    ..node(x, velocity)
-                }
+                Node { depth, ..node(x, velocity) }
             }
             Representation::Judged { origin, sign } => {
                 // The end of a step may be the beginning of another phase, with another coordinate.
                 let inside = t.clamp(piece.start, piece.end.next_down().max(piece.start));
-                let (value, velocity) = self
-                    .judge
-                    .as_ref()
-                    .and_then(|path| path.at(inside))
-                    .unwrap_or((0.0, 0.0));
+                let (value, velocity) =
+                    self.judge.as_ref().and_then(|path| path.at(inside)).unwrap_or((0.0, 0.0));
                 Node {
                     depth: if matches!(piece.regime, Regime::Contact(_)) {
                         value.max(0.0)

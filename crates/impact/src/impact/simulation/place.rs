@@ -27,30 +27,18 @@ impl Place {
     /// The one at which a motion here settles, friction and excitation left aside; for a motion
     /// that is nowhere, the bottom.
     pub fn near(model: &Model, x: f64) -> Self {
-        let bottom = if x.is_finite() {
-            TAU * (x / TAU).round()
-        } else {
-            0.0
-        };
+        let bottom = if x.is_finite() { TAU * (x / TAU).round() } else { 0.0 };
         let held = [Side::Left, Side::Right].into_iter().find_map(|side| {
             let barrier = model.barrier(side).filter(|_| model.gamma > 0.0)?;
             let height = side.sign() * (bottom - barrier);
             (height > 0.0).then_some((side, barrier, height))
         });
         let Some((side, barrier, height)) = held else {
-            return Self {
-                x: bottom,
-                bottom,
-                held: None,
-            };
+            return Self { x: bottom, bottom, held: None };
         };
         let excess = |depth: f64| hertz::force(model.gamma, depth) - (height - depth).sin();
         let depth = find_root(excess, 0.0, height).unwrap_or(0.0);
-        Self {
-            x: barrier + side.sign() * depth,
-            bottom,
-            held: Some(side),
-        }
+        Self { x: barrier + side.sign() * depth, bottom, held: Some(side) }
     }
 
     /// How far above the bottom the pendulum is held, rad.

@@ -93,12 +93,7 @@ impl Simulation {
         let place = self.place().x;
         let level = REST_FRACTION * amplitude;
         if amplitude == 0.0 {
-            return Rest {
-                amplitude,
-                place,
-                time: Err(NoRest::NoAmplitude),
-                last_crossing: None,
-            };
+            return Rest { amplitude, place, time: Err(NoRest::NoAmplitude), last_crossing: None };
         }
         let last_crossing = self.last_crossing(level);
         let time = match self.rest_by_turns(level) {
@@ -113,12 +108,7 @@ impl Simulation {
             }
             Ok(ByTurns::Fall(from)) => self.fall(from, level).ok_or(NoRest::NotYetSeen),
         };
-        Rest {
-            amplitude,
-            place,
-            time,
-            last_crossing,
-        }
+        Rest { amplitude, place, time, last_crossing }
     }
 
     /// The amplitude of a swing with the energy of the start, so that a motion has the same
@@ -140,16 +130,10 @@ impl Simulation {
 
     /// The same from this first swing; only the points that are known to belong to it.
     fn envelope_from(&self, amplitude: f64) -> Vec<Turn> {
-        let mut envelope = vec![Turn {
-            t: 0.0,
-            x: amplitude,
-        }];
+        let mut envelope = vec![Turn { t: 0.0, x: amplitude }];
         let place = self.place();
         let free = place.free_side(&self.model);
-        let counted = |turn: &Turn| Turn {
-            t: turn.t,
-            x: turn.x - place.x,
-        };
+        let counted = |turn: &Turn| Turn { t: turn.t, x: turn.x - place.x };
         // From where it came tells on which side a turning point lies; a moment of rest without
         // motion before it, as under friction, lies where the last one did.
         let mut before = self.start.x;
@@ -186,17 +170,10 @@ impl Simulation {
         if held {
             // Since when, not until when: how long a run is does not change when its motion came to
             // rest.
-            let at_rest = self
-                .turns
-                .iter()
-                .rev()
-                .take_while(|turn| turn.x == self.end_x);
+            let at_rest = self.turns.iter().rev().take_while(|turn| turn.x == self.end_x);
             envelope.extend(at_rest.last().map(counted));
         } else if self.stop == Stop::RestEnergy {
-            envelope.push(Turn {
-                t: self.end_time,
-                x: self.last_swing(),
-            });
+            envelope.push(Turn { t: self.end_time, x: self.last_swing() });
         }
         envelope
     }
@@ -216,10 +193,7 @@ impl Simulation {
         };
         let above = envelope[index];
         match envelope.get(index + 1) {
-            Some(below) => Ok(ByTurns::Line {
-                above,
-                below: *below,
-            }),
+            Some(below) => Ok(ByTurns::Line { above, below: *below }),
             None => self.creeping(above, level),
         }
     }
@@ -232,10 +206,7 @@ impl Simulation {
             return Err(NoRest::StaysAbove);
         }
         let place = self.place().x;
-        let last = self.turns.last().map_or(above, |last| Turn {
-            t: last.t,
-            x: last.x - place,
-        });
+        let last = self.turns.last().map_or(above, |last| Turn { t: last.t, x: last.x - place });
         if self.end_time - last.t <= TAU {
             return Err(NoRest::NotYetSeen);
         }
@@ -257,10 +228,7 @@ impl Simulation {
             ByTurns::Line { above, below } => may_be_late(above, below, level).then_some(above)?,
             ByTurns::Fall(from) => from,
         };
-        Some(Turn {
-            t: from.t,
-            x: from.x + self.place().x,
-        })
+        Some(Turn { t: from.t, x: from.x + self.place().x })
     }
 
     fn path_tells_the_fall(&self) -> bool {
@@ -274,11 +242,7 @@ impl Simulation {
             return self.fall;
         }
         let place = self.place().x;
-        let begins = if from.t > 0.0 {
-            from.x
-        } else {
-            self.start.x - place
-        };
+        let begins = if from.t > 0.0 { from.x } else { self.start.x - place };
         let next = self.turns.iter().find(|turn| turn.t > from.t);
         let until = next.map_or(self.end_time, |turn| turn.t);
         let edge = place + level.copysign(begins);
@@ -295,14 +259,8 @@ impl Simulation {
         if self.path.pieces().is_empty() || beyond(self.end_x) {
             return None;
         }
-        let start = Turn {
-            t: 0.0,
-            x: self.start.x,
-        };
-        let end = Turn {
-            t: self.end_time,
-            x: self.end_x,
-        };
+        let start = Turn { t: 0.0, x: self.start.x };
+        let end = Turn { t: self.end_time, x: self.end_x };
         let index = self.turns.iter().rposition(|turn| beyond(turn.x));
         let from = match index {
             Some(index) => self.turns[index],
@@ -343,9 +301,8 @@ pub(in crate::impact) fn has_rested(model: &Model, turns: &[Turn], level: f64) -
     let small = |turn: &Turn| (turn.x - place.x).abs() <= level;
     // On the free side, not in the barrier.
     let free = |side: Side| {
-        let from_barrier = model
-            .barrier(side.opposite())
-            .map(|barrier| side.sign() * (last.x - barrier));
+        let from_barrier =
+            model.barrier(side.opposite()).map(|barrier| side.sign() * (last.x - barrier));
         side.sign() * (last.x - place.x) > 0.0 && from_barrier.is_none_or(|distance| distance > 0.0)
     };
     match (place.free_side(model), turns) {

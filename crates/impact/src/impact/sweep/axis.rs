@@ -119,9 +119,7 @@ impl Axis {
         if from.is_finite() && to.is_finite() && !span.is_finite() {
             return Err(AxisError::Wide { from, to });
         }
-        Self::range(name, Spacing::Linear, [from, to], count, |part| {
-            from + span * part
-        })
+        Self::range(name, Spacing::Linear, [from, to], count, |part| from + span * part)
     }
 
     /// So many values by equal ratios, both ends included.
@@ -195,16 +193,9 @@ impl Axis {
         let mut sorted = values.clone();
         sorted.sort_by(f64::total_cmp);
         if let Some(pair) = sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-            return Err(AxisError::Twice {
-                name: name.to_owned(),
-                value: pair[1],
-            });
+            return Err(AxisError::Twice { name: name.to_owned(), value: pair[1] });
         }
-        Ok(Self {
-            name: name.to_owned(),
-            spacing,
-            values,
-        })
+        Ok(Self { name: name.to_owned(), spacing, values })
     }
 
     /// The name of the parameter, such as that of a [`Parameter`](crate::impact::Parameter).
@@ -234,18 +225,13 @@ impl FromStr for Axis {
     fn from_str(text: &str) -> Result<Self, AxisError> {
         let form = || AxisError::Form(text.to_owned());
         let (name, values) = text.split_once('=').ok_or_else(form)?;
-        let name = Some(name.trim())
-            .filter(|name| !name.is_empty())
-            .ok_or_else(form)?;
+        let name = Some(name.trim()).filter(|name| !name.is_empty()).ok_or_else(form)?;
         let number = |text: &str| match text.trim().parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
             _ => Err(AxisError::Number(text.trim().to_owned())),
         };
         if values.contains(',') && !values.contains(':') {
-            return Self::list(
-                name,
-                values.split(',').map(number).collect::<Result<_, _>>()?,
-            );
+            return Self::list(name, values.split(',').map(number).collect::<Result<_, _>>()?);
         }
         let parts: Vec<&str> = values.split(':').map(str::trim).collect();
         let (from, to, count, spacing) = match parts[..] {
@@ -254,9 +240,7 @@ impl FromStr for Axis {
             _ => return Err(form()),
         };
         let (from, to) = (number(from)?, number(to)?);
-        let count = count
-            .parse()
-            .map_err(|_| AxisError::Count(count.to_owned()))?;
+        let count = count.parse().map_err(|_| AxisError::Count(count.to_owned()))?;
         match spacing {
             "lin" | "linear" => Self::linear(name, from, to, count),
             "log" | "logarithmic" => Self::logarithmic(name, from, to, count),
@@ -282,10 +266,7 @@ mod tests {
         assert_eq!((range.name(), range.values().len()), ("zeta", 4));
         assert_eq!(range.ends(), [0.01, 0.07]);
         assert_eq!(axis("zeta=0.01:0.07:4:lin").unwrap(), range);
-        assert_eq!(
-            axis(" zeta = 3 , -1,2e0").unwrap().values(),
-            [3.0, -1.0, 2.0]
-        );
+        assert_eq!(axis(" zeta = 3 , -1,2e0").unwrap().values(), [3.0, -1.0, 2.0]);
         for wrong in [
             "zeta",
             "zeta=1:2",
@@ -311,41 +292,25 @@ mod tests {
     fn equal_ratios_lead_from_one_end_to_the_other() {
         let decades = axis("gamma=1e-2:1e9:12:log").unwrap();
         for (value, exponent) in decades.values().iter().zip(-2..) {
-            assert!(
-                (value / 10_f64.powi(exponent) - 1.0).abs() < 1e-15,
-                "{value}"
-            );
+            assert!((value / 10_f64.powi(exponent) - 1.0).abs() < 1e-15, "{value}");
         }
         let falling = axis("start=-2:-1e-3:7:log").unwrap();
         assert_eq!(falling.ends(), [-2.0, -1e-3]);
         let ratios = falling.values().windows(2).map(|pair| pair[1] / pair[0]);
         for ratio in ratios {
-            assert!(
-                (ratio / 5e-4_f64.powf(1.0 / 6.0) - 1.0).abs() < 1e-14,
-                "{ratio}"
-            );
+            assert!((ratio / 5e-4_f64.powf(1.0 / 6.0) - 1.0).abs() < 1e-14, "{ratio}");
         }
         for wrong in ["speed=-1:1:3:log", "mu=0:1e5:3:log", "mu=1e5:-0:3:log"] {
-            assert!(
-                matches!(axis(wrong), Err(AxisError::NoRatio { .. })),
-                "{wrong}"
-            );
+            assert!(matches!(axis(wrong), Err(AxisError::NoRatio { .. })), "{wrong}");
         }
     }
 
     #[test]
     fn no_value_comes_twice() {
-        for wrong in [
-            "mu=1,2,1",
-            "mu=0,-0",
-            "mu=3:3:2",
-            "mu=3:3:2:log",
-            "mu=1:1.0000000000000002:9",
-        ] {
-            assert!(
-                matches!(axis(wrong), Err(AxisError::Twice { .. })),
-                "{wrong}"
-            );
+        for wrong in
+            ["mu=1,2,1", "mu=0,-0", "mu=3:3:2", "mu=3:3:2:log", "mu=1:1.0000000000000002:9"]
+        {
+            assert!(matches!(axis(wrong), Err(AxisError::Twice { .. })), "{wrong}");
         }
     }
 }

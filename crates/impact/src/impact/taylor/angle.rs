@@ -89,25 +89,12 @@ mod tests {
     fn they_are_sine_and_cosine() {
         let steps = (-40_000..40_000).map(|step| f64::from(step) * 0.013);
         let ends = (-70..70).map(|quarters| f64::from(quarters) * std::f64::consts::FRAC_PI_2);
-        let wide = [
-            0.0,
-            -0.0,
-            1e-300,
-            5e-324,
-            99_999.9,
-            -99_999.9,
-            1e5 + 1.0,
-            1e22,
-            f64::MAX,
-        ];
+        let wide = [0.0, -0.0, 1e-300, 5e-324, 99_999.9, -99_999.9, 1e5 + 1.0, 1e22, f64::MAX];
         for angle in steps.chain(ends).chain(wide) {
             let (sine, cosine) = sine_and_cosine(angle);
             let (sine_of, cosine_of) = angle.sin_cos();
             let allowed = |value: f64| 2.3e-16 * value.abs() + 1e-26 * angle.abs().min(LARGEST);
-            assert!(
-                (sine - sine_of).abs() <= allowed(sine_of),
-                "sin {angle}: {sine} {sine_of}"
-            );
+            assert!((sine - sine_of).abs() <= allowed(sine_of), "sin {angle}: {sine} {sine_of}");
             assert!(
                 (cosine - cosine_of).abs() <= allowed(cosine_of),
                 "cos {angle}: {cosine} {cosine_of}"

@@ -75,10 +75,7 @@ impl Runner {
         let mut deepest = w * w;
         if let Some(turn) = course.turn {
             deepest = deepest.max(turn.place * turn.place);
-            self.turns.push(Turn {
-                t: self.t + turn.time,
-                x: x(turn.place),
-            });
+            self.turns.push(Turn { t: self.t + turn.time, x: x(turn.place) });
         }
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest);
@@ -88,8 +85,7 @@ impl Runner {
         if self.settings.keep_path {
             let series = load();
             let series = series.each_ref().map(|series| &series[..=self.order]);
-            self.path
-                .push_series([start, self.t], (self.regime, Some(barrier)), at, series);
+            self.path.push_series([start, self.t], (self.regime, Some(barrier)), at, series);
         }
         (self.place, self.velocity, self.sine, self.cosine) = (w, velocity, sine, cosine);
         match course.crossing {
@@ -107,13 +103,7 @@ impl Runner {
         series: [&[f64; HIGHEST_ORDER + 1]; 3],
     ) {
         let [w, v, time] = series.map(|series| &series[..=self.order]);
-        let step = ContactStep {
-            side,
-            barrier,
-            w,
-            v,
-            time,
-        };
+        let step = ContactStep { side, barrier, w, v, time };
         let remaining = self.settings.duration - self.t;
         // Beyond the release, where w < 0, the time would fall again.
         let releases = sign_changes(w, self.length);
@@ -144,30 +134,16 @@ impl Runner {
         self.t = if last && end == h {
             self.settings.duration
         } else {
-            start
-                + if end == h {
-                    whole.time
-                } else {
-                    value(time, end)
-                }
-                .max(0.0)
+            start + if end == h { whole.time } else { value(time, end) }.max(0.0)
         };
         if self.settings.keep_path {
-            self.path.push_series(
-                [start, self.t],
-                (self.regime, Some(barrier)),
-                end,
-                [w, v, time],
-            );
+            self.path.push_series([start, self.t], (self.regime, Some(barrier)), end, [w, v, time]);
         }
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest);
         }
-        (self.place, self.velocity) = if end == h {
-            (whole.place, whole.velocity)
-        } else {
-            (value(w, end), value(v, end))
-        };
+        (self.place, self.velocity) =
+            if end == h { (whole.place, whole.velocity) } else { (value(w, end), value(v, end)) };
         self.go_on(&step, event);
     }
 
@@ -182,17 +158,8 @@ impl Runner {
         let turns = turning_points(step.v, h, whole);
         let (mut from, mut w_from) = (0.0, step.w[0]);
         let mut deepest = 0.0_f64;
-        for (to, turning) in turns
-            .as_slice()
-            .iter()
-            .map(|turn| (*turn, true))
-            .chain([(h, false)])
-        {
-            let w_to = if turning {
-                value(step.w, to)
-            } else {
-                whole.place
-            };
+        for (to, turning) in turns.as_slice().iter().map(|turn| (*turn, true)).chain([(h, false)]) {
+            let w_to = if turning { value(step.w, to) } else { whole.place };
             if w_to <= 0.0 && to > 0.0 {
                 let release = if w_from > 0.0 && w_to < 0.0 {
                     bracketed(step.w, 0.0, (from, w_from), (to, w_to))
@@ -203,10 +170,7 @@ impl Runner {
             }
             deepest = deepest.max(w_to * w_to);
             if turning {
-                self.turns.push(Turn {
-                    t: self.t + value(step.time, to),
-                    x: step.x(w_to * w_to),
-                });
+                self.turns.push(Turn { t: self.t + value(step.time, to), x: step.x(w_to * w_to) });
                 if self.model.sticks() {
                     return (to, Some(Event::Turn), deepest);
                 }
@@ -261,13 +225,7 @@ impl Runner {
 
     /// Contact begins, at this speed.
     pub(super) fn touch(&mut self, side: Side, speed: f64) {
-        enter(
-            &mut self.impacts,
-            (&self.model, &self.settings),
-            side,
-            self.t,
-            [0.0, speed],
-        );
+        enter(&mut self.impacts, (&self.model, &self.settings), side, self.t, [0.0, speed]);
         self.press(side, 0.0, speed);
     }
 
@@ -309,11 +267,7 @@ impl Runner {
         // to none.
         let others = self.sine.abs() + self.model.alpha + self.model.beta.abs();
         let unit = (reached.sqrt() / fastest).min((2.0 / others).sqrt());
-        self.unit = if unit.is_finite() && unit > 0.0 {
-            unit
-        } else {
-            1.0
-        };
+        self.unit = if unit.is_finite() && unit > 0.0 { unit } else { 1.0 };
     }
 
     /// Contact ends at this velocity.

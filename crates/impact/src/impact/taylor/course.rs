@@ -49,12 +49,7 @@ struct Points<const L: usize> {
 
 impl<const L: usize> Points<L> {
     fn new() -> Self {
-        Self {
-            at: [0.0; L],
-            place: [0.0; L],
-            velocity: [0.0; L],
-            time: [0.0; L],
-        }
+        Self { at: [0.0; L], place: [0.0; L], velocity: [0.0; L], time: [0.0; L] }
     }
 
     fn lane(&self, lane: usize) -> Point {
@@ -142,17 +137,10 @@ pub(super) fn courses<const L: usize>(
     }
     let mut level = [0.0; L];
     for lane in 0..L {
-        let (rises, falls) = (
-            goal[lane] > inputs.upper[lane],
-            goal[lane] < inputs.lower[lane],
-        );
+        let (rises, falls) = (goal[lane] > inputs.upper[lane], goal[lane] < inputs.lower[lane]);
         courses.rises[lane] = rises;
         courses.crosses[lane] = rises | falls;
-        level[lane] = if rises {
-            inputs.upper[lane]
-        } else {
-            inputs.lower[lane]
-        };
+        level[lane] = if rises { inputs.upper[lane] } else { inputs.lower[lane] };
         let inside = (start[lane] < inputs.upper[lane]) & (start[lane] > inputs.lower[lane]);
         let at_bound = (goal[lane] == inputs.upper[lane]) | (goal[lane] == inputs.lower[lane]);
         courses.plain[lane] &= !at_bound & (inside | !courses.crosses[lane]);
@@ -162,18 +150,9 @@ pub(super) fn courses<const L: usize>(
             start[lane] -= level[lane];
             goal[lane] -= level[lane];
         }
-        let crossing = crossings(
-            place,
-            &level,
-            (&from, &start),
-            (&to, &goal),
-            &courses.crosses,
-        );
+        let crossing = crossings(place, &level, (&from, &start), (&to, &goal), &courses.crosses);
         courses.crossing.at = crossing;
-        [
-            courses.crossing.place,
-            courses.crossing.velocity,
-            courses.crossing.time,
-        ] = series.values(&crossing, order, equation);
+        [courses.crossing.place, courses.crossing.velocity, courses.crossing.time] =
+            series.values(&crossing, order, equation);
     }
 }

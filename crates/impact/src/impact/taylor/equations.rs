@@ -92,10 +92,7 @@ pub(super) const CONTACT: Equations = Equations {
 };
 
 /// Where they are written to.
-const FILE: &str = concat!(
-    env!("CARGO_MANIFEST_DIR"),
-    "/src/impact/taylor/recurrences.rs"
-);
+const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/impact/taylor/recurrences.rs");
 
 const HEAD: &str = "//! The series of a step of equation (7). Written from the lines in `equations` by its test: a change here is lost.
 
@@ -126,9 +123,7 @@ mod tests {
         let source = format!("{HEAD}\n{}\n{}", functions[0], functions[1]);
         let plain = |text: &str| {
             let text: String = text.split_whitespace().collect();
-            text.replace(",)", ")")
-                .replace(",]", "]")
-                .replace(",}", "}")
+            text.replace(",)", ")").replace(",]", "]").replace(",}", "}")
         };
         if plain(&std::fs::read_to_string(FILE).unwrap_or_default()) != plain(&source) {
             std::fs::write(FILE, source).expect(FILE);
@@ -187,18 +182,12 @@ mod tests {
             number("p", [p / unit]),
             number("q", [q / (unit * unit)]),
         ]);
-        let variables: Vec<(Symbol, Option<usize>)> = states
-            .iter()
-            .map(|(name, _)| (Symbol::from(*name), None))
-            .collect();
+        let variables: Vec<(Symbol, Option<usize>)> =
+            states.iter().map(|(name, _)| (Symbol::from(*name), None)).collect();
         let mut recurrences = Recurrences::new(&variables, &numbers, ORDER);
         let rates: Vec<usize> = rates
             .iter()
-            .map(|text| {
-                recurrences
-                    .add(&parse_expression(text).expect(text))
-                    .expect(text)
-            })
+            .map(|text| recurrences.add(&parse_expression(text).expect(text)).expect(text))
             .collect();
         let mut tape = recurrences.into_tape();
         for (place, (_, value)) in states.iter().enumerate() {
@@ -210,15 +199,11 @@ mod tests {
                 tape.feed(place, *rate, order, inputs.unit[0]);
             }
         }
-        (0..states.len())
-            .map(|place| tape.series(place).to_vec())
-            .collect()
+        (0..states.len()).map(|place| tape.series(place).to_vec()).collect()
     }
 
     fn assert_same(own: &Series<1>, other: &[f64], what: &str) {
-        let size = other
-            .iter()
-            .fold(0.0_f64, |size, value| size.max(value.abs()));
+        let size = other.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
         for (n, (own, other)) in own.iter().zip(other).enumerate() {
             assert!(
                 (own[0] - other).abs() <= 1e-13 * (other.abs() + 1e-3 * size),
@@ -268,11 +253,7 @@ mod tests {
                 ],
                 (&now, in_flight(&now)),
             );
-            assert_same(
-                &series.time,
-                &[&[0.0], &other[2][1..TIME_TERMS]].concat(),
-                "t in flight",
-            );
+            assert_same(&series.time, &[&[0.0], &other[2][1..TIME_TERMS]].concat(), "t in flight");
             assert_same(&series.place, &other[0], "x");
             assert_same(&series.velocity, &other[1], "v in flight");
         }

@@ -41,10 +41,7 @@ impl Runner {
             return false;
         }
         if let Some(turn) = course.turn {
-            self.turns.push(Turn {
-                t: self.t + turn.time,
-                x: turn.place,
-            });
+            self.turns.push(Turn { t: self.t + turn.time, x: turn.place });
         }
         let start = self.t;
         let (at, time) =
@@ -53,8 +50,7 @@ impl Runner {
         if self.settings.keep_path {
             let [x, v, time] = load();
             let series = [&x[..=self.order], &v[..=self.order], &time[..TIME_TERMS]];
-            self.path
-                .push_series([start, self.t], (self.regime, None), at, series);
+            self.path.push_series([start, self.t], (self.regime, None), at, series);
         }
         (self.place, self.velocity, self.sine, self.cosine) = (x, velocity, sine, cosine);
         match touched {
@@ -79,11 +75,8 @@ impl Runner {
             _ => self.flight_event([x, v, time], h, whole),
         };
         let energy = |u: f64| self.model.energy(value(x, u), value(v, u));
-        let (mut x_end, mut v_end) = if end == h {
-            (whole.place, whole.velocity)
-        } else {
-            (value(x, end), value(v, end))
-        };
+        let (mut x_end, mut v_end) =
+            if end == h { (whole.place, whole.velocity) } else { (value(x, end), value(v, end)) };
         if let Some(Event::Touch(side)) = event {
             x_end = self.model.barrier(side).unwrap_or(x_end);
         }
@@ -98,23 +91,14 @@ impl Runner {
             (sine, cosine) = sine_and_cosine(x_end);
         }
         let start = self.t;
-        let elapsed = if end == h {
-            whole.time
-        } else {
-            value(time, end)
-        };
-        self.t = if last && end == h {
-            self.settings.duration
-        } else {
-            start + elapsed
-        };
+        let elapsed = if end == h { whole.time } else { value(time, end) };
+        self.t = if last && end == h { self.settings.duration } else { start + elapsed };
         if self.settings.keep_path {
             let state = match event {
                 Some(Event::Onset(side)) => Regime::Contact(side),
                 _ => self.regime,
             };
-            self.path
-                .push_series([start, self.t], (state, None), end, [x, v, time]);
+            self.path.push_series([start, self.t], (state, None), end, [x, v, time]);
         }
         (self.place, self.velocity, self.sine, self.cosine) = (x_end, v_end, sine, cosine);
         self.adapt();
@@ -129,13 +113,7 @@ impl Runner {
             }
             Some(Event::Onset(side)) => {
                 let depth = side.sign() * rise(x, end);
-                enter(
-                    &mut self.impacts,
-                    (&self.model, &self.settings),
-                    side,
-                    start,
-                    [0.0, 0.0],
-                );
+                enter(&mut self.impacts, (&self.model, &self.settings), side, start, [0.0, 0.0]);
                 self.begin_contact_from_rest(side, elapsed, [depth, side.sign() * v_end]);
             }
             Some(Event::Touch(side) | Event::Settle(side)) => {
@@ -167,11 +145,7 @@ impl Runner {
     ) -> (f64, Option<Event>) {
         let turns = turning_points(v, h, end);
         let (mut from, mut x_from) = (0.0, x[0]);
-        let ends = turns
-            .as_slice()
-            .iter()
-            .map(|turn| (*turn, true))
-            .chain([(h, false)]);
+        let ends = turns.as_slice().iter().map(|turn| (*turn, true)).chain([(h, false)]);
         for (to, turning) in ends {
             let x_to = if turning { value(x, to) } else { end.place };
             for side in [Side::Right, Side::Left] {
@@ -203,10 +177,7 @@ impl Runner {
                 }
             }
             if turning {
-                self.turns.push(Turn {
-                    t: self.t + value(time, to),
-                    x: x_to,
-                });
+                self.turns.push(Turn { t: self.t + value(time, to), x: x_to });
                 if self.model.sticks() {
                     return (to, Some(Event::Turn));
                 }

@@ -32,10 +32,8 @@ impl Runner {
     fn wait(&mut self) {
         let (start, x, _) = self.now();
         let field = self.force_at_rest() - self.model.field(start, x) - x.sin();
-        let (release, direction) = self
-            .model
-            .release(start, x, field)
-            .unwrap_or((f64::INFINITY, 0.0));
+        let (release, direction) =
+            self.model.release(start, x, field).unwrap_or((f64::INFINITY, 0.0));
         let end = release.min(self.settings.duration);
         if self.settings.keep_path && end > start {
             self.path.push_rest([start, end], x);

@@ -61,10 +61,8 @@ pub(super) fn products<const L: usize>(
         return sums;
     }
     let mut next = [[0.0; L]; 2];
-    for ((low, high), (b, c)) in a[..n]
-        .iter()
-        .zip(&a[1..=n])
-        .zip(b[1..=n].iter().zip(&c[1..=n]).rev())
+    for ((low, high), (b, c)) in
+        a[..n].iter().zip(&a[1..=n]).zip(b[1..=n].iter().zip(&c[1..=n]).rev())
     {
         // A register at a time: so that the sums stay in theirs.
         for first in (0..L).step_by(REGISTER) {
@@ -176,10 +174,7 @@ pub(super) fn waves_of_time<const L: usize>(
     factor: &[f64; L],
     n: usize,
 ) {
-    let (up, down) = (
-        stretched(stretch, cosine, n - 1),
-        stretched(stretch, sine, n - 1),
-    );
+    let (up, down) = (stretched(stretch, cosine, n - 1), stretched(stretch, sine, n - 1));
     for lane in 0..L {
         sine[n][lane] = factor[lane] * up[lane];
         cosine[n][lane] = -factor[lane] * down[lane];

@@ -39,12 +39,7 @@ impl WithSimd for Expansion<'_> {
             Equation::Flight => flight(self.inputs, self.order, self.terms, self.series),
             Equation::Contact => contact(self.inputs, self.order, self.terms, self.series),
         }
-        step_lengths(
-            &self.series.velocity,
-            self.order,
-            &self.inputs.size,
-            &self.inputs.allowed,
-        )
+        step_lengths(&self.series.velocity, self.order, &self.inputs.size, &self.inputs.allowed)
     }
 }
 
@@ -65,17 +60,8 @@ impl WithSimd for Evaluation<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let (step, ends) = ((self.order, self.equation), self.ends);
-        *ends = self
-            .series
-            .ends(self.inputs, self.lengths, self.order, self.equation);
-        courses(
-            self.series,
-            step,
-            self.inputs,
-            self.lengths,
-            ends,
-            self.courses,
-        );
+        *ends = self.series.ends(self.inputs, self.lengths, self.order, self.equation);
+        courses(self.series, step, self.inputs, self.lengths, ends, self.courses);
     }
 }
 
@@ -177,9 +163,7 @@ pub(in crate::impact) fn follow(
         });
         for (lane, &place) in group[..count].iter().enumerate() {
             if let Some((_, runner)) = pool.get_mut(place) {
-                runner.advance(ends.lane(lane), courses.lane(lane), || {
-                    series.lane(order, lane)
-                });
+                runner.advance(ends.lane(lane), courses.lane(lane), || series.lane(order, lane));
             }
             fresh.push(place);
         }

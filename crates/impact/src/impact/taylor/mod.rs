@@ -158,14 +158,7 @@ pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulatio
         let [proposed] = step_lengths(&series.velocity, order, &inputs.size, &inputs.allowed);
         let length = runner.reach(proposed);
         let ends = series.ends(&inputs, &[length], order, equation);
-        courses(
-            &series,
-            (order, equation),
-            &inputs,
-            &[length],
-            &ends,
-            &mut found,
-        );
+        courses(&series, (order, equation), &inputs, &[length], &ends, &mut found);
         runner.advance(ends.lane(0), found.lane(0), || series.lane(order, 0));
     }
     runner.finish(start)
@@ -176,17 +169,11 @@ pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulatio
 pub(super) fn fall(simulation: &Simulation) -> Option<f64> {
     let from = simulation.untold_fall()?;
     let start = match from.t > 0.0 {
-        true => Start {
-            x: from.x,
-            velocity: 0.0,
-        },
+        true => Start { x: from.x, velocity: 0.0 },
         false => simulation.start,
     };
-    let settings = Settings {
-        duration: simulation.end_time - from.t,
-        keep_path: true,
-        ..simulation.settings
-    };
+    let settings =
+        Settings { duration: simulation.end_time - from.t, keep_path: true, ..simulation.settings };
     if settings.duration <= 0.0 {
         return None;
     }
@@ -250,13 +237,7 @@ impl Runner {
         }
         if let Some((side, depth)) = model.depth(start.x) {
             let speed = side.sign() * start.velocity;
-            enter(
-                &mut runner.impacts,
-                (&model, &settings),
-                side,
-                0.0,
-                [depth, speed],
-            );
+            enter(&mut runner.impacts, (&model, &settings), side, 0.0, [depth, speed]);
             match model.would_pull(speed) {
                 true => runner.regime = Regime::Detached(side),
                 false => runner.press(side, depth.sqrt(), speed),
@@ -365,16 +346,8 @@ impl Runner {
         }
         inputs.unit[lane] = self.unit;
         (inputs.hertz[0][lane], inputs.hertz[1][lane]) = (self.hertz[0], self.hertz[1]);
-        inputs.dry[lane] = if arctangent {
-            0.0
-        } else {
-            model.alpha * mirror * self.direction
-        };
-        inputs.arctangent[lane] = if arctangent {
-            FRAC_2_PI * model.alpha
-        } else {
-            0.0
-        };
+        inputs.dry[lane] = if arctangent { 0.0 } else { model.alpha * mirror * self.direction };
+        inputs.arctangent[lane] = if arctangent { FRAC_2_PI * model.alpha } else { 0.0 };
         inputs.viscous[lane] = 2.0 * model.zeta;
         inputs.beta[lane] = mirror * model.beta;
         inputs.eta[lane] = model.frequency_ratio;
@@ -383,10 +356,7 @@ impl Runner {
         (inputs.size[lane], inputs.allowed[lane]) = self.allowance();
         (inputs.lower[lane], inputs.upper[lane]) = match self.regime {
             Regime::Contact(_) => (0.0, f64::INFINITY),
-            _ => (
-                model.left.unwrap_or(f64::NEG_INFINITY),
-                model.right.unwrap_or(f64::INFINITY),
-            ),
+            _ => (model.left.unwrap_or(f64::NEG_INFINITY), model.right.unwrap_or(f64::INFINITY)),
         };
     }
 
@@ -397,9 +367,7 @@ impl Runner {
             Regime::Contact(_) => self.impacts.last().map_or(0.0, |impact| impact.speed_in),
             _ => self.place.abs(),
         };
-        let size = place
-            .max(self.velocity.abs())
-            .max(tolerance.absolute_tolerance);
+        let size = place.max(self.velocity.abs()).max(tolerance.absolute_tolerance);
         let allowed = SAFETY * (tolerance.absolute_tolerance + tolerance.relative_tolerance * size);
         (size, allowed)
     }
@@ -424,9 +392,7 @@ impl Runner {
             self.stop = Some(Stop::NotFinite { t: self.t });
             return;
         }
-        let contact = self
-            .side()
-            .filter(|_| matches!(self.regime, Regime::Contact(_)));
+        let contact = self.side().filter(|_| matches!(self.regime, Regime::Contact(_)));
         if contact.is_none() && self.t + end.time.min(self.settings.duration - self.t) <= self.t {
             self.stop = Some(Stop::StepTooSmall { t: self.t });
             return;

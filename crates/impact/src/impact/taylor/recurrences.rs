@@ -30,26 +30,9 @@ pub(super) fn flight<const L: usize>(
 ) {
     let order = order.min(HIGHEST_ORDER);
     let stretch = in_flight(inputs);
-    let Coefficients {
-        place: x,
-        velocity: v,
-        time: t,
-        scratch,
-        ahead,
-        ahead_of_waves,
-    } = series;
-    let [
-        drive,
-        counter,
-        x_slope,
-        sine,
-        cosine,
-        scaled_v,
-        slowing_over,
-        slowing_slope,
-        slowing,
-        ..,
-    ] = scratch;
+    let Coefficients { place: x, velocity: v, time: t, scratch, ahead, ahead_of_waves } = series;
+    let [drive, counter, x_slope, sine, cosine, scaled_v, slowing_over, slowing_slope, slowing, ..] =
+        scratch;
     let [scaled_v_squared_ahead, drive_cosine_ahead, ..] = ahead;
     let [sine_ahead, ..] = ahead_of_waves;
     let mut force_before = [[0.0; L]; 2];
@@ -140,14 +123,7 @@ pub(super) fn contact<const L: usize>(
 ) {
     let order = order.min(HIGHEST_ORDER);
     let stretch = in_contact(inputs);
-    let Coefficients {
-        place: w,
-        velocity: v,
-        time: t,
-        scratch,
-        ahead,
-        ahead_of_waves,
-    } = series;
+    let Coefficients { place: w, velocity: v, time: t, scratch, ahead, ahead_of_waves } = series;
     let [
         depth,
         t_slope,

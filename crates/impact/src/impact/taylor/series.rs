@@ -164,14 +164,7 @@ pub(super) struct End {
 impl<const L: usize> Ends<L> {
     pub(super) fn new() -> Self {
         let zero = [0.0; L];
-        Self {
-            place: zero,
-            velocity: zero,
-            time: zero,
-            variation: zero,
-            sine: zero,
-            cosine: zero,
-        }
+        Self { place: zero, velocity: zero, time: zero, variation: zero, sine: zero, cosine: zero }
     }
 
     pub(super) fn lane(&self, lane: usize) -> End {
@@ -190,10 +183,7 @@ impl<const L: usize> Coefficients<L> {
     /// The series of one motion: x or w, v, t.
     pub(super) fn lane(&self, order: usize, lane: usize) -> Loaded {
         let mut own = [[0.0; HIGHEST_ORDER + 1]; 3];
-        for (own, all) in own
-            .iter_mut()
-            .zip([&self.place, &self.velocity, &self.time])
-        {
+        for (own, all) in own.iter_mut().zip([&self.place, &self.velocity, &self.time]) {
             for (coefficient, lanes) in own.iter_mut().zip(all).take(order + 1) {
                 *coefficient = lanes[lane];
             }

@@ -21,11 +21,8 @@ pub(super) fn step_lengths<const L: usize>(
         for lane in 0..L {
             let excess = logarithm(last[lane].abs()) - logarithm(size[lane]);
             let found = excess * inverse;
-            inverse_radius[lane] = if found > inverse_radius[lane] {
-                found
-            } else {
-                inverse_radius[lane]
-            };
+            inverse_radius[lane] =
+                if found > inverse_radius[lane] { found } else { inverse_radius[lane] };
         }
     }
     let mut lengths = [0.0; L];
@@ -51,11 +48,7 @@ fn logarithm(number: f64) -> f64 {
 fn power(exponent: f64) -> f64 {
     // The integer below it, without a call: rounded first.
     let rounded = (exponent + 1.5 * WHOLE_NUMBERS) - 1.5 * WHOLE_NUMBERS;
-    let whole = if rounded > exponent {
-        rounded - 1.0
-    } else {
-        rounded
-    };
+    let whole = if rounded > exponent { rounded - 1.0 } else { rounded };
     let part = exponent - whole;
     let normal = if whole < -1022.0 { -1022.0 } else { whole };
     let normal = if normal > 1023.0 { 1023.0 } else { normal };

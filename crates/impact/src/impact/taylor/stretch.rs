@@ -18,12 +18,7 @@ use super::series::{Inputs, Series};
 /// p and q of the steps of free flight.
 #[inline(always)]
 pub(super) fn in_flight<const L: usize>(inputs: &Inputs<L>) -> [[f64; L]; 2] {
-    let Inputs {
-        velocity,
-        sine,
-        unit,
-        ..
-    } = inputs;
+    let Inputs { velocity, sine, unit, .. } = inputs;
     let [mut p, mut q] = [[0.0; L]; 2];
     for lane in 0..L {
         let speed = unit[lane] * velocity[lane];
@@ -36,13 +31,7 @@ pub(super) fn in_flight<const L: usize>(inputs: &Inputs<L>) -> [[f64; L]; 2] {
 /// p and q of the steps in contact.
 #[inline(always)]
 pub(super) fn in_contact<const L: usize>(inputs: &Inputs<L>) -> [[f64; L]; 2] {
-    let Inputs {
-        place: root,
-        velocity,
-        unit,
-        hertz: [largest, fastest],
-        ..
-    } = inputs;
+    let Inputs { place: root, velocity, unit, hertz: [largest, fastest], .. } = inputs;
     let [mut p, mut q] = [[0.0; L]; 2];
     for lane in 0..L {
         // r in units of the contact of Hertz. Where other forces set the pace its poles are not
@@ -55,16 +44,8 @@ pub(super) fn in_contact<const L: usize>(inputs: &Inputs<L>) -> [[f64; L]; 2] {
         // Where it is in s: -1 at the touch, 0 where it is deepest, 1 at the release.
         let place = -v * (1.0 - 0.8 * w + 0.12 * (w * w) * (w * w) * w);
         let inside = (1.0 - place * place) * (1.0 - place * place);
-        p[lane] = if fits {
-            0.64 * place * inside * units
-        } else {
-            0.0
-        };
-        q[lane] = if fits {
-            0.15 * inside * units * units
-        } else {
-            0.0
-        };
+        p[lane] = if fits { 0.64 * place * inside * units } else { 0.0 };
+        q[lane] = if fits { 0.15 * inside * units * units } else { 0.0 };
     }
     [p, q]
 }
@@ -111,18 +92,13 @@ mod tests {
     fn a_stretched_step_goes_forward() {
         let numbers = [0.0, 1e-300, 1e-3, 0.3, 0.7, 1.0, 40.0, 1e300, f64::INFINITY];
         for place in numbers {
-            for (speed, unit) in numbers
-                .into_iter()
-                .flat_map(|speed| numbers.map(|unit| (speed, unit)))
+            for (speed, unit) in
+                numbers.into_iter().flat_map(|speed| numbers.map(|unit| (speed, unit)))
             {
                 for velocity in [speed, -speed] {
-                    for (largest, fastest) in [
-                        (0.0, 0.0),
-                        (1.0, 1.0),
-                        (0.1, 1e-9),
-                        (1e-9, 3.0),
-                        (f64::INFINITY, 1.0),
-                    ] {
+                    for (largest, fastest) in
+                        [(0.0, 0.0), (1.0, 1.0), (0.1, 1e-9), (1e-9, 3.0), (f64::INFINITY, 1.0)]
+                    {
                         let inputs = Inputs::<1> {
                             place: [place],
                             velocity: [velocity],

@@ -159,9 +159,7 @@ pub enum PeriodError {
 
 /// The end of a message, where it is known for which amplitudes motions are periodic.
 fn periodic_elsewhere(range: &Option<String>) -> String {
-    range
-        .as_ref()
-        .map_or_else(String::new, |range| format!("; motions are {range}"))
+    range.as_ref().map_or_else(String::new, |range| format!("; motions are {range}"))
 }
 
 impl PeriodError {
@@ -175,10 +173,7 @@ impl PeriodError {
                 *range = Some(words);
                 self
             }
-            _ => Self::OutsideWell {
-                error: Box::new(self),
-                range: words,
-            },
+            _ => Self::OutsideWell { error: Box::new(self), range: words },
         }
     }
 
@@ -186,34 +181,12 @@ impl PeriodError {
     #[must_use]
     pub fn moved(mut self, origin: f64) -> Self {
         match &mut self {
-            Self::PushedAway {
-                start,
-                equilibrium: other,
-                ..
-            }
-            | Self::OtherWell {
-                start,
-                equilibrium: other,
-                ..
-            }
-            | Self::OneWell {
-                start,
-                equilibrium: other,
-                ..
-            }
-            | Self::Escapes {
-                start,
-                searched: other,
-                ..
-            }
-            | Self::Separatrix {
-                start,
-                place: other,
-            }
-            | Self::NearSeparatrix {
-                start,
-                place: other,
-            } => {
+            Self::PushedAway { start, equilibrium: other, .. }
+            | Self::OtherWell { start, equilibrium: other, .. }
+            | Self::OneWell { start, equilibrium: other, .. }
+            | Self::Escapes { start, searched: other, .. }
+            | Self::Separatrix { start, place: other }
+            | Self::NearSeparatrix { start, place: other } => {
                 *start += origin;
                 *other += origin;
             }
@@ -241,10 +214,7 @@ pub struct Force<'a> {
 impl<'a> Force<'a> {
     /// A force without corners or bumps narrower than the motion.
     pub fn smooth(value: &'a dyn Fn(f64) -> f64) -> Self {
-        Self {
-            value,
-            cuts: &|_, _| vec![],
-        }
+        Self { value, cuts: &|_, _| vec![] }
     }
 
     /// A force, and the places strictly between two positions at which to cut, in order: what lies
@@ -376,11 +346,7 @@ impl<'a> Rates<'a> {
             false => end + (start - end) * (0.5 * (FRAC_PI_2 + phi)).sin().powi(2),
         };
         let single = self.knots.len() == 2;
-        let x = if single {
-            x
-        } else {
-            x.clamp(low.min(high), low.max(high))
-        };
+        let x = if single { x } else { x.clamp(low.min(high), low.max(high)) };
         // From the nearer end, so that nothing cancels; in the outermost piece the distance from
         // that end cancels exactly.
         let quotient = if phi >= 0.0 && piece + 2 == self.knots.len() {
@@ -424,9 +390,7 @@ fn graded(knots: &[f64]) -> Vec<f64> {
     let mut found: Vec<f64> = knots.to_vec();
     found.push(0.0);
     found.extend(
-        sizes
-            .take_while(|size| size.abs() > CLOSEST * start.abs())
-            .flat_map(|size| [size, -size]),
+        sizes.take_while(|size| size.abs() > CLOSEST * start.abs()).flat_map(|size| [size, -size]),
     );
     found.sort_by(|one, other| match end < start {
         true => one.total_cmp(other),
@@ -502,11 +466,11 @@ fn integral_within(
     }
     match integrate_within(function, &[from, to], [TOLERANCE, 0.0], most_panels) {
         // Where pull and push cancel, the integral is as good as the forces in it allow.
-        Err(QuadratureError::NotConverged {
-            value,
-            error_estimate,
-            ..
-        }) if error_estimate <= f64::max(1e-11 * size(function, from, to), negligible) => Ok(value),
+        Err(QuadratureError::NotConverged { value, error_estimate, .. })
+            if error_estimate <= f64::max(1e-11 * size(function, from, to), negligible) =>
+        {
+            Ok(value)
+        }
         result => result.map(|(value, _)| value),
     }
 }
@@ -582,11 +546,7 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
     let amplitude = start - equilibrium;
     let side = amplitude.signum();
     if force.at(start) * side <= 0.0 || amplitude == 0.0 {
-        return Err(PeriodError::PushedAway {
-            start,
-            equilibrium,
-            range: None,
-        });
+        return Err(PeriodError::PushedAway { start, equilibrium, range: None });
     }
     if is_symmetric(force, equilibrium, amplitude) {
         return Ok(equilibrium - amplitude);
@@ -609,11 +569,7 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
             while let Some((here, next)) = stretches.pop() {
                 if evaluations.get() > MOST_EVALUATIONS {
                     return Err(match (here - equilibrium).abs() > FAR * amplitude.abs() {
-                        true => PeriodError::Escapes {
-                            start,
-                            searched: here,
-                            range: None,
-                        },
+                        true => PeriodError::Escapes { start, searched: here, range: None },
                         false => PeriodError::Waves,
                     });
                 }
@@ -644,11 +600,7 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
                     let end =
                         root.map_err(|error| failure.map_or(error.into(), PeriodError::from))?;
                     return match (end - equilibrium) * amplitude > 0.0 {
-                        true => Err(PeriodError::OtherWell {
-                            start,
-                            equilibrium,
-                            range: None,
-                        }),
+                        true => Err(PeriodError::OtherWell { start, equilibrium, range: None }),
                         false => Ok(end),
                     };
                 }
@@ -659,11 +611,7 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
         x = places[places.len() - 1];
         window = f64::max(window, (x - equilibrium).abs());
     }
-    Err(PeriodError::Escapes {
-        start,
-        searched: x,
-        range: None,
-    })
+    Err(PeriodError::Escapes { start, searched: x, range: None })
 }
 
 /// Whether the well is symmetric and has a single bottom as far as the amplitude. The mirror image
@@ -678,11 +626,7 @@ fn is_symmetric(force: &Force, equilibrium: f64, amplitude: f64) -> bool {
     let mut places: Vec<f64> = (1..=16).map(|k| amplitude * f64::from(k) / 16.0).collect();
     let knots = force.knots(equilibrium - amplitude, equilibrium + amplitude);
     places.extend(knots.iter().map(|knot| knot - equilibrium));
-    places.extend(
-        knots
-            .windows(2)
-            .map(|pair| 0.5 * (pair[0] + pair[1]) - equilibrium),
-    );
+    places.extend(knots.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]) - equilibrium));
     places.into_iter().filter(|&x| x != 0.0).all(|x| {
         let (here, there) = (force.at(equilibrium + x), force.at(equilibrium - x));
         (here + there).abs() <= rounding * here.abs() && here * x.signum() > 0.0
@@ -694,13 +638,9 @@ fn is_symmetric(force: &Force, equilibrium: f64, amplitude: f64) -> bool {
 fn where_it_turns(force: &Force, side: f64, from: f64, to: f64) -> Vec<(f64, f64)> {
     const SAMPLES: usize = 4;
     let place = |k: usize| from + (to - from) * k as f64 / SAMPLES as f64;
-    let drives: Vec<bool> = (1..SAMPLES)
-        .map(|k| force.at(place(k)) * side > 0.0)
-        .collect();
+    let drives: Vec<bool> = (1..SAMPLES).map(|k| force.at(place(k)) * side > 0.0).collect();
     if drives.windows(2).all(|pair| pair[0] || !pair[1]) {
         return vec![(from, to)];
     }
-    (0..SAMPLES)
-        .map(|k| (place(k), if k + 1 == SAMPLES { to } else { place(k + 1) }))
-        .collect()
+    (0..SAMPLES).map(|k| (place(k), if k + 1 == SAMPLES { to } else { place(k + 1) })).collect()
 }

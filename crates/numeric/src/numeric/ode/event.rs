@@ -49,18 +49,12 @@ pub enum Action<'a, S = State> {
 impl<'a> Event<'a> {
     /// An event that is only listed. Counts in both directions until told otherwise.
     pub fn record(function: impl Fn(f64, f64, f64) -> f64 + 'a) -> Self {
-        Self::new(
-            move |state| function(state.t, state.x, state.v),
-            Action::Record,
-        )
+        Self::new(move |state| function(state.t, state.x, state.v), Action::Record)
     }
 
     /// An event that ends the run. Counts in both directions until told otherwise.
     pub fn stop(function: impl Fn(f64, f64, f64) -> f64 + 'a) -> Self {
-        Self::new(
-            move |state| function(state.t, state.x, state.v),
-            Action::Stop,
-        )
+        Self::new(move |state| function(state.t, state.x, state.v), Action::Stop)
     }
 
     /// An event that switches the right side, see [`Action::Switch`]. Let `next` put the state
@@ -70,37 +64,24 @@ impl<'a> Event<'a> {
         function: impl Fn(f64, f64, f64) -> f64 + 'a,
         next: impl Fn(State) -> (usize, State) + 'a,
     ) -> Self {
-        Self::new(
-            move |state| function(state.t, state.x, state.v),
-            Action::Switch(Box::new(next)),
-        )
+        Self::new(move |state| function(state.t, state.x, state.v), Action::Switch(Box::new(next)))
     }
 }
 
 impl<'a, S> Event<'a, S> {
     /// An event of any equations. Counts in both directions until told otherwise.
     pub fn new(function: impl Fn(&S) -> f64 + 'a, action: Action<'a, S>) -> Self {
-        Self {
-            function: Box::new(function),
-            direction: Direction::Either,
-            action,
-        }
+        Self { function: Box::new(function), direction: Direction::Either, action }
     }
 
     /// Only crossings from negative to positive.
     pub fn rising(self) -> Self {
-        Self {
-            direction: Direction::Rising,
-            ..self
-        }
+        Self { direction: Direction::Rising, ..self }
     }
 
     /// Only crossings from positive to negative.
     pub fn falling(self) -> Self {
-        Self {
-            direction: Direction::Falling,
-            ..self
-        }
+        Self { direction: Direction::Falling, ..self }
     }
 
     fn counts(&self, rising: bool) -> bool {
@@ -166,15 +147,10 @@ impl Watch {
             // polynomial where what the function depends on is at rest: it leaves as a square of
             // time at least.
             let rounding = rounding_at(event, &step.state_at(0.0));
-            let largest = samples
-                .iter()
-                .fold(0.0, |largest: f64, (_, value)| largest.max(value.abs()));
+            let largest =
+                samples.iter().fold(0.0, |largest: f64, (_, value)| largest.max(value.abs()));
             let is_at_rest = moved.is_some_and(|moved| (event.function)(moved) == 0.0);
-            let slope_error = if is_at_rest {
-                SLOPE_ERROR * largest
-            } else {
-                0.0
-            };
+            let slope_error = if is_at_rest { SLOPE_ERROR * largest } else { 0.0 };
             samples
                 .iter_mut()
                 .take_while(|(fraction, value)| value.abs() <= rounding.max(slope_error * fraction))
@@ -247,12 +223,8 @@ const SLOPE_ERROR: f64 = 1e-9;
 
 fn sample_fractions(first: bool) -> impl Iterator<Item = f64> {
     let near_start = if first { NEAR_START } else { 0 };
-    let extra = (1..=near_start)
-        .rev()
-        .map(|power| SAMPLES[1] * 0.25_f64.powi(power as i32));
-    std::iter::once(0.0)
-        .chain(extra)
-        .chain(SAMPLES[1..].iter().copied())
+    let extra = (1..=near_start).rev().map(|power| SAMPLES[1] * 0.25_f64.powi(power as i32));
+    std::iter::once(0.0).chain(extra).chain(SAMPLES[1..].iter().copied())
 }
 
 /// Where |value| has a minimum between samples of one sign, inserts the nearest point found if it
@@ -309,17 +281,8 @@ mod tests {
 
     /// A step of length 1 with x from `from` to `to` in a straight line.
     fn line(from: f64, to: f64) -> Step<State> {
-        let start = State {
-            t: 0.0,
-            x: from,
-            v: 0.0,
-        };
-        Step::new(
-            0,
-            start,
-            1.0,
-            FRACTIONS.map(|fraction| [from + fraction * (to - from), 0.0]),
-        )
+        let start = State { t: 0.0, x: from, v: 0.0 };
+        Step::new(0, start, 1.0, FRACTIONS.map(|fraction| [from + fraction * (to - from), 0.0]))
     }
 
     /// The crossings of x = 0 in such steps, one after the other from the start of a phase.
@@ -337,18 +300,12 @@ mod tests {
 
     #[test]
     fn a_sign_that_changes_between_two_steps_is_a_crossing() {
-        assert_eq!(
-            crossings(&[(1.0, 1e-9), (-1e-9, -1.0)]),
-            [vec![], vec![0.0]]
-        );
+        assert_eq!(crossings(&[(1.0, 1e-9), (-1e-9, -1.0)]), [vec![], vec![0.0]]);
     }
 
     #[test]
     fn a_start_is_no_crossing_reaching_zero_is_one_and_leaving_it_is_none() {
-        assert_eq!(
-            crossings(&[(0.0, 1.0), (1.0, 0.0), (0.0, -1.0)]),
-            [vec![], vec![1.0], vec![]]
-        );
+        assert_eq!(crossings(&[(0.0, 1.0), (1.0, 0.0), (0.0, -1.0)]), [vec![], vec![1.0], vec![]]);
         let middle = crossings(&[(-1.0, 1.0)])[0][0];
         assert!((middle - 0.5).abs() < 1e-15);
     }
@@ -365,10 +322,7 @@ mod tests {
             let step = line(0.0, -1.0);
             let moved = step.state_at(1.0);
             assert_eq!(
-                Watch::default()
-                    .crossings(&step, &event, Some(&moved))
-                    .unwrap()
-                    .len(),
+                Watch::default().crossings(&step, &event, Some(&moved)).unwrap().len(),
                 found
             );
         }

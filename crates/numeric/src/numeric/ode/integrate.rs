@@ -187,15 +187,8 @@ pub fn integrate<'a>(
     options: &Options,
 ) -> Result<Trajectory, IntegrationError> {
     let rates = first_order(acceleration);
-    run(
-        &[(&rates, events)],
-        0,
-        start,
-        end_time,
-        Looks::NOWHERE,
-        options,
-    )
-    .map_err(|error| of_motion(error, start))
+    run(&[(&rates, events)], 0, start, end_time, Looks::NOWHERE, options)
+        .map_err(|error| of_motion(error, start))
 }
 
 /// The motion through several smooth right sides: begins in phase `first`, goes on as the switches
@@ -227,10 +220,8 @@ pub fn integrate_phases(
     end_time: f64,
     options: &Options,
 ) -> Result<Trajectory, IntegrationError> {
-    let parts: Vec<Part<State>> = phases
-        .iter()
-        .map(|phase| (&*phase.rates as _, phase.events.as_slice()))
-        .collect();
+    let parts: Vec<Part<State>> =
+        phases.iter().map(|phase| (&*phase.rates as _, phase.events.as_slice())).collect();
     run(&parts, first, start, end_time, Looks::NOWHERE, options)
         .map_err(|error| of_motion(error, start))
 }
@@ -262,14 +253,7 @@ pub fn integrate_first_order<'a, Y: Values>(
     events: &[Event<'a, Point<Y>>],
     options: &Options,
 ) -> Result<Trajectory<Point<Y>>, IntegrationError> {
-    run(
-        &[(&rates, events)],
-        0,
-        start,
-        end_time,
-        Looks::NOWHERE,
-        options,
-    )
+    run(&[(&rates, events)], 0, start, end_time, Looks::NOWHERE, options)
 }
 
 /// As [`integrate_first_order`], with steps that end where they have to.
@@ -301,10 +285,7 @@ pub struct Looks<'a, S> {
 pub type Kept<'a, S> = dyn Fn(&dyn Fn(f64) -> S) -> Option<f64> + 'a;
 
 impl<S> Looks<'_, S> {
-    const NOWHERE: Self = Self {
-        critical: &[],
-        kept: None,
-    };
+    const NOWHERE: Self = Self { critical: &[], kept: None };
 }
 
 impl<S> Clone for Looks<'_, S> {
@@ -343,18 +324,12 @@ fn run<S: Sample>(
     options: &Options,
 ) -> Result<Trajectory<S>, IntegrationError> {
     check(&start, end_time, options)?;
-    let unknown = |phase: usize| IntegrationError::UnknownPhase {
-        phase,
-        count: parts.len(),
-    };
+    let unknown = |phase: usize| IntegrationError::UnknownPhase { phase, count: parts.len() };
     let &(rates, _) = parts.get(first).ok_or(unknown(first))?;
     let mut at_start = start.values();
     rates(start.time(), &start.values(), &mut at_start);
     if let Some(index) = at_start.as_ref().iter().position(|rate| !rate.is_finite()) {
-        return Err(IntegrationError::RateNotFinite {
-            index,
-            t: start.time(),
-        });
+        return Err(IntegrationError::RateNotFinite { index, t: start.time() });
     }
     let evaluations = Cell::new(0);
     let mut trajectory = Trajectory {
@@ -370,20 +345,10 @@ fn run<S: Sample>(
     let mut idle_switches = 0;
     loop {
         let &(rates, events) = parts.get(phase).ok_or(unknown(phase))?;
-        let equations = Counted::<S> {
-            rates,
-            evaluations: &evaluations,
-            non_finite: Cell::new(false),
-        };
+        let equations =
+            Counted::<S> { rates, evaluations: &evaluations, non_finite: Cell::new(false) };
         let begin = trajectory.end.time();
-        let leg = Leg {
-            equations,
-            phase,
-            events,
-            end_time,
-            looks,
-            options,
-        };
+        let leg = Leg { equations, phase, events, end_time, looks, options };
         let end = match options.stiff {
             false => leg.run(&explicit::<S::Values>(), &mut trajectory, &mut attempts),
             true => leg.run(&implicit::<S>(), &mut trajectory, &mut attempts),
@@ -417,16 +382,10 @@ fn run<S: Sample>(
 fn check(start: &impl Sample, end_time: f64, options: &Options) -> Result<(), IntegrationError> {
     let start_time = start.time();
     if !(start.is_finite() && end_time.is_finite()) {
-        return Err(IntegrationError::ValuesNotFinite {
-            start_time,
-            end_time,
-        });
+        return Err(IntegrationError::ValuesNotFinite { start_time, end_time });
     }
     if end_time < start_time {
-        return Err(IntegrationError::EndBeforeStart {
-            start_time,
-            end_time,
-        });
+        return Err(IntegrationError::EndBeforeStart { start_time, end_time });
     }
     if !(1e-15..=0.1).contains(&options.relative_tolerance) {
         return Err(IntegrationError::Tolerance(options.relative_tolerance));
@@ -497,11 +456,7 @@ impl<S: Sample> Leg<'_, '_, S> {
                 return LegEnd::Stopped(reason);
             }
             *attempts += 1;
-            let allowed = self
-                .options
-                .maximum_step
-                .min(remaining)
-                .min(self.to_critical(time));
+            let allowed = self.options.maximum_step.min(remaining).min(self.to_critical(time));
             let wanted = solver.h().min(allowed);
             solver.set_h(wanted);
             self.equations.non_finite.set(false);
@@ -561,14 +516,8 @@ impl<S: Sample> Leg<'_, '_, S> {
     /// How far the next critical time is, farther than rounding.
     fn to_critical(&self, time: f64) -> f64 {
         let beyond = time + 4.0 * f64::EPSILON * time.abs();
-        let next = self
-            .looks
-            .critical
-            .partition_point(|critical| *critical <= beyond);
-        self.looks
-            .critical
-            .get(next)
-            .map_or(f64::INFINITY, |critical| critical - time)
+        let next = self.looks.critical.partition_point(|critical| *critical <= beyond);
+        self.looks.critical.get(next).map_or(f64::INFINITY, |critical| critical - time)
     }
 
     /// Whether the steps are used up, or somebody wants it to end.
@@ -598,10 +547,7 @@ impl<S: Sample> Leg<'_, '_, S> {
                 Action::Record => {}
                 Action::Stop => {
                     trajectory.end = happening;
-                    return Some(LegEnd::Stopped(StopReason::Event {
-                        phase: self.phase,
-                        event,
-                    }));
+                    return Some(LegEnd::Stopped(StopReason::Event { phase: self.phase, event }));
                 }
                 Action::Switch(next_state) => {
                     trajectory.end = happening.clone();
@@ -636,9 +582,7 @@ impl<S: Sample> Leg<'_, '_, S> {
             let mut solver = (scheme.fresh)(self.options, step.min(longest), longest);
             // The trial steps by which a first step is chosen may leave the domain: then a short
             // one is prescribed.
-            if solver
-                .init(&self.equations, time, self.end_time, &values)
-                .is_ok()
+            if solver.init(&self.equations, time, self.end_time, &values).is_ok()
                 && solver.h() > 0.0
             {
                 return Some(solver);

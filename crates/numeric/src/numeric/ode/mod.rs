@@ -74,11 +74,7 @@ mod tests {
     use quadrature::integrate_smooth;
     use root::find_root;
 
-    const REST: State = State {
-        t: 0.0,
-        x: 1.5,
-        v: 0.0,
-    };
+    const REST: State = State { t: 0.0, x: 1.5, v: 0.0 };
 
     fn pendulum(_t: f64, x: f64, _v: f64) -> f64 {
         -x.sin()
@@ -100,10 +96,7 @@ mod tests {
         for index in 0..200 {
             let t = 0.1 * f64::from(index);
             let (x, v) = exact_pendulum(1.5, t);
-            assert!(
-                (0.5 * v * v - x.cos() + 1.5_f64.cos()).abs() < 1e-13,
-                "energy at {t}"
-            );
+            assert!((0.5 * v * v - x.cos() + 1.5_f64.cos()).abs() < 1e-13, "energy at {t}");
             let step = 1e-3;
             let curvature = (exact_pendulum(1.5, t + step).0 - 2.0 * x
                 + exact_pendulum(1.5, t - step).0)
@@ -116,14 +109,8 @@ mod tests {
     fn the_dense_output_follows_the_elliptic_functions() {
         // (tolerance, largest error allowed up to t = 100): about a hundred times the tolerance.
         for (tolerance, allowed) in [(1e-12, 1e-10), (1e-9, 2e-7), (1e-6, 2e-3)] {
-            let path = integrate(
-                pendulum,
-                REST,
-                100.0,
-                &[],
-                &Options::with_tolerance(tolerance),
-            )
-            .unwrap();
+            let path =
+                integrate(pendulum, REST, 100.0, &[], &Options::with_tolerance(tolerance)).unwrap();
             assert_eq!(path.stop_reason(), StopReason::EndReached);
             assert_eq!(path.end().t, 100.0);
             let mut worst = 0.0_f64;
@@ -141,14 +128,8 @@ mod tests {
         let path = integrate(pendulum, REST, 20.0, &[], &Options::with_tolerance(1e-10)).unwrap();
         let error = |t: f64| (path.at(t).unwrap().0 - exact_pendulum(1.5, t).0).abs();
         let at_knots = path.knots().map(|knot| error(knot.t)).fold(0.0, f64::max);
-        let anywhere = path
-            .samples(5000)
-            .map(|state| error(state.t))
-            .fold(0.0, f64::max);
-        assert!(
-            anywhere < 3.0 * at_knots,
-            "{anywhere} between, {at_knots} at the knots"
-        );
+        let anywhere = path.samples(5000).map(|state| error(state.t)).fold(0.0, f64::max);
+        assert!(anywhere < 3.0 * at_knots, "{anywhere} between, {at_knots} at the knots");
         assert!(
             path.at(-1e-9).is_none()
                 && path.at(20.000_001).is_none()
@@ -165,19 +146,10 @@ mod tests {
             Event::record(|_, _, v| v).rising(),
             Event::record(|t, _, _| t - 5.0),
         ];
-        let path = integrate(
-            pendulum,
-            REST,
-            30.0,
-            &events,
-            &Options::with_tolerance(1e-12),
-        )
-        .unwrap();
+        let path =
+            integrate(pendulum, REST, 30.0, &events, &Options::with_tolerance(1e-12)).unwrap();
         let times = |event| {
-            path.occurrences()
-                .iter()
-                .filter(move |found| found.event == event)
-                .map(|it| it.state.t)
+            path.occurrences().iter().filter(move |found| found.event == event).map(|it| it.state.t)
         };
         let crossings: Vec<f64> = times(0).collect();
         assert_eq!(crossings.len(), (30.0 / quarter - 1.0) as usize / 2 + 1);
@@ -196,11 +168,7 @@ mod tests {
             );
         }
         assert_eq!(times(2).collect::<Vec<_>>(), [5.0]);
-        assert!(
-            path.occurrences()
-                .windows(2)
-                .all(|pair| pair[0].state.t <= pair[1].state.t)
-        );
+        assert!(path.occurrences().windows(2).all(|pair| pair[0].state.t <= pair[1].state.t));
     }
 
     #[test]
@@ -225,11 +193,7 @@ mod tests {
         // x = cos t against a wall at x_w: 2 crossings a period, arccos(x_w) before and after each
         // crest.
         let oscillator = |_: f64, x: f64, _: f64| -x;
-        let start = State {
-            t: 0.0,
-            x: 0.0,
-            v: 1.0,
-        };
+        let start = State { t: 0.0, x: 0.0, v: 1.0 };
         let end_time = 20.0 * std::f64::consts::PI;
         for (tolerance, wall) in [
             (1e-6, 0.9),
@@ -239,15 +203,10 @@ mod tests {
             (1e-12, 1.0 - 1e-8),
             (1e-12, 1.0 - 1e-10),
         ] {
-            for (direction, expected) in [
-                (Direction::Either, 20),
-                (Direction::Rising, 10),
-                (Direction::Falling, 10),
-            ] {
-                let event = Event {
-                    direction,
-                    ..Event::record(move |_, x, _| x - wall)
-                };
+            for (direction, expected) in
+                [(Direction::Either, 20), (Direction::Rising, 10), (Direction::Falling, 10)]
+            {
+                let event = Event { direction, ..Event::record(move |_, x, _| x - wall) };
                 let path = integrate(
                     oscillator,
                     start,
@@ -271,30 +230,20 @@ mod tests {
                 &Options::with_tolerance(tolerance),
             )
             .unwrap();
-            assert!(
-                path.occurrences().is_empty(),
-                "wall {} is never reached",
-                2.0 - wall
-            );
+            assert!(path.occurrences().is_empty(), "wall {} is never reached", 2.0 - wall);
         }
     }
 
     /// Pendulum and barrier, x'' + sin x + gamma (x - x_c)_+^(3/2) = 0, switched at the barrier.
     fn pendulum_and_barrier(barrier: f64, gamma: f64) -> Vec<Phase<'static>> {
-        let snapped = move |state: State| State {
-            x: barrier,
-            ..state
-        };
+        let snapped = move |state: State| State { x: barrier, ..state };
         let reach =
             Event::switch(move |_, x, _| x - barrier, move |state| (1, snapped(state))).rising();
         let leave =
             Event::switch(move |_, x, _| x - barrier, move |state| (0, snapped(state))).falling();
         let contact =
             move |_: f64, x: f64, _: f64| -x.sin() - gamma * (x - barrier).max(0.0).powf(1.5);
-        vec![
-            Phase::new(pendulum, vec![reach]),
-            Phase::new(contact, vec![leave]),
-        ]
+        vec![Phase::new(pendulum, vec![reach]), Phase::new(contact, vec![leave])]
     }
 
     /// Time of approach and of contact, from the energy: elliptic F, and T_c = 8 sqrt(q_m) int q /
@@ -309,19 +258,13 @@ mod tests {
         // H from the mean slope of v^2 between q and q_m: a divided difference without
         // cancellation.
         let slope = |q: f64| 4.0 * q * (barrier + q * q).sin() + 4.0 * gamma * q.powi(4);
-        let quotient = |q: f64| {
-            integrate_smooth(|u| slope(q + u * (deepest - q)), 0.0, 1.0, 1e-14)
-                .unwrap()
-                .0
-        };
+        let quotient =
+            |q: f64| integrate_smooth(|u| slope(q + u * (deepest - q)), 0.0, 1.0, 1e-14).unwrap().0;
         let integrand = |w: f64| {
             let q = deepest * (1.0 - w * w);
             q / quotient(q).sqrt()
         };
-        (
-            approach,
-            8.0 * deepest.sqrt() * integrate_smooth(integrand, 0.0, 1.0, 1e-13).unwrap().0,
-        )
+        (approach, 8.0 * deepest.sqrt() * integrate_smooth(integrand, 0.0, 1.0, 1e-13).unwrap().0)
     }
 
     #[test]
@@ -331,16 +274,10 @@ mod tests {
             (approach - 2.064_407_608_58).abs() < 1e-11
                 && (contact - 0.012_106_027_06).abs() < 1e-11
         );
-        let start = State {
-            t: 0.0,
-            x: -1.5,
-            v: 0.0,
-        };
-        for (gamma, tolerance, allowed) in [
-            (1e6, 1e-12, 2e-10),
-            (1e9, 1e-12, 3e-10),
-            (1e6, 1e-9, 1.5e-7),
-        ] {
+        let start = State { t: 0.0, x: -1.5, v: 0.0 };
+        for (gamma, tolerance, allowed) in
+            [(1e6, 1e-12, 2e-10), (1e9, 1e-12, 3e-10), (1e6, 1e-9, 1.5e-7)]
+        {
             let (approach, contact) = exact_times(1.5, 0.323, gamma);
             let phases = pendulum_and_barrier(0.323, gamma);
             let path =
@@ -368,11 +305,7 @@ mod tests {
     fn a_grazing_start_leaves_the_surface_again() {
         // On the barrier with almost no speed: gravity brings it back within 2 v / sin(x_c).
         for speed in [1e-3, 1e-6, 1e-9, 1e-12] {
-            let start = State {
-                t: 0.0,
-                x: 0.323,
-                v: speed,
-            };
+            let start = State { t: 0.0, x: 0.323, v: speed };
             let path = integrate_phases(
                 &pendulum_and_barrier(0.323, 1e3),
                 1,
@@ -381,12 +314,7 @@ mod tests {
                 &Options::default(),
             )
             .unwrap();
-            assert_eq!(
-                path.occurrences().len(),
-                1,
-                "speed {speed}: {:?}",
-                path.occurrences()
-            );
+            assert_eq!(path.occurrences().len(), 1, "speed {speed}: {:?}", path.occurrences());
             let exit = path.occurrences()[0].state;
             let expected = 2.0 * speed / 0.323_f64.sin();
             // An excursion of speed^2 below the rounding of x is left at once.
@@ -403,25 +331,10 @@ mod tests {
     fn a_bouncing_ball_stalls_where_its_bounces_accumulate() {
         // Dropped from height 1/2 with restitution 1/2: first touch at t = 1, the bounces end at t
         // = 1 + 2 (1/2 + 1/4 + ...).
-        let rebound = Event::switch(
-            |_, x, _| x,
-            |state| {
-                (
-                    0,
-                    State {
-                        x: 0.0,
-                        v: -0.5 * state.v,
-                        ..state
-                    },
-                )
-            },
-        )
-        .falling();
-        let start = State {
-            t: 0.0,
-            x: 0.5,
-            v: 0.0,
-        };
+        let rebound =
+            Event::switch(|_, x, _| x, |state| (0, State { x: 0.0, v: -0.5 * state.v, ..state }))
+                .falling();
+        let start = State { t: 0.0, x: 0.5, v: 0.0 };
         let path = integrate(|_, _, _| -1.0, start, 10.0, &[rebound], &Options::default()).unwrap();
         for (bounce, time) in [1.0, 2.0, 2.5, 2.75].into_iter().enumerate() {
             assert!((path.occurrences()[bounce].state.t - time).abs() < 1e-11);
@@ -437,48 +350,25 @@ mod tests {
     #[test]
     fn a_run_that_cannot_go_on_says_when_and_keeps_what_it_has() {
         // x = 1/(1 - t)^2 escapes at t = 1.
-        let start = State {
-            t: 0.0,
-            x: 1.0,
-            v: 2.0,
-        };
+        let start = State { t: 0.0, x: 1.0, v: 2.0 };
         let path = integrate(|_, x, _| 6.0 * x * x, start, 3.0, &[], &Options::default()).unwrap();
-        assert!(
-            !path.is_complete() && (path.end().t - 1.0).abs() < 1e-3,
-            "{}",
-            path.stop_reason()
-        );
+        assert!(!path.is_complete() && (path.end().t - 1.0).abs() < 1e-3, "{}", path.stop_reason());
         assert!((path.at(0.5).unwrap().0 - 4.0).abs() < 1e-7);
 
         // Beyond x = 1 there is no acceleration; x = t gets there at t = 1.
-        let start = State {
-            t: 0.0,
-            x: 0.0,
-            v: 1.0,
-        };
-        let path = integrate(
-            |_, x, _| 0.0 * (1.0 - x).sqrt(),
-            start,
-            3.0,
-            &[],
-            &Options::default(),
-        )
-        .unwrap();
+        let start = State { t: 0.0, x: 0.0, v: 1.0 };
+        let path =
+            integrate(|_, x, _| 0.0 * (1.0 - x).sqrt(), start, 3.0, &[], &Options::default())
+                .unwrap();
         let StopReason::NonFinite { time } = path.stop_reason() else {
             panic!("{}", path.stop_reason())
         };
         assert!((time - 1.0).abs() < 1e-12);
         assert!((path.at(0.75).unwrap().0 - 0.75).abs() < 1e-12);
 
-        let few = Options {
-            maximum_steps: 5,
-            ..Options::default()
-        };
+        let few = Options { maximum_steps: 5, ..Options::default() };
         let path = integrate(pendulum, REST, 30.0, &[], &few).unwrap();
-        assert_eq!(
-            path.stop_reason(),
-            StopReason::MaximumSteps { time: path.end().t }
-        );
+        assert_eq!(path.stop_reason(), StopReason::MaximumSteps { time: path.end().t });
 
         let broken = Event::record(|t, _, _| (1.0 - t).ln());
         let path = integrate(pendulum, REST, 30.0, &[broken], &Options::default()).unwrap();
@@ -492,50 +382,25 @@ mod tests {
         };
         let usual = Options::default();
         assert!(matches!(
-            refuse(
-                State {
-                    x: f64::NAN,
-                    ..REST
-                },
-                1.0,
-                usual
-            ),
+            refuse(State { x: f64::NAN, ..REST }, 1.0, usual),
             IntegrationError::NotFinite { .. }
         ));
-        assert!(matches!(
-            refuse(REST, f64::INFINITY, usual),
-            IntegrationError::NotFinite { .. }
-        ));
-        assert!(matches!(
-            refuse(REST, -1.0, usual),
-            IntegrationError::EndBeforeStart { .. }
-        ));
+        assert!(matches!(refuse(REST, f64::INFINITY, usual), IntegrationError::NotFinite { .. }));
+        assert!(matches!(refuse(REST, -1.0, usual), IntegrationError::EndBeforeStart { .. }));
         for tolerance in [0.0, -1e-9, f64::NAN, 1e-17, 1.0] {
             assert!(matches!(
                 refuse(REST, 1.0, Options::with_tolerance(tolerance)),
                 IntegrationError::Tolerance(_)
             ));
         }
-        let backwards = Options {
-            maximum_step: -1.0,
-            ..usual
-        };
-        assert!(matches!(
-            refuse(REST, 1.0, backwards),
-            IntegrationError::MaximumStep(_)
-        ));
+        let backwards = Options { maximum_step: -1.0, ..usual };
+        assert!(matches!(refuse(REST, 1.0, backwards), IntegrationError::MaximumStep(_)));
         let nowhere = |_: f64, x: f64, _: f64| (x - 2.0).sqrt();
         let refused = integrate(nowhere, REST, 1.0, &[], &usual).unwrap_err();
-        assert!(matches!(
-            refused,
-            IntegrationError::AccelerationNotFinite { .. }
-        ));
+        assert!(matches!(refused, IntegrationError::AccelerationNotFinite { .. }));
         let refused =
             integrate_phases(&pendulum_and_barrier(0.323, 1e6), 2, REST, 1.0, &usual).unwrap_err();
-        assert_eq!(
-            refused,
-            IntegrationError::UnknownPhase { phase: 2, count: 2 }
-        );
+        assert_eq!(refused, IntegrationError::UnknownPhase { phase: 2, count: 2 });
         let path = integrate(pendulum, REST, 0.0, &[], &usual).unwrap();
         assert_eq!((path.end(), path.at(0.0)), (REST, Some((1.5, 0.0))));
     }
@@ -545,23 +410,11 @@ mod tests {
         // x'' = -omega^2 x from `amplitude`: omega from 1e-6 to 1e9, amplitude down to 1e-9 with a
         // matching tolerance.
         for (omega, amplitude) in [(1e-6, 1.0), (1e9, 1.0), (1.0, 1e-9), (1e3, 1e6)] {
-            let options = Options {
-                absolute_tolerance: 1e-12 * amplitude,
-                ..Options::with_tolerance(1e-12)
-            };
-            let start = State {
-                t: 0.0,
-                x: amplitude,
-                v: 0.0,
-            };
-            let path = integrate(
-                |_, x, _| -omega * omega * x,
-                start,
-                20.0 / omega,
-                &[],
-                &options,
-            )
-            .unwrap();
+            let options =
+                Options { absolute_tolerance: 1e-12 * amplitude, ..Options::with_tolerance(1e-12) };
+            let start = State { t: 0.0, x: amplitude, v: 0.0 };
+            let path = integrate(|_, x, _| -omega * omega * x, start, 20.0 / omega, &[], &options)
+                .unwrap();
             for state in path.samples(200) {
                 assert!(
                     (state.x / amplitude - (omega * state.t).cos()).abs() < 1e-10,

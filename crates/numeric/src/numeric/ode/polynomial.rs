@@ -30,57 +30,31 @@ pub struct RealZero {
 /// Two zeros so close that the polynomial between them is below its rounding are one at which the
 /// sign does not change.
 pub fn real_zeros(coefficients: &[f64], ends: [f64; 2]) -> Vec<RealZero> {
-    let Some(degree) = coefficients
-        .iter()
-        .rposition(|coefficient| *coefficient != 0.0)
-    else {
+    let Some(degree) = coefficients.iter().rposition(|coefficient| *coefficient != 0.0) else {
         return vec![];
     };
     // Fujiwara's bound, 2 max |c_k/c_n|^(1/(n - k)); the powers of x alone have all their zeros
     // at 0.
-    let bound = |k: usize| {
-        (coefficients[k] / coefficients[degree])
-            .abs()
-            .powf(1.0 / (degree - k) as f64)
-    };
+    let bound =
+        |k: usize| (coefficients[k] / coefficients[degree]).abs().powf(1.0 / (degree - k) as f64);
     let farthest = 2.0 * (0..degree).map(bound).fold(0.0, f64::max);
     let farthest = if farthest > 0.0 { farthest } else { 1.0 };
     // Where powers overflow no zero is to be found.
-    let is_finite = |x: f64| {
-        coefficients
-            .iter()
-            .rev()
-            .fold(0.0, |sum, c| sum * x + c.abs())
-            .is_finite()
-    };
+    let is_finite =
+        |x: f64| coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c.abs()).is_finite();
     let farthest = match is_finite(farthest) {
         true => farthest,
         false => bisect(is_finite, 0.0, farthest, Until::Width(0.0))[0],
     };
-    let [low, high] = ends.map(|end| {
-        if end.is_infinite() {
-            farthest.copysign(end)
-        } else {
-            end
-        }
-    });
+    let [low, high] = ends.map(|end| if end.is_infinite() { farthest.copysign(end) } else { end });
     let mut derivatives = vec![coefficients[..=degree].to_vec()];
     while let Some(last) = derivatives.last().filter(|last| last.len() > 2) {
-        derivatives.push(
-            last.iter()
-                .enumerate()
-                .skip(1)
-                .map(|(k, c)| k as f64 * c)
-                .collect(),
-        );
+        derivatives.push(last.iter().enumerate().skip(1).map(|(k, c)| k as f64 * c).collect());
     }
     let mut zeros: Vec<RealZero> = vec![];
     for polynomial in derivatives.iter().rev() {
-        let places: Vec<f64> = [low]
-            .into_iter()
-            .chain(zeros.iter().map(|zero| zero.place))
-            .chain([high])
-            .collect();
+        let places: Vec<f64> =
+            [low].into_iter().chain(zeros.iter().map(|zero| zero.place)).chain([high]).collect();
         zeros = zeros_between(polynomial, &places);
     }
     zeros
@@ -91,12 +65,7 @@ fn zeros_between(polynomial: &[f64], places: &[f64]) -> Vec<RealZero> {
     /// Of the sum of the sizes of all terms: a smaller value is rounding.
     const ROUNDING: f64 = 1e-14;
     let value = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c);
-    let size = |x: f64| {
-        polynomial
-            .iter()
-            .rev()
-            .fold(0.0, |sum, c| sum * x.abs() + c.abs())
-    };
+    let size = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x.abs() + c.abs());
     let mut zeros = vec![];
     // The last place with a sign, and the first after it without one.
     let (mut last, mut touched): (Option<(f64, f64)>, Option<f64>) = (None, None);
@@ -117,16 +86,10 @@ fn zeros_between(polynomial: &[f64], places: &[f64]) -> Vec<RealZero> {
                 .or_else(|| find_root(value, before, x).ok()),
             None => touched,
         };
-        zeros.extend(place.map(|place| RealZero {
-            place,
-            crosses: crossed.is_some(),
-        }));
+        zeros.extend(place.map(|place| RealZero { place, crosses: crossed.is_some() }));
         (last, touched) = (Some((x, here)), None);
     }
-    zeros.extend(touched.map(|place| RealZero {
-        place,
-        crosses: false,
-    }));
+    zeros.extend(touched.map(|place| RealZero { place, crosses: false }));
     zeros
 }
 
@@ -137,9 +100,7 @@ mod tests {
     const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
     fn crossings(coefficients: &[f64], ends: [f64; 2]) -> Vec<f64> {
-        let zeros = real_zeros(coefficients, ends)
-            .into_iter()
-            .filter(|zero| zero.crosses);
+        let zeros = real_zeros(coefficients, ends).into_iter().filter(|zero| zero.crosses);
         zeros.map(|zero| zero.place).collect()
     }
 
@@ -154,13 +115,7 @@ mod tests {
         ] {
             let found = crossings(&quartic, ends);
             assert_eq!(found.len(), expected.len(), "{found:?}");
-            assert!(
-                found
-                    .iter()
-                    .zip(expected)
-                    .all(|(a, b)| (a - b).abs() < 1e-12),
-                "{found:?}"
-            );
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
         }
         for none in [&[1.0, 0.0, 1.0][..], &[3.0], &[0.0], &[]] {
             assert_eq!(real_zeros(none, EVERYWHERE), [], "{none:?}");
@@ -174,36 +129,21 @@ mod tests {
         let mut high = vec![0.0; 4001];
         (high[0], high[4000]) = (-2.0, 1.0);
         let found = crossings(&high, [0.0, f64::INFINITY]);
-        assert!(
-            matches!(found[..], [zero] if (zero.powi(4000) - 2.0).abs() < 1e-9),
-            "{found:?}"
-        );
+        assert!(matches!(found[..], [zero] if (zero.powi(4000) - 2.0).abs() < 1e-9), "{found:?}");
     }
 
     #[test]
     fn multiple_zeros_are_one() {
         let zero = |place, crosses| RealZero { place, crosses };
         assert_eq!(real_zeros(&[0.0, 1.0], EVERYWHERE), [zero(0.0, true)]);
-        assert_eq!(
-            real_zeros(&[0.0, 0.0, 0.0, 2.0], EVERYWHERE),
-            [zero(0.0, true)]
-        );
-        assert_eq!(
-            real_zeros(&[0.0, 0.0, -1.0], EVERYWHERE),
-            [zero(0.0, false)]
-        );
+        assert_eq!(real_zeros(&[0.0, 0.0, 0.0, 2.0], EVERYWHERE), [zero(0.0, true)]);
+        assert_eq!(real_zeros(&[0.0, 0.0, -1.0], EVERYWHERE), [zero(0.0, false)]);
         // (x - 1/10)^2 (x + 1)
         let [single, double] = real_zeros(&[0.01, -0.19, 0.8, 1.0], EVERYWHERE)[..] else {
             panic!("not two")
         };
-        assert!(
-            single.crosses && (single.place + 1.0).abs() < 1e-15,
-            "{single:?}"
-        );
-        assert!(
-            !double.crosses && (double.place - 0.1).abs() < 1e-15,
-            "{double:?}"
-        );
+        assert!(single.crosses && (single.place + 1.0).abs() < 1e-15, "{single:?}");
+        assert!(!double.crosses && (double.place - 0.1).abs() < 1e-15, "{double:?}");
         assert_eq!(real_zeros(&[-1.0, 1.0], [1.0, 2.0]), [zero(1.0, false)]);
     }
 }

@@ -170,10 +170,8 @@ pub(crate) fn integrate_within(
                 return Ok((sum(Panel::value), error_estimate));
             }
         }
-        let worst = panels
-            .iter()
-            .enumerate()
-            .max_by(|one, other| one.1.error.total_cmp(&other.1.error));
+        let worst =
+            panels.iter().enumerate().max_by(|one, other| one.1.error.total_cmp(&other.1.error));
         let Some((index, &panel)) = worst else {
             return Ok((0.0, 0.0));
         };
@@ -208,8 +206,7 @@ pub(crate) fn integrate_within(
 /// ```
 pub fn nodes_and_weights(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    RULE.iter()
-        .map(move |&(node, weight)| (middle + half * node, half * weight))
+    RULE.iter().map(move |&(node, weight)| (middle + half * node, half * weight))
 }
 
 /// One panel, already integrated on its two halves.
@@ -234,14 +231,7 @@ impl Panel {
         let (left, left_magnitude) = gauss(function, from, middle)?;
         let (right, right_magnitude) = gauss(function, middle, to)?;
         let magnitude = left_magnitude + right_magnitude;
-        Ok(Self {
-            from,
-            to,
-            left,
-            right,
-            magnitude,
-            error: (coarse - left - right).abs(),
-        })
+        Ok(Self { from, to, left, right, magnitude, error: (coarse - left - right).abs() })
     }
 
     fn value(&self) -> f64 {
@@ -283,30 +273,15 @@ mod tests {
         let table: [Case; 6] = [
             ("polynomial", |x| x.powi(9), 0.0, 2.0, 102.4),
             ("negative direction", f64::cos, 1.0, 0.0, -(1.0_f64.sin())),
-            (
-                "a narrow bell",
-                |x| 1.0 / (1.0 + 1e6 * x * x),
-                -1.0,
-                1.0,
-                2e-3 * 1000.0_f64.atan(),
-            ),
+            ("a narrow bell", |x| 1.0 / (1.0 + 1e6 * x * x), -1.0, 1.0, 2e-3 * 1000.0_f64.atan()),
             ("zero by symmetry", f64::sin, -3.0, 3.0, 0.0),
-            (
-                "many waves",
-                |x| (200.0 * x).sin(),
-                0.0,
-                1.0,
-                (1.0 - 200.0_f64.cos()) / 200.0,
-            ),
+            ("many waves", |x| (200.0 * x).sin(), 0.0, 1.0, (1.0 - 200.0_f64.cos()) / 200.0),
             ("an end that is not smooth", f64::sqrt, 0.0, 1.0, 2.0 / 3.0),
         ];
         for (name, function, from, to, exact) in table {
             let (value, error_estimate) = integrate_smooth(function, from, to, 1e-12).unwrap();
             let error = (value - exact).abs();
-            assert!(
-                error <= 1e-12 * exact.abs().max(1.0),
-                "{name}: {value} against {exact}"
-            );
+            assert!(error <= 1e-12 * exact.abs().max(1.0), "{name}: {value} against {exact}");
             assert!(
                 error <= error_estimate + 1e-15 * exact.abs().max(1.0),
                 "{name}: error {error} above its estimate {error_estimate}"
@@ -322,10 +297,7 @@ mod tests {
             let (value, _) =
                 integrate_smooth(integrand, 0.0, std::f64::consts::FRAC_PI_2, 1e-13).unwrap();
             let exact = ellip::ellipk(m).unwrap();
-            assert!(
-                (value / exact - 1.0).abs() < 1e-13,
-                "m = {m}: {value} against {exact}"
-            );
+            assert!((value / exact - 1.0).abs() < 1e-13, "m = {m}: {value} against {exact}");
         }
     }
 
@@ -334,18 +306,9 @@ mod tests {
         let refuse = |function: fn(f64) -> f64, from, to| {
             integrate_smooth(function, from, to, 1e-10).unwrap_err()
         };
-        assert!(matches!(
-            refuse(f64::exp, 0.0, f64::INFINITY),
-            QuadratureError::Interval { .. }
-        ));
-        assert!(matches!(
-            refuse(f64::ln, -1.0, 1.0),
-            QuadratureError::NonFinite { .. }
-        ));
-        assert!(matches!(
-            refuse(|x| 1.0 / x, 0.0, 1.0),
-            QuadratureError::NotConverged { .. }
-        ));
+        assert!(matches!(refuse(f64::exp, 0.0, f64::INFINITY), QuadratureError::Interval { .. }));
+        assert!(matches!(refuse(f64::ln, -1.0, 1.0), QuadratureError::NonFinite { .. }));
+        assert!(matches!(refuse(|x| 1.0 / x, 0.0, 1.0), QuadratureError::NotConverged { .. }));
         assert!(matches!(
             integrate_smooth(f64::exp, 0.0, 1.0, 0.0),
             Err(QuadratureError::Tolerance(_))
@@ -365,11 +328,7 @@ mod tests {
         let places = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1];
         let mirrored = places.iter().rev().map(|place| -place);
         let cuts = mirrored.chain(places).map(|place| f64::acos(-place));
-        let ends: Vec<f64> = [0.0]
-            .into_iter()
-            .chain(cuts)
-            .chain([std::f64::consts::PI])
-            .collect();
+        let ends: Vec<f64> = [0.0].into_iter().chain(cuts).chain([std::f64::consts::PI]).collect();
         let mut calls = 0;
         let integrand = |theta: f64| {
             calls += 1;
@@ -378,10 +337,7 @@ mod tests {
         let (value, error) = integrate_piecewise(integrand, &ends, 1e-14).unwrap();
         // int_0^pi atan(a cos) cos = pi (sqrt(1 + a^2) - 1)/a.
         let exact = std::f64::consts::PI * (1e12_f64.sqrt().hypot(1.0) - 1.0) / 1e6;
-        assert!(
-            (value - exact).abs() < 1e-13 && error < 1e-13,
-            "{value} {exact} {error}"
-        );
+        assert!((value - exact).abs() < 1e-13 && error < 1e-13, "{value} {exact} {error}");
         assert!(calls < 10_000, "{calls}");
     }
 }

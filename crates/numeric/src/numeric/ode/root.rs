@@ -57,11 +57,7 @@ pub enum RootError {
 pub fn find_root(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> Result<f64, RootError> {
     let mut value_at = |x: f64| {
         let value = if x.is_finite() { function(x) } else { f64::NAN };
-        if value.is_finite() {
-            Ok(value)
-        } else {
-            Err(RootError::NonFinite { at: x })
-        }
+        if value.is_finite() { Ok(value) } else { Err(RootError::NonFinite { at: x }) }
     };
     // (x1, f1) is the newest point, (x2, f2) the other end of the bracket, (x3, f3) the point
     // dropped last.
@@ -71,12 +67,7 @@ pub fn find_root(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> Result
         return Ok(if f2 == 0.0 { x2 } else { x1 });
     }
     if (f1 > 0.0) == (f2 > 0.0) {
-        return Err(RootError::NotBracketed {
-            left: a,
-            right: b,
-            left_value: f2,
-            right_value: f1,
-        });
+        return Err(RootError::NotBracketed { left: a, right: b, left_value: f2, right_value: f1 });
     }
     let mut fraction = 0.5;
     loop {
@@ -90,11 +81,7 @@ pub fn find_root(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> Result
             (x2, f2) = (x1, f1);
         }
         (x1, f1) = (x, f);
-        let (best, best_value) = if f1.abs() <= f2.abs() {
-            (x1, f1)
-        } else {
-            (x2, f2)
-        };
+        let (best, best_value) = if f1.abs() <= f2.abs() { (x1, f1) } else { (x2, f2) };
         let width = (x2 - x1).abs();
         // Two units in the last place: below that the middle of the bracket is one of its ends.
         let resolution = f64::EPSILON * best.abs() + f64::MIN_POSITIVE;
@@ -211,11 +198,7 @@ pub fn find_minimum(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> (f6
             value_right = function(inner_right);
         }
     }
-    if value_left <= value_right {
-        (inner_left, value_left)
-    } else {
-        (inner_right, value_right)
-    }
+    if value_left <= value_right { (inner_left, value_left) } else { (inner_right, value_right) }
 }
 
 #[cfg(test)]
@@ -228,23 +211,11 @@ mod tests {
     #[test]
     fn known_roots_to_the_last_bits() {
         let table: [Case; 7] = [
-            (
-                "square root of two",
-                |x| x * x - 2.0,
-                0.0,
-                2.0,
-                2.0_f64.sqrt(),
-            ),
+            ("square root of two", |x| x * x - 2.0, 0.0, 2.0, 2.0_f64.sqrt()),
             ("pi", f64::sin, 3.0, 4.0, std::f64::consts::PI),
             ("triple root", |x| (x - 0.3).powi(3), -1.0, 1.0, 0.3),
             ("end of the interval", |x| x, 0.0, 1.0, 0.0),
-            (
-                "a step",
-                |x| if x < 0.323 { -1.0 } else { 1.0 },
-                -1.0,
-                1.0,
-                0.323,
-            ),
+            ("a step", |x| if x < 0.323 { -1.0 } else { 1.0 }, -1.0, 1.0, 0.323),
             (
                 "steep and flat",
                 |x| (-1e6 * x).exp_m1() + 1e-6,
@@ -272,10 +243,7 @@ mod tests {
                 x.powi(exponent) - 0.1
             };
             find_root(function, 0.0, 1.0).unwrap();
-            assert!(
-                evaluations < 40,
-                "power {exponent}: {evaluations} evaluations"
-            );
+            assert!(evaluations < 40, "power {exponent}: {evaluations} evaluations");
         }
     }
 
@@ -285,10 +253,7 @@ mod tests {
             find_root(|x| x * x + 1.0, -1.0, 1.0),
             Err(RootError::NotBracketed { .. })
         ));
-        assert!(matches!(
-            find_root(f64::ln, -1.0, 2.0),
-            Err(RootError::NonFinite { .. })
-        ));
+        assert!(matches!(find_root(f64::ln, -1.0, 2.0), Err(RootError::NonFinite { .. })));
         assert!(matches!(
             find_root(|x| x, f64::NEG_INFINITY, 1.0),
             Err(RootError::NonFinite { .. })
@@ -298,18 +263,12 @@ mod tests {
     #[test]
     fn a_property_ends_between_neighbours_or_as_early_as_asked() {
         let below = |x: f64| x < 0.3;
-        assert_eq!(
-            bisect(below, -1.0, 1.0, Until::Width(0.0)),
-            [0.3_f64.next_down(), 0.3]
-        );
+        assert_eq!(bisect(below, -1.0, 1.0, Until::Width(0.0)), [0.3_f64.next_down(), 0.3]);
         let above = bisect(|x| !below(x), 1.0, -1.0, Until::Halvings(2000));
         assert_eq!(above, [0.3, 0.3_f64.next_down()]);
         assert_eq!(bisect(below, 0.0, 1.0, Until::Halvings(2)), [0.25, 0.5]);
         assert_eq!(bisect(below, 0.0, 1.0, Until::Width(0.25)), [0.25, 0.5]);
-        assert_eq!(
-            bisect(below, 0.0, f64::INFINITY, Until::Halvings(9)),
-            [0.0, f64::INFINITY]
-        );
+        assert_eq!(bisect(below, 0.0, f64::INFINITY, Until::Halvings(9)), [0.0, f64::INFINITY]);
         let told = |x: f64| if x == 0.25 { Err(x) } else { Ok(below(x)) };
         assert_eq!(try_bisect(told, 0.0, 1.0, Until::Width(0.0)), Err(0.25));
     }
@@ -319,9 +278,6 @@ mod tests {
         let (at, value) = find_minimum(|x| 1.0 + (x - 0.7) * (x - 0.7), 0.0, 1.0);
         assert!((at - 0.7).abs() < 1e-7 && value - 1.0 < 1e-15);
         let (at, value) = find_minimum(|x| (x - 0.7) * (x - 0.7) - 1e-12, 0.0, 1.0);
-        assert!(
-            value <= 0.0,
-            "the dip of depth 1e-12 at 0.7 was not found: {value} at {at}"
-        );
+        assert!(value <= 0.0, "the dip of depth 1e-12 at 0.7 was not found: {value} at {at}");
     }
 }

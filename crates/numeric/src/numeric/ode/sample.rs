@@ -56,10 +56,7 @@ impl<Y: Values> Sample for Point<Y> {
     type Values = Y;
 
     fn new(t: f64, values: &Y) -> Self {
-        Self {
-            t,
-            y: values.clone(),
-        }
+        Self { t, y: values.clone() }
     }
 
     fn time(&self) -> f64 {

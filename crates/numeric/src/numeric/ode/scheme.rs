@@ -46,10 +46,7 @@ pub(super) fn implicit<S: Sample>()
             .h_max(longest_step)
             .max_steps(usize::MAX)
     };
-    Scheme {
-        fresh,
-        inside: within::<S, _>,
-    }
+    Scheme { fresh, inside: within::<S, _> }
 }
 
 fn within<S: Sample, M>(method: &mut M, time: f64) -> Option<S::Values>

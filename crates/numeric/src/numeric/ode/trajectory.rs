@@ -155,10 +155,7 @@ impl<S: Sample> Trajectory<S> {
     /// The states between which the method stepped, first and last included. A switch that changed
     /// the state shows the state after it.
     pub fn knots(&self) -> impl Iterator<Item = S> + '_ {
-        self.steps
-            .iter()
-            .map(|step| step.start.clone())
-            .chain(std::iter::once(self.end.clone()))
+        self.steps.iter().map(|step| step.start.clone()).chain(std::iter::once(self.end.clone()))
     }
 
     /// `count` states at equal distances of time, both ends included (for `count` of at least 2).
@@ -166,11 +163,7 @@ impl<S: Sample> Trajectory<S> {
         let (from, to) = (self.start.time(), self.end.time());
         (0..count).filter_map(move |index| {
             let fraction = index as f64 / (count.max(2) - 1) as f64;
-            self.state_at(if index + 1 == count {
-                to
-            } else {
-                from + fraction * (to - from)
-            })
+            self.state_at(if index + 1 == count { to } else { from + fraction * (to - from) })
         })
     }
 
@@ -194,10 +187,7 @@ impl<S: Sample> Trajectory<S> {
 
     /// Whether the end time or a stopping event was reached: false where the run had to give up.
     pub fn is_complete(&self) -> bool {
-        matches!(
-            self.stop_reason,
-            StopReason::EndReached | StopReason::Event { .. }
-        )
+        matches!(self.stop_reason, StopReason::EndReached | StopReason::Event { .. })
     }
 
     /// Number of accepted steps.
@@ -211,9 +201,7 @@ impl<S: Sample> Trajectory<S> {
     }
 
     fn step_index(&self, t: f64) -> Option<usize> {
-        self.steps
-            .partition_point(|step| step.start.time() <= t)
-            .checked_sub(1)
+        self.steps.partition_point(|step| step.start.time() <= t).checked_sub(1)
     }
 }
 
@@ -241,12 +229,7 @@ impl<S: Sample> Step<S> {
                 term.as_mut()[component] = coefficient;
             }
         }
-        Self {
-            phase,
-            start,
-            length,
-            quotient,
-        }
+        Self { phase, start, length, quotient }
     }
 
     /// The values at the fraction s of the step.
@@ -260,10 +243,7 @@ impl<S: Sample> Step<S> {
 
     /// The state at the fraction s of the step.
     pub(super) fn state_at(&self, fraction: f64) -> S {
-        S::new(
-            self.start.time() + fraction * self.length,
-            &self.at(fraction),
-        )
+        S::new(self.start.time() + fraction * self.length, &self.at(fraction))
     }
 }
 
@@ -281,11 +261,7 @@ static TRANSFORM: LazyLock<[[f64; TERMS]; TERMS]> = LazyLock::new(|| {
 
 fn chebyshev_coefficients(values: &[f64; TERMS]) -> [f64; TERMS] {
     std::array::from_fn(|k| {
-        TRANSFORM[k]
-            .iter()
-            .zip(values)
-            .map(|(weight, value)| weight * value)
-            .sum()
+        TRANSFORM[k].iter().zip(values).map(|(weight, value)| weight * value).sum()
     })
 }
 
@@ -310,11 +286,7 @@ mod tests {
         // t = 2.5.
         let p = |s: f64| 1.0 - 3.0 * s + 0.5 * s.powi(5) - 2.0 * s.powi(7);
         let r = |s: f64| 4.0 * s.powi(3) - s.powi(6);
-        let start = State {
-            t: 2.0,
-            x: 0.3,
-            v: -1.0,
-        };
+        let start = State { t: 2.0, x: 0.3, v: -1.0 };
         let values = FRACTIONS.map(|s| [start.x + s * p(s), start.v + s * r(s)]);
         let step = Step::new(0, start, 0.5, values);
         for index in 0..=50 {

@@ -36,10 +36,7 @@ fn drain(oscillator: &Oscillator, parts: &Parts) -> Option<Drain> {
     let velocity = oscillator.velocity();
     let own = [oscillator.coordinate, velocity];
     let free = |expression: &Expr| own.iter().all(|&name| !expression.contains(name));
-    let rate = Expr::divide(&parts.damping, &Expr::from(velocity))
-        .ok()?
-        .expand()
-        .ok()?;
+    let rate = Expr::divide(&parts.damping, &Expr::from(velocity)).ok()?.expand().ok()?;
     if free(&rate) {
         return Some(Drain::Viscous(rate));
     }
@@ -70,26 +67,16 @@ pub(super) fn notes(oscillator: &Oscillator, parts: &Parts) -> Vec<Note> {
     }
     let note = match drain(oscillator, parts) {
         Some(Drain::Viscous(rate)) => {
-            let sine = Expr::from(x)
-                .sin()
-                .is_ok_and(|sine| sine == parts.restoring);
-            Some(Note::Action {
-                rate,
-                pendulum: sine,
-            })
+            let sine = Expr::from(x).sin().is_ok_and(|sine| sine == parts.restoring);
+            Some(Note::Action { rate, pendulum: sine })
         }
         Some(Drain::Dry(size)) if is_odd(&parts.restoring, x).unwrap_or(false) => {
             let at = |name: &str| {
-                potential(&parts.restoring, x)?
-                    .substitute(x, &Expr::symbol(name))
-                    .ok()
+                potential(&parts.restoring, x)?.substitute(x, &Expr::symbol(name)).ok()
             };
             at("a_n")
                 .zip(at("a_m"))
-                .map(|(before, after)| Note::HalfSwings {
-                    lost: &before - &after,
-                    size,
-                })
+                .map(|(before, after)| Note::HalfSwings { lost: &before - &after, size })
         }
         _ => None,
     };
@@ -109,13 +96,7 @@ pub fn falls_to(
         return None;
     };
     let rate = rate.evaluate(numbers).ok().filter(|rate| *rate > 0.0)?;
-    let force = Force::new(
-        &parts.restoring,
-        oscillator.coordinate,
-        equilibrium,
-        numbers,
-        start,
-    )?;
+    let force = Force::new(&parts.restoring, oscillator.coordinate, equilibrium, numbers, start)?;
     let ratio = action(&force, start)? / action(&force, end)?;
     Some(ratio.ln() / rate).filter(|time| time.is_finite())
 }

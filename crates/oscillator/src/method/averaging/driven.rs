@@ -147,15 +147,9 @@ impl UnderDrive<'_> {
         let projected = Projected::of(self.free, &self.small, &Expr::from(a))?;
         let near = match self.asked.resonance {
             Some(_) => None,
-            None => ratio_of(
-                &drive.frequency,
-                &self.small.linear_part()?.linear_in_full(),
-            ),
+            None => ratio_of(&drive.frequency, &self.small.linear_part()?.linear_in_full()),
         };
-        let forces = drive
-            .terms
-            .iter()
-            .any(|driven| driven.is_force(oscillator.coordinate));
+        let forces = drive.terms.iter().any(|driven| driven.is_force(oscillator.coordinate));
         let candidates = match (self.asked.resonance, near) {
             (Some(asked), _) => vec![asked],
             (None, Some(ratio)) => by_distance(drive.resonances(), ratio),
@@ -191,9 +185,7 @@ impl UnderDrive<'_> {
         for resonance in drive.resonances() {
             let projected = waves_at(resonance)?.is_some_and(|waves| waves.reach());
             if projected
-                || scaling
-                    .as_ref()
-                    .is_some_and(|scaling| self.asked.reaches(resonance, scaling))
+                || scaling.as_ref().is_some_and(|scaling| self.asked.reaches(resonance, scaling))
             {
                 others.push(resonance);
             }
@@ -213,10 +205,7 @@ struct Waves {
 impl Waves {
     /// Whether anything reaches the motion.
     fn reach(&self) -> bool {
-        self.sine
-            .iter()
-            .chain(&self.cosine)
-            .any(|wave| !wave.is_zero())
+        self.sine.iter().chain(&self.cosine).any(|wave| !wave.is_zero())
     }
 }
 
@@ -241,10 +230,8 @@ fn waves(drive: &Drive, oscillator: &Oscillator, omega0: &Expr, p: u32) -> Resul
             .product(&Series::sin(POLYNOMIALS, 1).times(-1).power(powers[1]));
         // cos(p theta + psi) = cos(p theta) cos(psi) - sin(p theta) sin(psi), and the sine
         // likewise.
-        let [in_phase, across] = [
-            Series::cos(POLYNOMIALS, p as usize),
-            Series::sin(POLYNOMIALS, p as usize),
-        ];
+        let [in_phase, across] =
+            [Series::cos(POLYNOMIALS, p as usize), Series::sin(POLYNOMIALS, p as usize)];
         let by_psi = match driven.quadrature {
             Quadrature::Cosine => [in_phase, across.times(-1)],
             Quadrature::Sine => [across, in_phase],
@@ -260,10 +247,7 @@ fn waves(drive: &Drive, oscillator: &Oscillator, omega0: &Expr, p: u32) -> Resul
     let both = |[cos, sin]: [Result<Expr, ExprError>; 2]| -> Result<[Expr; 2], ExprError> {
         Ok([cos?, sin?])
     };
-    Ok(Waves {
-        sine: both(sine)?,
-        cosine: both(cosine)?,
-    })
+    Ok(Waves { sine: both(sine)?, cosine: both(cosine)? })
 }
 
 /// What stands before a wave as a constant and whole powers of coordinate and velocity; `None`
@@ -276,9 +260,7 @@ fn powers(driven: &Driven, coordinate: Symbol) -> Option<(Expr, [u32; 2])> {
         let (base, exponent) = factor.base_and_exponent();
         match own.iter().position(|&name| base.as_symbol() == Some(name)) {
             Some(place) => {
-                let exponent = exponent
-                    .as_number()
-                    .filter(|exponent| exponent.is_integer())?;
+                let exponent = exponent.as_number().filter(|exponent| exponent.is_integer())?;
                 let exponent = exponent.to_integer().to_u32()?;
                 powers[place] += Some(exponent).filter(|exponent| *exponent <= HIGHEST_POWER)?;
             }
@@ -343,9 +325,7 @@ impl<'a> Question<'a> {
         let turning = [halves(&waves.sine, 1)?, halves(&waves.cosine, -1)?];
         let angle = Expr::from(self.phase);
         let [cos, sin] = [angle.cos()?, angle.sin()?];
-        let moving = turning
-            .each_ref()
-            .map(|[by_cos, by_sin]| by_cos * &cos + by_sin * &sin);
+        let moving = turning.each_ref().map(|[by_cos, by_sin]| by_cos * &cos + by_sin * &sin);
         let amplitude_rate = &rate + &moving[0];
         let over = Expr::divide(&p, &a)?;
         let each = |sum: &Expr| (sum * &over).expand();
@@ -358,10 +338,7 @@ impl<'a> Question<'a> {
         notes.extend(self.least_force(&rate, &turning[0])?);
         let (first, small_with, cut) = small_in_words(self.small, 1);
         let detuning = (&self.drive.frequency - &(&p * &self.projected.omega0)).expand()?;
-        let sigma = Definition {
-            symbol: self.sigma,
-            meaning: detuning,
-        };
+        let sigma = Definition { symbol: self.sigma, meaning: detuning };
         let mut definitions = self.projected.definitions.clone();
         definitions.extend(self.drive.definitions.iter().cloned());
         definitions.push(sigma.clone());
@@ -372,10 +349,7 @@ impl<'a> Question<'a> {
             definitions,
             backbone: match backbone.to_polynomial(&mut |_| None)? {
                 Some(frequency) => Law::Frequency(frequency),
-                None => Law::Closed(ClosedForm {
-                    squared: false,
-                    value: backbone,
-                }),
+                None => Law::Closed(ClosedForm { squared: false, value: backbone }),
             },
             rates: [amplitude_rate, phase_rate],
             phase: self.phase,
@@ -413,10 +387,7 @@ impl<'a> Question<'a> {
             |parts: &[Expr; 2]| Some([polynomial(&parts[0])?, polynomial(&parts[1])?]);
         let whole = || {
             let still = [polynomial(rate)?, polynomial(phase)?];
-            Some((
-                still,
-                [polynomials(&turning[0])?, polynomials(&turning[1])?],
-            ))
+            Some((still, [polynomials(&turning[0])?, polynomials(&turning[1])?]))
         };
         if let Some(([rate, phase], waves)) = whole() {
             let found = FrequencyResponse::of([&rate, &phase], &waves, self.sigma, self.a);
@@ -451,9 +422,7 @@ impl<'a> Question<'a> {
         response: &Response,
     ) -> Result<Vec<Line>, ExprError> {
         let letters = Letters::beside(&self.oscillator.names());
-        let mut lines = self
-            .projected
-            .along(self.oscillator, &Expr::from(self.a), &letters)?;
+        let mut lines = self.projected.along(self.oscillator, &Expr::from(self.a), &letters)?;
         let theta = Expr::from(self.oscillator.phase());
         let turned = &(Expr::from(i64::from(self.p)) * theta) + &Expr::from(self.phase);
         lines.push(Line::equation(self.drive.angle(), turned).because("the drive turns with"));
@@ -465,10 +434,7 @@ impl<'a> Question<'a> {
             Line::equation(self.phase.derivative(), phase_rate.clone())
                 .because("what cos(θ) asks for"),
         );
-        let closed = response
-            .closed
-            .as_ref()
-            .map(|closed| closed.relation.clone());
+        let closed = response.closed.as_ref().map(|closed| closed.relation.clone());
         if let Some(relation) = response.relation.as_ref().map(Expr::from).or(closed) {
             let steady = "steady where both vanish; cos^2 + sin^2 = 1 eliminates the phase";
             lines.push(
@@ -487,17 +453,12 @@ impl<'a> Question<'a> {
                 false => driven.factor.clone(),
             }
         });
-        let forces = self
-            .drive
-            .terms
-            .iter()
-            .any(|driven| driven.is_force(self.oscillator.coordinate));
+        let forces =
+            self.drive.terms.iter().any(|driven| driven.is_force(self.oscillator.coordinate));
         let driven = Note::Driven {
             resonance: (self.p, 1),
             parametric: !forces,
-            small: std::iter::once(Expr::from(self.sigma))
-                .chain(factors)
-                .collect(),
+            small: std::iter::once(Expr::from(self.sigma)).chain(factors).collect(),
             power: 1,
             nearest: Some((self.p, 1)),
         };
@@ -511,10 +472,7 @@ impl<'a> Question<'a> {
         rate: &Expr,
         [by_cos, by_sin]: &[Expr; 2],
     ) -> Result<Option<Note>, ExprError> {
-        let Ok(held) = rate
-            .substitute(self.a, &Expr::zero())
-            .and_then(|held| held.expand())
-        else {
+        let Ok(held) = rate.substitute(self.a, &Expr::zero()).and_then(|held| held.expand()) else {
             return Ok(None);
         };
         if !held.has_leading_minus() || held.terms().len() != 1 {
@@ -522,9 +480,8 @@ impl<'a> Question<'a> {
         }
         let twice = Expr::from(2) * &self.projected.omega0;
         let squares = (by_cos * by_cos + by_sin * by_sin).expand()?;
-        let size = squares
-            .to_polynomial(&mut |_| None)?
-            .and_then(|squares| squares.single_term_root());
+        let size =
+            squares.to_polynomial(&mut |_| None)?.and_then(|squares| squares.single_term_root());
         let free = |size: &Polynomial| {
             !size.symbols().contains(&self.a) && *size != Polynomial::constant(Rational::zero())
         };

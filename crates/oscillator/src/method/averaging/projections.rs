@@ -75,10 +75,7 @@ pub(super) fn of_term(
         )?,
         (false, false) => return None,
     };
-    Some([
-        (&outside * &sine).expand().ok()?,
-        (&outside * &cosine).expand().ok()?,
-    ])
+    Some([(&outside * &sine).expand().ok()?, (&outside * &cosine).expand().ok()?])
 }
 
 /// Powers of both, by the Beta integral.
@@ -95,14 +92,10 @@ fn of_powers(
         _ => return zero(),
     };
     // The integrals exist where the arguments of the Gamma functions above the line are positive.
-    for (exponent, above) in [
-        (&position.exponent, above_position),
-        (&velocity.exponent, above_velocity),
-    ] {
-        if exponent
-            .as_number()
-            .is_some_and(|number| *number <= ratio(-above, 1))
-        {
+    for (exponent, above) in
+        [(&position.exponent, above_position), (&velocity.exponent, above_velocity)]
+    {
+        if exponent.as_number().is_some_and(|number| *number <= ratio(-above, 1)) {
             return None;
         }
     }
@@ -110,9 +103,7 @@ fn of_powers(
     let gamma = |argument: Expr| Expr::function(Function::Gamma, vec![argument]).ok();
     let numerator = gamma(half_of(&position.exponent + &Expr::from(above_position))?)?
         * gamma(half_of(&velocity.exponent + &Expr::from(above_velocity))?)?;
-    let denominator = gamma(half_of(
-        &position.exponent + &velocity.exponent + Expr::from(3),
-    )?)?;
+    let denominator = gamma(half_of(&position.exponent + &velocity.exponent + Expr::from(3))?)?;
     let sizes = Expr::power(amplitude, &position.exponent).ok()?
         * power_of_product(speed, &velocity.exponent)?;
     let value = Expr::divide(&(numerator * sizes), &(denominator * Expr::pi())).ok()?;
@@ -145,11 +136,7 @@ fn of_velocity_beside_power(
     speed: &Expr,
 ) -> Option<[Expr; 2]> {
     let p = position.whole()?;
-    let (k, halves) = if p.is_even() {
-        (1, p / 2)
-    } else {
-        (0, p / 2 + 1)
-    };
+    let (k, halves) = if p.is_even() { (1, p / 2) } else { (0, p / 2 + 1) };
     let value = projected(function, halves, velocity, speed, k)?
         * amplitude.integer_power(p as i64).ok()?;
     Some(match k {
@@ -167,11 +154,7 @@ fn of_position_beside_power(
     speed: &Expr,
 ) -> Option<[Expr; 2]> {
     let q = velocity.whole()?;
-    let (k, halves) = if q.is_even() {
-        (1, q / 2)
-    } else {
-        (0, q / 2 + 1)
-    };
+    let (k, halves) = if q.is_even() { (1, q / 2) } else { (0, q / 2 + 1) };
     let value = projected(function, halves, coordinate, amplitude, k)?
         * speed.integer_power(q as i64).ok()?;
     Some(match k {
@@ -195,11 +178,9 @@ fn projected(
         let product = function * &power;
         let coefficient = cosine_coefficient(&product, variable, size, k)
             .or_else(|| arctangent_coefficient(&product, variable, size, k))?;
-        let scale = Expr::divide(
-            &Expr::number(binomial.clone()),
-            &size.integer_power(2 * j as i64).ok()?,
-        )
-        .ok()?;
+        let scale =
+            Expr::divide(&Expr::number(binomial.clone()), &size.integer_power(2 * j as i64).ok()?)
+                .ok()?;
         sum.push(&scale * &coefficient);
         let [next, below] = [halves - j, j + 1].map(|n| Rational::from_integer(n.into()));
         binomial = -(binomial * next / below);

@@ -67,10 +67,7 @@ impl PurePower {
             && exponent > ratio(-1, 1)
             && !exponent.is_one()
             && !stiffness.has_leading_minus();
-        restores.then_some(Self {
-            stiffness,
-            exponent,
-        })
+        restores.then_some(Self { stiffness, exponent })
     }
 
     /// `1/(n+1)`.
@@ -83,10 +80,7 @@ impl PurePower {
     fn drain(&self, term: &Expr, coordinate: Symbol) -> Option<(Rational, Expr)> {
         let own = [coordinate, coordinate.derivative()];
         let (outside, [position, velocity]) = taken_apart(term, own)?;
-        let [p, q] = [
-            position.exponent.as_number()?,
-            velocity.exponent.as_number()?,
-        ];
+        let [p, q] = [position.exponent.as_number()?, velocity.exponent.as_number()?];
         if !velocity.odd || p.is_negative() || q.is_negative() {
             return None;
         }
@@ -99,13 +93,8 @@ impl PurePower {
         let power = p + &work / &share - &self.exponent;
         let [first, second] = [(p + &one) * &share, q * &half + &one];
         let both = &first + &second;
-        let betas = gamma_quotient(
-            &[first, second, &share + &half],
-            &[both, share.clone(), half],
-        )?;
-        let doubled = (&self.stiffness * &Expr::number(two * &share))
-            .expand()
-            .ok()?;
+        let betas = gamma_quotient(&[first, second, &share + &half], &[both, share.clone(), half])?;
+        let doubled = (&self.stiffness * &Expr::number(two * &share)).expand().ok()?;
         let speed = Expr::power(&doubled, &Expr::number(work)).ok()?;
         let size = Expr::divide(&(&outside * &speed), &self.stiffness).ok()?;
         Some((power, -(&size * &betas)))
@@ -118,10 +107,8 @@ fn taken_apart<const N: usize>(term: &Expr, variables: [Symbol; N]) -> Option<(E
     let mut outside = Expr::number(number);
     let mut powers = [(); N].map(|()| Power::one());
     for factor in factors {
-        let mut inside = variables
-            .iter()
-            .zip(&mut powers)
-            .filter(|(name, _)| factor.contains(**name));
+        let mut inside =
+            variables.iter().zip(&mut powers).filter(|(name, _)| factor.contains(**name));
         match (inside.next(), inside.next()) {
             (None, _) => outside = &outside * factor,
             (Some((name, power)), None) => power.takes(factor, *name).then_some(())?,
@@ -144,11 +131,7 @@ fn gamma_quotient(above: &[Rational], below: &[Rational]) -> Option<Expr> {
             }
             while rest > Rational::one() {
                 rest -= Rational::one();
-                factor = if sign > 0 {
-                    factor * &rest
-                } else {
-                    factor / &rest
-                };
+                factor = if sign > 0 { factor * &rest } else { factor / &rest };
             }
             *left.entry(rest).or_insert(0) += sign;
         }
@@ -178,17 +161,8 @@ impl Shape {
         /// The highest harmonic, and the least that is written.
         const MOST: usize = 15;
         const LEAST: f64 = 1e-10;
-        let unit = Expr::divide(&parts.restoring, &restoring.stiffness)
-            .ok()?
-            .expand()
-            .ok()?;
-        let force = Force::new(
-            &unit,
-            oscillator.coordinate,
-            &Expr::zero(),
-            &BTreeMap::new(),
-            1.0,
-        )?;
+        let unit = Expr::divide(&parts.restoring, &restoring.stiffness).ok()?.expand().ok()?;
+        let force = Force::new(&unit, oscillator.coordinate, &Expr::zero(), &BTreeMap::new(), 1.0)?;
         let (_, cosine) = motion_about(&force, 1.0).ok()?;
         let first = *cosine.get(1)?;
         let over = |(k, value): (usize, &f64)| match k % 2 == 1 && (value / first).abs() >= LEAST {
@@ -203,19 +177,15 @@ impl Shape {
 
     /// The last harmonic that is written.
     fn last_harmonic(&self) -> usize {
-        self.harmonics
-            .iter()
-            .rposition(|value| !value.is_zero())
-            .unwrap_or(1)
+        self.harmonics.iter().rposition(|value| !value.is_zero()).unwrap_or(1)
     }
 
     /// The motion whose first harmonic has this amplitude.
     fn motion(&self, amplitude: Symbol) -> FourierSeries<Polynomials> {
         let amplitude = Polynomial::symbol(amplitude);
         let waves = self.harmonics.iter().cloned();
-        let waves: Vec<Polynomial> = waves
-            .map(|value| Polynomial::constant(value).product(&amplitude))
-            .collect();
+        let waves: Vec<Polynomial> =
+            waves.map(|value| Polynomial::constant(value).product(&amplitude)).collect();
         let sines = vec![Polynomial::zero(); waves.len()];
         FourierSeries::from_parts(POLYNOMIALS, waves, sines)
     }
@@ -264,13 +234,7 @@ impl SlowEquations {
         restoring: &PurePower,
         names: &Names,
     ) -> Result<Self, Refusal> {
-        let Names {
-            amplitude,
-            phase,
-            first,
-            turning,
-            ..
-        } = *names;
+        let Names { amplitude, phase, first, turning, .. } = *names;
         let (mut rates, mut turning_rates) = (vec![], vec![]);
         for term in parts.damping.terms() {
             let Some((power, size)) = restoring.drain(term, oscillator.coordinate) else {
@@ -284,10 +248,7 @@ impl SlowEquations {
             rates.push(size * at(amplitude, power.clone())? * at(first, Rational::one() - power)?);
         }
         let amplitude_rate = Expr::sum(rates).expand()?;
-        let frequency = of_power(
-            &restoring.stiffness,
-            &Expr::number(restoring.exponent.clone()),
-        )?;
+        let frequency = of_power(&restoring.stiffness, &Expr::number(restoring.exponent.clone()))?;
         let turn = |size: &Expr| frequency.substitute(AmplitudeConvention::Initial.symbol(), size);
         let phase_rate = turn(&Expr::divide(&Expr::from(amplitude), &Expr::from(first))?)?;
         let phase_rate = spread(&phase_rate)?;
@@ -301,11 +262,7 @@ impl SlowEquations {
             Line::equation(amplitude.derivative(), amplitude_rate.clone()),
             Line::equation(phase.derivative(), phase_rate.clone()),
         ];
-        Ok(Self {
-            amplitude_rate,
-            phase_rate,
-            derivation,
-        })
+        Ok(Self { amplitude_rate, phase_rate, derivation })
     }
 
     /// Whether the amplitude only grows.
@@ -363,10 +320,7 @@ pub(super) fn solve(
     validity.extend(action::notes(oscillator, parts));
     validity.extend(slow.grows().then_some(Note::Grows));
     let (modulation, named) = slow.released(&names, small_with);
-    let first = Definition {
-        symbol: names.first,
-        meaning: Expr::number(shape.first.clone()),
-    };
+    let first = Definition { symbol: names.first, meaning: Expr::number(shape.first.clone()) };
     Ok(Solution {
         equation: oscillator.equation(),
         method: Method::Averaging,
@@ -377,10 +331,7 @@ pub(super) fn solve(
         parameters: oscillator.parameters.clone(),
         definitions: std::iter::once(first).chain(named).collect(),
         equilibrium: Expr::zero(),
-        law: Law::Closed(ClosedForm {
-            squared: false,
-            value: slow.phase_rate,
-        }),
+        law: Law::Closed(ClosedForm { squared: false, value: slow.phase_rate }),
         displacement: shape.motion(names.amplitude),
         limit_cycle: None,
         modulation: Some(modulation),
@@ -398,9 +349,9 @@ pub(super) fn solve(
 fn refuse_other_orders(parts: &Parts, options: &Options) -> Result<(), Refusal> {
     let reason = match options.order {
         Some(0) => Unsuited::LowestOrder { lowest: 1 },
-        Some(order) if order > 1 => Unsuited::FirstOrderOfPower {
-            term: parts.restoring.clone().into(),
-        },
+        Some(order) if order > 1 => {
+            Unsuited::FirstOrderOfPower { term: parts.restoring.clone().into() }
+        }
         _ if options.amplitude == Some(AmplitudeConvention::Initial) => Unsuited::SlowAmplitude,
         _ => return Ok(()),
     };
@@ -417,11 +368,8 @@ fn spread(expression: &Expr) -> Result<Expr, ExprError> {
         let (number, inner) = base.factors();
         let (constant, inner): (Vec<&Expr>, Vec<&Expr>) =
             inner.iter().partition(|part| part.symbols().is_empty());
-        let constant = Expr::product(
-            [Expr::number(number)]
-                .into_iter()
-                .chain(constant.into_iter().cloned()),
-        );
+        let constant =
+            Expr::product([Expr::number(number)].into_iter().chain(constant.into_iter().cloned()));
         product = product * Expr::power(&constant, &exponent)?;
         for part in inner {
             let (base, power) = part.base_and_exponent();
@@ -441,17 +389,9 @@ fn small_in_words(
     let found = letters(&restoring, &damping, &oscillator.parameters, None).unwrap_or_default();
     let marks = found.is_empty().then(Expr::one);
     let mut names = found.into_iter();
-    let first = names
-        .next()
-        .unwrap_or_else(|| fresh("delta", &oscillator.names()));
+    let first = names.next().unwrap_or_else(|| fresh("delta", &oscillator.names()));
     let others: Vec<Symbol> = names.collect();
-    let small = std::iter::once(first)
-        .chain(others.iter().copied())
-        .collect();
-    let cut = Note::Cut(Cut::Truncated {
-        small,
-        order: 1,
-        marks,
-    });
+    let small = std::iter::once(first).chain(others.iter().copied()).collect();
+    let cut = Note::Cut(Cut::Truncated { small, order: 1, marks });
     Ok((first, others, cut))
 }

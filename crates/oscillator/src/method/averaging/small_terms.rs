@@ -65,9 +65,8 @@ impl SmallTerms {
         let found = match asked {
             Some(SmallParameter::Amplitude) => Err(None),
             _ if function_restores => {
-                let mut left = others
-                    .iter()
-                    .filter(|term| first.is_none_or(|name| !term.contains(name)));
+                let mut left =
+                    others.iter().filter(|term| first.is_none_or(|name| !term.contains(name)));
                 Err(left.next().map(|&term| term.clone()))
             }
             _ => letters(&linear, &others, &oscillator.parameters, first).map_err(Some),
@@ -87,9 +86,7 @@ impl SmallTerms {
         };
         split.marked.parameters.push(delta);
         if let Ok(letters) = found {
-            let scaled = letters
-                .iter()
-                .map(|&name| (name, &Expr::from(delta) * &Expr::from(name)));
+            let scaled = letters.iter().map(|&name| (name, &Expr::from(delta) * &Expr::from(name)));
             let scaled: BTreeMap<Symbol, Expr> = scaled.collect();
             split.marked.force = expanded.substitute_all(&scaled)?;
             split.letters = letters;
@@ -120,8 +117,7 @@ impl SmallTerms {
     /// # Errors
     /// It is none, or nothing restores.
     pub(super) fn expand(&self, order: u32) -> Result<PerturbedForce, OscillatorError> {
-        self.marked
-            .expand(SmallParameter::Parameter(self.delta), order)
+        self.marked.expand(SmallParameter::Parameter(self.delta), order)
     }
 
     /// The linear restoring force alone.
@@ -158,14 +154,8 @@ impl SmallTerms {
 /// What stands before the coordinate, where that is all there is of it in a term.
 fn coefficient_of_linear(term: &Expr, oscillator: &Oscillator) -> Option<Expr> {
     let quotient = Expr::divide(term, &Expr::from(oscillator.coordinate)).ok()?;
-    let own = [
-        oscillator.coordinate,
-        oscillator.velocity(),
-        Symbol::new("t"),
-    ];
-    own.iter()
-        .all(|&name| !quotient.contains(name))
-        .then_some(quotient)
+    let own = [oscillator.coordinate, oscillator.velocity(), Symbol::new("t")];
+    own.iter().all(|&name| !quotient.contains(name)).then_some(quotient)
 }
 
 /// Letters that are factors of all small terms and of no linear one, `first` among them: always the
@@ -188,11 +178,8 @@ pub(super) fn letters(
         })
     };
     let mut chosen: Vec<Symbol> = first.into_iter().collect();
-    let mut left: Vec<&Expr> = others
-        .iter()
-        .copied()
-        .filter(|term| !chosen.iter().any(|&name| has(term, name)))
-        .collect();
+    let mut left: Vec<&Expr> =
+        others.iter().copied().filter(|term| !chosen.iter().any(|&name| has(term, name))).collect();
     while let Some(&term) = left.first() {
         let free = parameters.iter().copied();
         let candidates = free.filter(|&name| !linear.iter().any(|term| term.contains(name)));

@@ -18,22 +18,14 @@ use crate::symbol::{Symbol, fresh_stem};
 
 /// What an order adds to the motion, in `theta`, with `B = a/2`.
 pub(super) fn motion_of(wave: &Wave, order: usize, names: &Names) -> FourierSeries<Polynomials> {
-    let length = wave
-        .keys()
-        .copied()
-        .max()
-        .map_or(0, |m| m.max(0) as usize + 1);
-    let (mut cosine, mut sine) = (
-        vec![Polynomial::zero(); length],
-        vec![Polynomial::zero(); length],
-    );
+    let length = wave.keys().copied().max().map_or(0, |m| m.max(0) as usize + 1);
+    let (mut cosine, mut sine) =
+        (vec![Polynomial::zero(); length], vec![Polynomial::zero(); length]);
     for (m, value) in wave.iter().filter(|entry| *entry.0 >= 0) {
         let m = *m as usize;
         let part = |part: &Polynomial, factor: i64| {
             let factor = if m == 0 { factor / 2 } else { factor };
-            let scaled = names
-                .polar(part)
-                .product(&Polynomial::constant(ratio(factor, 1)));
+            let scaled = names.polar(part).product(&Polynomial::constant(ratio(factor, 1)));
             scaled.times_monomial(&names.mark(order))
         };
         cosine[m] = part(&value.real, 2);
@@ -73,9 +65,7 @@ pub(super) fn derivation(
         Line::words(format!(
             "{orders}0 = {own}*{wave} + {conjugate}*exp(-{i}*θ), {conjugate} the conjugate of {own}; {turns}"
         )),
-        Line::words(format!(
-            "{times}1, {times}2, ... are the rates of {own} on the slow times"
-        )),
+        Line::words(format!("{times}1, {times}2, ... are the rates of {own} on the slow times")),
     ];
     for k in 1..=scaling.order as usize {
         let (rate, resonant) = (&expansion.rates[k], &expansion.resonant[k]);

@@ -67,10 +67,7 @@ pub(super) fn solve(
     }
     let found = expanded(oscillator, parts, options);
     let refused = |refusal: &Refusal| {
-        matches!(
-            refusal,
-            Refusal::Oscillator(OscillatorError::NotPolynomial(_))
-        )
+        matches!(refusal, Refusal::Oscillator(OscillatorError::NotPolynomial(_)))
     };
     // What is no polynomial may be one for small motions.
     match options.small.is_none() && found.as_ref().is_err_and(refused) {
@@ -102,10 +99,7 @@ fn expanded(
     let free = undriven_oscillator(oscillator, parts)?;
     let parts = free.parts()?;
     let scaling_of = |order: Option<u32>| -> Result<Scaling, Refusal> {
-        let options = Options {
-            order,
-            ..options.clone()
-        };
+        let options = Options { order, ..options.clone() };
         let scaling = scaling(&free, &parts, &options, [1, 2], [HIGHEST, 2 * HIGHEST])?;
         let mut scaling = scaling.spelt_out(&oscillator.names());
         scaling.force.write_with_frequency(&oscillator.names());
@@ -154,23 +148,15 @@ fn expanded(
 
 /// Whether a force of some order has a term that is not linear.
 fn has_nonlinear_terms(force: &PerturbedForce) -> bool {
-    force
-        .terms
-        .iter()
-        .any(|term| term.position + term.velocity > 1)
+    force.terms.iter().any(|term| term.position + term.velocity > 1)
 }
 
 /// Whether a force is linear in the coordinate and the velocity.
 fn is_linear(oscillator: &Oscillator, parts: &Parts) -> bool {
     let own = [oscillator.coordinate, oscillator.velocity()];
-    let slopes = [
-        parts.restoring.differentiate(own[0]),
-        parts.damping.differentiate(own[1]),
-    ];
+    let slopes = [parts.restoring.differentiate(own[0]), parts.damping.differentiate(own[1])];
     let is_constant = |slope: &Result<Expr, _>| {
-        slope
-            .as_ref()
-            .is_ok_and(|slope| own.iter().all(|name| !slope.contains(*name)))
+        slope.as_ref().is_ok_and(|slope| own.iter().all(|name| !slope.contains(*name)))
     };
     slopes.iter().all(is_constant)
 }
@@ -180,10 +166,7 @@ pub(in crate::method) fn is_of_resonance(refusal: &Refusal) -> bool {
     let Refusal::Unsuited { reason, .. } = refusal else {
         return false;
     };
-    matches!(
-        reason,
-        Unsuited::NoResonance { .. } | Unsuited::FarFromResonance { .. }
-    )
+    matches!(reason, Unsuited::NoResonance { .. } | Unsuited::FarFromResonance { .. })
 }
 
 /// A driven motion that is to be expanded, by the method that asks.
@@ -254,12 +237,7 @@ impl Asked<'_> {
             return Err(Unsuited::ResonanceWithoutDamping { term: term.into() }.to(self.method));
         }
         let found = self.at(resonance, scaling)?.ok_or_else(|| {
-            let others = self
-                .drive
-                .resonances()
-                .into_iter()
-                .filter(reaches)
-                .collect();
+            let others = self.drive.resonances().into_iter().filter(reaches).collect();
             let asked = resonance;
             Unsuited::NoResonance { asked, others }.to(self.method)
         })?;
@@ -300,11 +278,7 @@ impl Asked<'_> {
             return Ok(None);
         }
         let still = question.expand(true)?;
-        let found = Found {
-            still: Slow::new(&still, &question),
-            slow,
-            expansion,
-        };
+        let found = Found { still: Slow::new(&still, &question), slow, expansion };
         question.answer(&found).map(Some)
     }
 }
@@ -312,14 +286,8 @@ impl Asked<'_> {
 /// Whether a linear force without damping is driven at its own frequency.
 fn grows(scaling: &Scaling, drive: &Drive, (p, q): (u32, u32)) -> bool {
     let own = drive.terms.iter().find(|driven| p * driven.multiple == q);
-    let squared = own.and_then(|driven| {
-        drive
-            .frequency_of(driven)
-            .integer_power(2)
-            .ok()?
-            .expand()
-            .ok()
-    });
+    let squared =
+        own.and_then(|driven| drive.frequency_of(driven).integer_power(2).ok()?.expand().ok());
     scaling.force.terms.is_empty()
         && squared.is_some_and(|squared| squared == scaling.force.linear_in_full())
 }
@@ -349,28 +317,15 @@ impl<'a> Question<'a> {
         resonance: (u32, u32),
     ) -> Result<Self, Refusal> {
         let (oscillator, drive) = (asked.oscillator, asked.drive);
-        let LinearPart {
-            frequency: linear_frequency,
-            root,
-            definitions,
-            taken,
-        } = LinearPart::of(&scaling.force, oscillator);
+        let LinearPart { frequency: linear_frequency, root, definitions, taken } =
+            LinearPart::of(&scaling.force, oscillator);
         let (p, q) = resonance;
-        let hard = drive
-            .terms
-            .iter()
-            .filter(|driven| driven.is_force(oscillator.coordinate));
-        let hard: BTreeSet<u32> = hard
-            .map(|driven| driven.multiple)
-            .filter(|multiple| p * multiple != q)
-            .collect();
+        let hard = drive.terms.iter().filter(|driven| driven.is_force(oscillator.coordinate));
+        let hard: BTreeSet<u32> =
+            hard.map(|driven| driven.multiple).filter(|multiple| p * multiple != q).collect();
         let several = hard.len() > 1;
         let lambda = |multiple: u32| {
-            let number = if several {
-                multiple.to_string()
-            } else {
-                String::new()
-            };
+            let number = if several { multiple.to_string() } else { String::new() };
             ["", "_s"].map(|ending| fresh(&format!("Lambda{number}{ending}"), &taken))
         };
         Ok(Self {
@@ -384,10 +339,7 @@ impl<'a> Question<'a> {
             definitions,
             names: Names::new(&taken, oscillator.coordinate, scaling.marker),
             sigma: fresh("sigma", &taken),
-            lambda: hard
-                .into_iter()
-                .map(|multiple| (multiple, lambda(multiple)))
-                .collect(),
+            lambda: hard.into_iter().map(|multiple| (multiple, lambda(multiple))).collect(),
             taken,
         })
     }
@@ -402,10 +354,7 @@ impl<'a> Question<'a> {
         let own = [self.oscillator.coordinate, self.oscillator.velocity()];
         let not_polynomial =
             || Refusal::from(OscillatorError::NotPolynomial(driven.term.clone().into()));
-        let polynomial = driven
-            .factor
-            .to_polynomial(&mut |_| None)?
-            .ok_or_else(not_polynomial)?;
+        let polynomial = driven.factor.to_polynomial(&mut |_| None)?.ok_or_else(not_polynomial)?;
         let (monomial, number) = polynomial.single_term().ok_or_else(not_polynomial)?;
         let exponent = |name| u32::try_from(monomial.exponent(name)).map_err(|_| not_polynomial());
         let (position, velocity) = (exponent(own[0])?, exponent(own[1])?);
@@ -434,14 +383,8 @@ impl<'a> Question<'a> {
             order,
             position,
             velocity,
-            coefficient: self
-                .scaling
-                .force
-                .written_with_frequency(coefficient, &names),
-            drive: Some((
-                (self.resonance.0 * driven.multiple) as i32,
-                driven.quadrature,
-            )),
+            coefficient: self.scaling.force.written_with_frequency(coefficient, &names),
+            drive: Some(((self.resonance.0 * driven.multiple) as i32, driven.quadrature)),
         })
     }
 
@@ -451,10 +394,7 @@ impl<'a> Question<'a> {
         let mut terms: Vec<DrivenTerm> = self.scaling.force.terms.iter().map(undriven).collect();
         let mut forced: BTreeMap<u32, Complex> = BTreeMap::new();
         for driven in &self.drive.terms {
-            if let Some(lambda) = self
-                .lambda
-                .get(&driven.multiple)
-                .filter(|_| self.is_hard(driven))
+            if let Some(lambda) = self.lambda.get(&driven.multiple).filter(|_| self.is_hard(driven))
             {
                 let [cosine, sine] = lambda.map(Polynomial::symbol);
                 let forced = forced.entry(driven.multiple).or_insert_with(Complex::zero);
@@ -509,17 +449,11 @@ impl<'a> Question<'a> {
     fn forced_sizes(&self) -> Result<Vec<Definition>, Refusal> {
         let mut found = vec![];
         let symbols = self.lambda.iter().flat_map(|(multiple, symbols)| {
-            let quadratures = [Quadrature::Cosine, Quadrature::Sine]
-                .into_iter()
-                .zip(symbols);
+            let quadratures = [Quadrature::Cosine, Quadrature::Sine].into_iter().zip(symbols);
             quadratures.map(|(quadrature, symbol)| (*multiple, quadrature, *symbol))
         });
         for (multiple, quadrature, symbol) in symbols {
-            let hard = self
-                .drive
-                .terms
-                .iter()
-                .filter(|driven| self.is_hard(driven));
+            let hard = self.drive.terms.iter().filter(|driven| self.is_hard(driven));
             let own: Vec<&Driven> = hard
                 .filter(|driven| (driven.multiple, driven.quadrature) == (multiple, quadrature))
                 .collect();
@@ -560,11 +494,7 @@ struct Found {
 
 impl Question<'_> {
     fn answer(&self, found: &Found) -> Result<Solution, Refusal> {
-        let Found {
-            expansion,
-            slow,
-            still,
-        } = found;
+        let Found { expansion, slow, still } = found;
         let (p, q) = self.resonance;
         let (names, scaling, drive) = (&self.names, self.scaling, self.drive);
         let rates = slow.rates(self)?;
@@ -574,16 +504,11 @@ impl Question<'_> {
             - &(&Expr::number(p_rational) * &linear))
             .expand()?;
         let mut definitions = self.definitions.clone();
-        let sigma = Definition {
-            symbol: self.sigma,
-            meaning: detuning,
-        };
+        let sigma = Definition { symbol: self.sigma, meaning: detuning };
         definitions.push(sigma.clone());
         let forced = self.forced_sizes()?;
-        let no_force = drive
-            .terms
-            .iter()
-            .all(|driven| !driven.is_force(self.oscillator.coordinate));
+        let no_force =
+            drive.terms.iter().all(|driven| !driven.is_force(self.oscillator.coordinate));
         let parametric = forced.is_empty() && no_force;
         definitions.extend(drive.definitions.iter().cloned());
         definitions.extend(forced);
@@ -591,11 +516,7 @@ impl Question<'_> {
         let backbone = self.unmarked(&backbone(&Slow::still(&still.phase), self));
         let averaged = self.method == Method::Averaging;
         // Averaging has its motion to one order less than its rates.
-        let highest = if averaged {
-            scaling.order - 1
-        } else {
-            scaling.order
-        };
+        let highest = if averaged { scaling.order - 1 } else { scaling.order };
         let response = response(self, expansion, slow, highest as usize)?;
         let mut validity = vec![scaling.cut_note()];
         validity.push(Note::Driven {

@@ -65,14 +65,7 @@ pub(super) fn solve(
     };
     let rates = [&free.slow.amplitude, &free.slow.phase].map(|rate| free.written(&free.cut(rate)));
     let rates = rates.each_ref().map(Expr::from);
-    let derivation = derivation(
-        &expansion,
-        &scaling,
-        &names,
-        &linear.frequency,
-        &rates,
-        None,
-    )?;
+    let derivation = derivation(&expansion, &scaling, &names, &linear.frequency, &rates, None)?;
     let mut found = Found {
         definitions: linear.definitions.clone(),
         law: Law::Frequency(free.written(&free.cut(&free.slow.phase))),
@@ -86,9 +79,7 @@ pub(super) fn solve(
         free.settle(cycles, &mut found)?;
     }
     found.definitions.extend(scaling.bookkeeping.clone());
-    found
-        .validity
-        .extend(linear.root.clone().map(Note::Positive));
+    found.validity.extend(linear.root.clone().map(Note::Positive));
     // Where the amplitude changes the motion has a start.
     if !found.modulation.is_conservative() {
         free.start(&mut found, &oscillator.names());
@@ -150,9 +141,7 @@ impl Free<'_> {
     /// of which the expansion says nothing.
     fn leading_amplitude_rate(&self) -> Expr {
         let rate = &self.slow.amplitude;
-        let lowest = rate
-            .exponent_range(self.names.marker)
-            .map_or(0, |(lowest, _)| lowest);
+        let lowest = rate.exponent_range(self.names.marker).map_or(0, |(lowest, _)| lowest);
         Expr::from(&self.written(&rate.truncated(self.names.marker, lowest)))
     }
 
@@ -162,12 +151,12 @@ impl Free<'_> {
         let (scaling, names) = (self.scaling, self.names);
         let cycle = &cycles.cycles[cycles.number - 1];
         let order = scaling.order as usize;
-        let at = self
-            .slow
-            .at_cycle(cycle, &self.linear.frequency, order, names)
-            .ok_or_else(|| Refusal::LimitCycle {
-                equation: cycles.equation.in_square(fresh("z", &self.linear.taken)),
-                reason: "which divides by a sum of symbols",
+        let at =
+            self.slow.at_cycle(cycle, &self.linear.frequency, order, names).ok_or_else(|| {
+                Refusal::LimitCycle {
+                    equation: cycles.equation.in_square(fresh("z", &self.linear.taken)),
+                    reason: "which divides by a sum of symbols",
+                }
             })?;
         let put = |polynomial: &Polynomial| {
             let value = polynomial.substitute(names.amplitude, &at);
@@ -180,21 +169,15 @@ impl Free<'_> {
         let limit_cycle = LimitCycle {
             amplitude: self.written(&cycle.reduced(&self.cut(&at))),
             number: cycles.number,
-            cycles: all
-                .map(|cycle| cycle.to_leading(names.marker, scaling.small))
-                .collect(),
+            cycles: all.map(|cycle| cycle.to_leading(names.marker, scaling.small)).collect(),
             small_with: scaling.small_with.clone(),
         };
         found.modulation.steady = limit_cycle.cycles.clone();
         found.limit_cycle = Some(limit_cycle);
         found.validity.push(Note::Stability(leading));
         found.validity.extend(cycle.remark.clone());
-        found
-            .validity
-            .extend(cycle.definition.clone().map(Note::Positive));
-        let settled = self
-            .motion
-            .map(POLYNOMIALS, |coefficient, _| put(coefficient));
+        found.validity.extend(cycle.definition.clone().map(Note::Positive));
+        let settled = self.motion.map(POLYNOMIALS, |coefficient, _| put(coefficient));
         found.modulation.motion = Some(std::mem::replace(&mut found.displacement, settled));
         found.law = Law::Frequency(put(&self.slow.phase));
         Ok(())
@@ -205,18 +188,11 @@ impl Free<'_> {
     fn start(&self, found: &mut Found, names: &[Symbol]) {
         let order = (self.scaling.order as usize).saturating_sub(1);
         let rates = [&self.slow.amplitude, &self.slow.phase];
-        let begins = release(
-            &self.motion,
-            rates,
-            &self.linear.frequency,
-            self.names,
-            order,
-        );
+        let begins = release(&self.motion, rates, &self.linear.frequency, self.names, order);
         let mut begins = match begins {
             Some(begins) => {
-                let [amplitude, phase] = begins
-                    .each_ref()
-                    .map(|part| Expr::from(&self.written(part)));
+                let [amplitude, phase] =
+                    begins.each_ref().map(|part| Expr::from(&self.written(part)));
                 Release { amplitude, phase }
             }
             None => Release::at_start(),

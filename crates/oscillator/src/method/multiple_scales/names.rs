@@ -30,10 +30,7 @@ impl Names {
         Self {
             unit: fresh("i", taken),
             orders: [coordinate, own].map(|name| fresh_stem(name.name(), taken)),
-            complex: Amplitude {
-                own,
-                conjugate: fresh("Bc", taken),
-            },
+            complex: Amplitude { own, conjugate: fresh("Bc", taken) },
             marker: marker.unwrap_or_else(|| fresh("delta", taken)),
             phase: fresh("psi", taken),
             amplitude: AmplitudeConvention::FirstHarmonic.symbol(),
@@ -50,9 +47,7 @@ impl Names {
         for (monomial, number) in polynomial.terms() {
             let exponent =
                 monomial.exponent(self.complex.own) + monomial.exponent(self.complex.conjugate);
-            let rest = monomial
-                .without(self.complex.own)
-                .without(self.complex.conjugate);
+            let rest = monomial.without(self.complex.own).without(self.complex.conjugate);
             let halves = Rational::new(1.into(), 2.into()).pow(exponent);
             result.add_term(
                 rest.product(&Monomial::power_of(self.amplitude, exponent)),

@@ -57,10 +57,7 @@ fn value(
 ) -> Option<Polynomial> {
     let mut sum = Polynomial::zero();
     for (harmonic, cosine, sine) in series.harmonics() {
-        let angle = phase.product(&Polynomial::constant(ratio(
-            i64::try_from(harmonic).ok()?,
-            1,
-        )));
+        let angle = phase.product(&Polynomial::constant(ratio(i64::try_from(harmonic).ok()?, 1)));
         let [cos, sin] = waves(&angle, order, cut);
         for (coefficient, wave) in [(cosine, cos), (sine, sin)] {
             let coefficient = cut(&coefficient.substitute(a, amplitude)?);
@@ -85,9 +82,7 @@ fn waves(
             _ => (&mut sin, -1),
         };
         sum.accumulate(&term);
-        term = cut(&term
-            .product(angle)
-            .product(&Polynomial::constant(ratio(sign, power + 1))));
+        term = cut(&term.product(angle).product(&Polynomial::constant(ratio(sign, power + 1))));
     }
     [cos, sin]
 }

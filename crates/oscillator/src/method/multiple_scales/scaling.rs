@@ -63,14 +63,11 @@ impl Scaling {
         let (Some(marker), None) = (self.marker, &self.marks) else {
             return self;
         };
-        let factor = match self
-            .bookkeeping
-            .as_ref()
-            .and_then(|definition| definition.meaning.as_number())
-        {
-            Some(number) => Polynomial::constant(number.clone()),
-            None => Polynomial::symbol(marker),
-        };
+        let factor =
+            match self.bookkeeping.as_ref().and_then(|definition| definition.meaning.as_number()) {
+                Some(number) => Polynomial::constant(number.clone()),
+                None => Polynomial::symbol(marker),
+            };
         for term in &mut self.force.terms {
             for _ in 0..term.order {
                 term.coefficient = term.coefficient.product(&factor);
@@ -89,16 +86,9 @@ impl Scaling {
     /// How the expansion is cut.
     pub(super) fn cut_note(&self) -> Note {
         let together = self.small_with.iter().copied();
-        let bookkeeping = self
-            .bookkeeping
-            .as_ref()
-            .map(|definition| definition.meaning.clone());
+        let bookkeeping = self.bookkeeping.as_ref().map(|definition| definition.meaning.clone());
         // The marker itself is the small parameter where no letter is one.
-        let marker = || {
-            self.marks
-                .clone()
-                .filter(|_| self.marker == Some(self.small))
-        };
+        let marker = || self.marks.clone().filter(|_| self.marker == Some(self.small));
         Note::Cut(Cut::Truncated {
             small: std::iter::once(self.small).chain(together).collect(),
             order: self.order,
@@ -194,10 +184,9 @@ fn together(
         force: joint.force,
         marker: Some(joint.delta),
         marks: first.is_some().then(|| value.clone()),
-        bookkeeping: first.is_none().then(|| Definition {
-            symbol: joint.delta,
-            meaning: Expr::number(value),
-        }),
+        bookkeeping: first
+            .is_none()
+            .then(|| Definition { symbol: joint.delta, meaning: Expr::number(value) }),
         small: first.unwrap_or(joint.delta),
         small_with: parameters.collect(),
         damping: None,
@@ -215,9 +204,7 @@ fn in_amplitude(oscillator: &Oscillator, order: u32) -> Result<Scaling, Refusal>
     if !damping.is_zero() {
         let not_polynomial =
             || Refusal::from(OscillatorError::NotPolynomial(damping.clone().into()));
-        let coefficient = damping
-            .to_polynomial(&mut |_| None)?
-            .ok_or_else(not_polynomial)?;
+        let coefficient = damping.to_polynomial(&mut |_| None)?.ok_or_else(not_polynomial)?;
         let over = Monomial::power_of(velocity, -1);
         force.terms.push(Term {
             order: small_order,
@@ -292,11 +279,8 @@ pub(in crate::method) fn has_quadratic_damping(oscillator: &Oscillator) -> bool 
 
 /// Whether all that damps is proportional to the velocity alone.
 pub(in crate::method) fn has_linear_damping(oscillator: &Oscillator, parts: &Parts) -> bool {
-    let is_all = |linear: Expr| {
-        (&linear - &parts.damping)
-            .expand()
-            .is_ok_and(|rest| rest.is_zero())
-    };
+    let is_all =
+        |linear: Expr| (&linear - &parts.damping).expand().is_ok_and(|rest| rest.is_zero());
     linear_damping(&parts.damping, oscillator).is_ok_and(is_all)
 }
 
@@ -310,10 +294,9 @@ fn linear_damping(damping: &Expr, oscillator: &Oscillator) -> Result<Expr, ExprE
         let factor = Expr::divide(term, &velocity)?;
         let proportional = !factor.contains(oscillator.velocity());
         // Without a value at rest the expansion refuses it by name.
-        if let (true, Ok(at_rest)) = (
-            proportional,
-            factor.substitute(oscillator.coordinate, &Expr::zero()),
-        ) {
+        if let (true, Ok(at_rest)) =
+            (proportional, factor.substitute(oscillator.coordinate, &Expr::zero()))
+        {
             linear.push(at_rest * velocity.clone());
         }
     }

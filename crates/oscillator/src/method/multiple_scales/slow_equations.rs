@@ -58,9 +58,7 @@ impl SlowEquations {
             // f_1' = -omega0 J/2
             (None, Some(inverse)) => {
                 let frequency = linear_frequency.power(-1)?;
-                inverse
-                    .product(&frequency)
-                    .product(&Polynomial::constant(ratio(-2, 1)))
+                inverse.product(&frequency).product(&Polynomial::constant(ratio(-2, 1)))
             }
             (None, None) => return None,
         };
@@ -95,32 +93,21 @@ pub(super) fn cycles(
         Some(asked) => Err(Refusal::NoSuchCycle { asked, count: 0 }),
         None => Ok(None),
     };
-    let (Some(equation), Some(marker)) = (
-        AmplitudeEquation::new(&scaling.force, units),
-        scaling.marker,
-    ) else {
+    let (Some(equation), Some(marker)) =
+        (AmplitudeEquation::new(&scaling.force, units), scaling.marker)
+    else {
         return without;
     };
-    let refused = |reason| Refusal::LimitCycle {
-        equation: equation.in_square(fresh("z", taken)),
-        reason,
-    };
-    let cycles = equation
-        .cycles(marker, &units.frequency, taken)
-        .map_err(refused)?;
+    let refused =
+        |reason| Refusal::LimitCycle { equation: equation.in_square(fresh("z", taken)), reason };
+    let cycles = equation.cycles(marker, &units.frequency, taken).map_err(refused)?;
     if cycles.is_empty() {
         return without;
     }
     let none = || Refusal::NoSuchCycle { asked: 0, count: 0 };
     let number = chosen(&cycles, options.cycle, none)?;
     if cycles[number - 1].attracts_where.is_none() {
-        return Err(refused(
-            "a multiple root: no expansion in powers begins there",
-        ));
+        return Err(refused("a multiple root: no expansion in powers begins there"));
     }
-    Ok(Some(Cycles {
-        equation,
-        cycles,
-        number,
-    }))
+    Ok(Some(Cycles { equation, cycles, number }))
 }

@@ -95,10 +95,7 @@ pub(super) struct Expansion {
 
 impl Complex {
     pub(super) fn zero() -> Self {
-        Self {
-            real: Polynomial::zero(),
-            imaginary: Polynomial::zero(),
-        }
+        Self { real: Polynomial::zero(), imaginary: Polynomial::zero() }
     }
 
     pub(super) fn is_zero(&self) -> bool {
@@ -106,10 +103,7 @@ impl Complex {
     }
 
     pub(super) fn real(real: Polynomial) -> Self {
-        Self {
-            real,
-            imaginary: Polynomial::zero(),
-        }
+        Self { real, imaginary: Polynomial::zero() }
     }
 
     pub(super) fn accumulate(&mut self, other: &Self) {
@@ -134,37 +128,25 @@ impl Complex {
     }
 
     pub(super) fn times(&self, factor: &Polynomial) -> Self {
-        Self {
-            real: self.real.product(factor),
-            imaginary: self.imaginary.product(factor),
-        }
+        Self { real: self.real.product(factor), imaginary: self.imaginary.product(factor) }
     }
 
     /// `i` times it.
     pub(super) fn times_i(&self) -> Self {
         let mut real = self.imaginary.clone();
         real.negate();
-        Self {
-            real,
-            imaginary: self.real.clone(),
-        }
+        Self { real, imaginary: self.real.clone() }
     }
 
     pub(super) fn conjugate(&self, amplitude: Amplitude) -> Self {
         let mut imaginary = amplitude.exchanged(&self.imaginary);
         imaginary.negate();
-        Self {
-            real: amplitude.exchanged(&self.real),
-            imaginary,
-        }
+        Self { real: amplitude.exchanged(&self.real), imaginary }
     }
 
     /// Its derivative with respect to a symbol.
     fn slope(&self, symbol: Symbol) -> Self {
-        Self {
-            real: self.real.slope(symbol),
-            imaginary: self.imaginary.slope(symbol),
-        }
+        Self { real: self.real.slope(symbol), imaginary: self.imaginary.slope(symbol) }
     }
 }
 
@@ -173,10 +155,7 @@ impl Amplitude {
     fn exchanged(self, polynomial: &Polynomial) -> Polynomial {
         let mut result = Polynomial::zero();
         for (monomial, number) in polynomial.terms() {
-            let (p, q) = (
-                monomial.exponent(self.own),
-                monomial.exponent(self.conjugate),
-            );
+            let (p, q) = (monomial.exponent(self.own), monomial.exponent(self.conjugate));
             let rest = monomial.without(self.own).without(self.conjugate);
             let turned =
                 Monomial::power_of(self.own, q).product(&Monomial::power_of(self.conjugate, p));
@@ -237,11 +216,7 @@ fn series_product(
 ) -> Vec<Wave> {
     let mut result = vec![Wave::new(); highest + 1];
     for (i, a) in left.iter().enumerate() {
-        for (j, b) in right
-            .iter()
-            .enumerate()
-            .take((highest + 1).saturating_sub(i))
-        {
+        for (j, b) in right.iter().enumerate().take((highest + 1).saturating_sub(i)) {
             if !a.is_empty() && !b.is_empty() {
                 accumulate(&mut result[i + j], &product(a, b, amplitude));
             }
@@ -251,10 +226,7 @@ fn series_product(
 }
 
 fn series_power(base: &[Wave], exponent: u32, highest: usize, amplitude: Amplitude) -> Vec<Wave> {
-    let mut result = vec![Wave::from([(
-        0,
-        Complex::real(Polynomial::constant(Rational::one())),
-    )])];
+    let mut result = vec![Wave::from([(0, Complex::real(Polynomial::constant(Rational::one())))])];
     let mut square = base.to_vec();
     let mut rest = exponent;
     while rest > 0 {
@@ -272,10 +244,7 @@ fn series_power(base: &[Wave], exponent: u32, highest: usize, amplitude: Amplitu
 impl Scaled {
     /// Expands to the highest order.
     pub(super) fn expand(&self, amplitude: Amplitude) -> Expansion {
-        let inverse = self
-            .linear_frequency
-            .power(-1)
-            .unwrap_or_else(Polynomial::zero);
+        let inverse = self.linear_frequency.power(-1).unwrap_or_else(Polynomial::zero);
         let own = Complex::real(Polynomial::symbol(amplitude.own));
         let mut found = Expansion {
             displacement: vec![mirrored(Wave::from([(self.own, own)]), amplitude)],
@@ -310,10 +279,7 @@ impl Scaled {
             };
             let positions = total(&found.displacement, &forced);
             let velocities = total(&velocity, &forced_velocity);
-            accumulate(
-                &mut right,
-                &self.force(order, &positions, &velocities, amplitude),
-            );
+            accumulate(&mut right, &self.force(order, &positions, &velocities, amplitude));
             for term in right.values_mut() {
                 *term = Complex::zero().minus(term);
             }
@@ -358,8 +324,7 @@ impl Scaled {
         let mut result = Wave::new();
         let turning = match &self.detuning {
             _ if j == 0 => Some(
-                self.linear_frequency
-                    .product(&Polynomial::constant(ratio(1, self.own.into()))),
+                self.linear_frequency.product(&Polynomial::constant(ratio(1, self.own.into()))),
             ),
             Some((order, detuning)) if *order == j => Some(detuning.clone()),
             _ => None,
@@ -373,11 +338,7 @@ impl Scaled {
             if !rate.is_zero() {
                 add(&mut result, *m, &value.slope(amplitude.own).product(rate));
                 let conjugate = rate.conjugate(amplitude);
-                add(
-                    &mut result,
-                    *m,
-                    &value.slope(amplitude.conjugate).product(&conjugate),
-                );
+                add(&mut result, *m, &value.slope(amplitude.conjugate).product(&conjugate));
             }
         }
         mirrored(result, amplitude)
@@ -414,17 +375,11 @@ impl Scaled {
     /// The particular solution, without what is resonant: divided by `omega0^2 (1 - (m/s)^2)`.
     fn particular(&self, right: &Wave, inverse: &Polynomial) -> Wave {
         let own = i64::from(self.own);
-        let solved = right
-            .iter()
-            .filter(|entry| entry.0.abs() != self.own)
-            .map(|(m, value)| {
-                let m = i64::from(*m);
-                let divisor = Polynomial::constant(ratio(own * own, own * own - m * m));
-                (
-                    m as i32,
-                    value.times(&divisor.product(inverse).product(inverse)),
-                )
-            });
+        let solved = right.iter().filter(|entry| entry.0.abs() != self.own).map(|(m, value)| {
+            let m = i64::from(*m);
+            let divisor = Polynomial::constant(ratio(own * own, own * own - m * m));
+            (m as i32, value.times(&divisor.product(inverse).product(inverse)))
+        });
         solved.collect()
     }
 }
@@ -443,9 +398,7 @@ fn drive(harmonic: i32, quadrature: Quadrature) -> Wave {
         Quadrature::Cosine => Complex::real(half),
         Quadrature::Sine => Complex::zero().minus(&Complex::real(half).times_i()),
     };
-    let below = Complex {
-        real: above.real.clone(),
-        imaginary: Complex::zero().minus(&above).imaginary,
-    };
+    let below =
+        Complex { real: above.real.clone(), imaginary: Complex::zero().minus(&above).imaginary };
     Wave::from([(harmonic, above), (-harmonic, below)])
 }

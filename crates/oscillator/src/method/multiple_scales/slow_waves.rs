@@ -99,16 +99,13 @@ impl Slow {
         let common = self.multiple().max(1);
         [&self.amplitude, &self.phase].map(|rate| {
             let own = rate.iter().filter(|(multiple, _)| *multiple % common == 0);
-            own.map(|(multiple, waves)| (multiple / common, waves.clone()))
-                .collect()
+            own.map(|(multiple, waves)| (multiple / common, waves.clone())).collect()
         })
     }
 
     /// What does not turn with the phase: `P` or `Q`.
     pub(super) fn still(waves: &PhaseWaves) -> Polynomial {
-        waves
-            .get(&0)
-            .map_or_else(Polynomial::zero, |waves| waves[0].clone())
+        waves.get(&0).map_or_else(Polynomial::zero, |waves| waves[0].clone())
     }
 
     /// `a'` and `psi'`.
@@ -116,14 +113,10 @@ impl Slow {
         let names = &question.names;
         let times = Rational::from_integer(question.resonance.0.into());
         let over = Polynomial::term(Monomial::power_of(names.amplitude, -1), times);
-        let amplitude = Self::expression(&self.amplitude, names.phase, &|part| {
-            question.unmarked(part)
-        })?;
+        let amplitude =
+            Self::expression(&self.amplitude, names.phase, &|part| question.unmarked(part))?;
         let by_amplitude = |part: &Polynomial| question.unmarked(&part.product(&over));
-        Ok([
-            amplitude,
-            Self::expression(&self.phase, names.phase, &by_amplitude)?,
-        ])
+        Ok([amplitude, Self::expression(&self.phase, names.phase, &by_amplitude)?])
     }
 
     fn expression(
@@ -157,28 +150,18 @@ pub(super) fn backbone(still: &Polynomial, question: &Question) -> Polynomial {
     let slope = rest.coefficient(&own);
     rest.add_term(own, -slope.clone());
     let over = Polynomial::term(
-        Monomial::power_of(a, -1).product(&Monomial::power_of(
-            names.marker,
-            -(question.small_order() as i32),
-        )),
-        if slope.is_zero() {
-            Rational::zero()
-        } else {
-            -slope.recip()
-        },
+        Monomial::power_of(a, -1)
+            .product(&Monomial::power_of(names.marker, -(question.small_order() as i32))),
+        if slope.is_zero() { Rational::zero() } else { -slope.recip() },
     );
     let mut detuning = Polynomial::zero();
     for _ in 0..=order {
-        let next = rest
-            .substitute(sigma, &detuning)
-            .unwrap_or_else(Polynomial::zero)
-            .product(&over);
+        let next =
+            rest.substitute(sigma, &detuning).unwrap_or_else(Polynomial::zero).product(&over);
         detuning = next.truncated(names.marker, order - question.small_order() as i32);
     }
     let p = Polynomial::constant(ratio(1, question.resonance.0.into()));
-    let mut frequency = detuning
-        .product(&p)
-        .times_monomial(&names.mark(question.small_order()));
+    let mut frequency = detuning.product(&p).times_monomial(&names.mark(question.small_order()));
     frequency.accumulate(&question.linear_frequency);
     frequency
 }
@@ -282,23 +265,15 @@ fn plane(question: &Question, expansion: &Expansion, coordinates: [Symbol; 2]) -
                     (turns, _) => Part::Wave(turns.unsigned_abs()),
                 };
                 let term = in_plane(monomial, number, names, coordinates);
-                let order = parts
-                    .entry(part)
-                    .or_default()
-                    .entry(k)
-                    .or_insert_with(Complex::zero);
+                let order = parts.entry(part).or_default().entry(k).or_insert_with(Complex::zero);
                 let mark = Complex::real(Polynomial::term(names.mark(k), ratio(1, 1)));
                 let term = term.product(&mark);
                 order.accumulate(&if imaginary { term.times_i() } else { term });
             }
         }
     }
-    let unmarked = |sum: &Complex| {
-        [
-            question.unmarked(&sum.real),
-            question.unmarked(&sum.imaginary),
-        ]
-    };
+    let unmarked =
+        |sum: &Complex| [question.unmarked(&sum.real), question.unmarked(&sum.imaginary)];
     let mut rates = Complex::zero();
     for order in parts.values().flat_map(BTreeMap::values) {
         rates.accumulate(order);
@@ -311,11 +286,7 @@ fn plane(question: &Question, expansion: &Expansion, coordinates: [Symbol; 2]) -
     };
     let parts: Vec<Vec<[Polynomial; 2]>> = parts.values().filter_map(by_orders).collect();
     let several = parts.iter().any(|part| part.len() > 1);
-    Plane {
-        coordinates,
-        rates: unmarked(&rates),
-        parts: if several { parts } else { vec![] },
-    }
+    Plane { coordinates, rates: unmarked(&rates), parts: if several { parts } else { vec![] } }
 }
 
 /// What slow equations are made of, each part with an order of its own that leads.
@@ -336,17 +307,9 @@ fn in_plane(monomial: &Monomial, number: &Rational, names: &Names, [u, v]: [Symb
         real: Polynomial::symbol(u).product(&half),
         imaginary: Polynomial::symbol(v).product(&Polynomial::constant(ratio(sign, 2))),
     };
-    let rest = monomial
-        .without(names.complex.own)
-        .without(names.complex.conjugate);
-    let mut term = Complex::real(Polynomial::term(
-        rest,
-        number * Rational::from_integer(2.into()),
-    ));
-    for (name, value) in [
-        (names.complex.own, of(1)),
-        (names.complex.conjugate, of(-1)),
-    ] {
+    let rest = monomial.without(names.complex.own).without(names.complex.conjugate);
+    let mut term = Complex::real(Polynomial::term(rest, number * Rational::from_integer(2.into())));
+    for (name, value) in [(names.complex.own, of(1)), (names.complex.conjugate, of(-1))] {
         for _ in 0..monomial.exponent(name) {
             term = term.product(&value);
         }

@@ -127,21 +127,12 @@ impl Factored {
 
     /// As residues of it are formed.
     pub(super) fn ladder(&self) -> Ladder {
-        let digits = self
-            .0
-            .iter()
-            .map(|factor| factor.1.checked_ilog2().map_or(0, |log| log + 1));
+        let digits = self.0.iter().map(|factor| factor.1.checked_ilog2().map_or(0, |log| log + 1));
         let digits = digits.max().unwrap_or(0);
         let with_digit = |digit: u32| -> Vec<u64> {
-            let factors = self
-                .0
-                .iter()
-                .filter(|(_, exponent)| exponent >> digit & 1 == 1);
+            let factors = self.0.iter().filter(|(_, exponent)| exponent >> digit & 1 == 1);
             let primes: Vec<u64> = factors.map(|factor| factor.0).collect();
-            words(&primes)
-                .into_iter()
-                .map(|lot| lot.iter().product())
-                .collect()
+            words(&primes).into_iter().map(|lot| lot.iter().product()).collect()
         };
         Ladder((0..digits).rev().map(with_digit).collect())
     }
@@ -149,9 +140,7 @@ impl Factored {
     /// The number of its binary digits.
     pub fn bits(&self) -> f64 {
         let powers = self.0.iter();
-        powers
-            .map(|(prime, exponent)| (*prime as f64).log2() * *exponent as f64)
-            .sum()
+        powers.map(|(prime, exponent)| (*prime as f64).log2() * *exponent as f64).sum()
     }
 
     /// The numerator and denominator in lowest terms of a number over this one.
@@ -196,12 +185,8 @@ impl Factored {
         let halvings = halvings.map_or(0, |count| count as u64);
         common.set(2, halvings.min(self.exponent(2)));
         // Many primes in one division: most are in common with none of the first numbers already.
-        let odd: Vec<u64> = self
-            .0
-            .iter()
-            .map(|factor| factor.0)
-            .filter(|prime| *prime != 2)
-            .collect();
+        let odd: Vec<u64> =
+            self.0.iter().map(|factor| factor.0).filter(|prime| *prime != 2).collect();
         let mut shared: Vec<u64> = Vec::new();
         for lot in words(&odd) {
             let all: u64 = lot.iter().product();
@@ -225,10 +210,8 @@ impl Factored {
         // Squares first, several in a word; alone, as high as a word goes, those that have more
         // than a square.
         let squares: Vec<u64> = primes.iter().map(|prime| prime * prime).collect();
-        let mut least: Vec<(u64, u64)> = primes
-            .iter()
-            .map(|prime| (*prime, self.exponent(*prime).min(2)))
-            .collect();
+        let mut least: Vec<(u64, u64)> =
+            primes.iter().map(|prime| (*prime, self.exponent(*prime).min(2))).collect();
         let mut place = 0;
         for lot in words(&squares) {
             let all: u64 = lot.iter().product();
@@ -262,9 +245,9 @@ impl Ladder {
     pub fn residue(&self, modulus: &Modulus) -> u64 {
         self.0.iter().fold(modulus.one, |power, words| {
             let square = modulus.product(power, power);
-            words.iter().fold(square, |product, word| {
-                modulus.product(product, modulus.residue(*word))
-            })
+            words
+                .iter()
+                .fold(square, |product, word| modulus.product(product, modulus.residue(*word)))
         })
     }
 }
@@ -304,9 +287,7 @@ fn words(numbers: &[u64]) -> Vec<&[u64]> {
 /// The absolute remainder of a division by a word.
 fn remainder(number: &Integer, divisor: u64) -> u64 {
     let remainder = number % Integer::from(divisor);
-    remainder
-        .to_i128()
-        .map_or(0, |remainder| remainder.unsigned_abs() as u64)
+    remainder.to_i128().map_or(0, |remainder| remainder.unsigned_abs() as u64)
 }
 
 /// The largest power of a prime in one word, and its exponent.
@@ -358,12 +339,8 @@ pub(super) enum Growth {
 
 impl Growth {
     /// From the one with the shortest numbers on.
-    pub const ALL: [Self; 4] = [
-        Self::Power,
-        Self::Factorial,
-        Self::Multiples,
-        Self::FactorialMultiples,
-    ];
+    pub const ALL: [Self; 4] =
+        [Self::Power, Self::Factorial, Self::Multiples, Self::FactorialMultiples];
 
     /// The numbers of all orders up to `highest`; `largest_factor` is that of the divisors of each
     /// order.
@@ -377,9 +354,8 @@ impl Growth {
             let mut number = numbers[order - 1].clone();
             if matches!(self, Self::Factorial | Self::FactorialMultiples) {
                 let twice = 2 * order as u64;
-                number = number
-                    .times(&Factored::of_word(twice))
-                    .times(&Factored::of_word(twice + 1));
+                number =
+                    number.times(&Factored::of_word(twice)).times(&Factored::of_word(twice + 1));
             }
             if matches!(self, Self::Multiples | Self::FactorialMultiples) {
                 let last = largest_factor(order);
@@ -408,10 +384,7 @@ impl Growth {
             for (order, own) in known.iter().enumerate().take(count).skip(1) {
                 let rest = own.over(&numbers[order]);
                 for (prime, exponent) in rest.0 {
-                    base.set(
-                        prime,
-                        base.exponent(prime).max(exponent.div_ceil(order as u64)),
-                    );
+                    base.set(prime, base.exponent(prime).max(exponent.div_ceil(order as u64)));
                 }
             }
             base
@@ -424,9 +397,7 @@ impl Growth {
         // Factorials have primes that no divisor of the elimination has, and hide how fast the
         // exponents of small ones grow.
         let beyond = |(order, own): (usize, &Factored)| {
-            own.0
-                .last()
-                .is_some_and(|factor| factor.0 > largest_factor(order))
+            own.0.last().is_some_and(|factor| factor.0 > largest_factor(order))
         };
         let foreign = self == Self::Factorial && !known.iter().enumerate().any(beyond);
         if !untested && (foreign || fitted(known.len().div_ceil(2)) != base) {
@@ -436,10 +407,7 @@ impl Growth {
             Some(known) => known.clone(),
             None => {
                 let mut power = base.clone();
-                power
-                    .0
-                    .iter_mut()
-                    .for_each(|factor| factor.1 *= order as u64);
+                power.0.iter_mut().for_each(|factor| factor.1 *= order as u64);
                 power.times(&numbers[order])
             }
         };
@@ -460,10 +428,7 @@ mod tests {
     fn factors_and_lowest_terms() {
         let number = Factored::of(&integer(720_720)).expect("small factors");
         assert_eq!(number.value(), integer(720_720));
-        assert_eq!(
-            number.lowest_terms(integer(-1001 * 9)),
-            (integer(-1), integer(80))
-        );
+        assert_eq!(number.lowest_terms(integer(-1001 * 9)), (integer(-1), integer(80)));
         assert_eq!(number.lowest_terms(integer(0)), (integer(0), integer(1)));
         let common = number.common(&[integer(-36), integer(0), integer(24), integer(12 * 17)]);
         assert_eq!(common.value(), integer(12));
@@ -475,10 +440,7 @@ mod tests {
             &Factored::default(),
             &Factored::of(&integer(6).pow(77)).expect("small factors"),
         ] {
-            assert_eq!(
-                number.ladder().residue(&modulus),
-                modulus.integer(&number.value())
-            );
+            assert_eq!(number.ladder().residue(&modulus), modulus.integer(&number.value()));
         }
         let ratio = |numerator: i64| number.fraction(&integer(numerator), &integer(720_720));
         assert_eq!(ratio(-1001 * 9), Rational::new(integer(-1), integer(80)));
@@ -494,20 +456,14 @@ mod tests {
     fn growth_is_told_from_the_first_orders() {
         let divisors = |order: usize| order as u64 + 1;
         let known = |denominator: &dyn Fn(u32) -> Integer| -> Vec<Factored> {
-            (0..=10)
-                .map(|n| Factored::of(&denominator(n)).expect("small factors"))
-                .collect()
+            (0..=10).map(|n| Factored::of(&denominator(n)).expect("small factors")).collect()
         };
         let powers = known(&|n| integer(32).pow(n));
-        let found = Growth::Power
-            .denominators(&powers, 20, &divisors)
-            .expect("a power");
+        let found = Growth::Power.denominators(&powers, 20, &divisors).expect("a power");
         assert_eq!(found[20].value(), integer(32).pow(20));
         let factorials = known(&|n| integer(64).pow(n) * factorial(2 * n + 1));
         assert_eq!(Growth::Power.denominators(&factorials, 20, &divisors), None);
-        let found = Growth::Factorial
-            .denominators(&factorials, 20, &divisors)
-            .expect("factorials");
+        let found = Growth::Factorial.denominators(&factorials, 20, &divisors).expect("factorials");
         assert!((integer(64).pow(20) * factorial(41)).is_multiple_of(&found[20].value()));
         // Product of lcm(1 .. m) over m = 2 .. 21 has 17 exactly from m = 17 on.
         let multiples = known(&|n| {
@@ -515,22 +471,15 @@ mod tests {
                 .map(|m| (1..=m).fold(integer(1), |l, k| l.lcm(&integer(k))))
                 .product()
         });
-        assert_eq!(
-            Growth::Factorial.denominators(&multiples, 20, &divisors),
-            None
-        );
-        let found = Growth::Multiples
-            .denominators(&multiples, 20, &divisors)
-            .expect("multiples");
+        assert_eq!(Growth::Factorial.denominators(&multiples, 20, &divisors), None);
+        let found = Growth::Multiples.denominators(&multiples, 20, &divisors).expect("multiples");
         assert_eq!(found[20].exponent(17), 5);
         // Half as fast: the factorials of the first orders hold them, those of later ones do not.
         let half = |order: usize| order as u64 / 2 + 1;
         let slow = known(&|n| multiples[n as usize / 2].value());
         assert!((0..=10).all(|n| factorial(2 * n + 1).is_multiple_of(&slow[n as usize].value())));
         assert_eq!(Growth::Factorial.denominators(&slow, 80, &half), None);
-        let found = Growth::Multiples
-            .denominators(&slow, 80, &half)
-            .expect("multiples");
+        let found = Growth::Multiples.denominators(&slow, 80, &half).expect("multiples");
         assert!(!factorial(161).is_multiple_of(&found[80].value()));
     }
 }

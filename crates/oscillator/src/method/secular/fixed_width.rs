@@ -41,11 +41,7 @@ const LONG: usize = 28;
 pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> Beginning {
     /// So many orders are enough of a long one.
     const ENOUGH: usize = 16;
-    let last = if plan.highest > LONG {
-        ENOUGH
-    } else {
-        plan.highest
-    };
+    let last = if plan.highest > LONG { ENOUGH } else { plan.highest };
     let mut beginning = Beginning::default();
     if let Some(mut recursion) = Recursion::new(plan) {
         while recursion.complete <= last && !interrupt.is_requested() {
@@ -53,10 +49,7 @@ pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> Beginning {
                 break;
             }
         }
-        beginning.slope = recursion
-            .variation
-            .as_ref()
-            .map(|variation| variation.slope.clone());
+        beginning.slope = recursion.variation.as_ref().map(|variation| variation.slope.clone());
         beginning.orders = recursion.orders();
     }
     beginning
@@ -93,11 +86,7 @@ struct Variation {
 impl<'a> Recursion<'a> {
     fn new(plan: &'a Plan<'a>) -> Option<Self> {
         let coefficient = |term: &Term, derivative: bool| {
-            let power = if derivative {
-                i128::from(term.position) + 1
-            } else {
-                1
-            };
+            let power = if derivative { i128::from(term.position) + 1 } else { 1 };
             let denominator = term.coefficient.denom().to_i128()?.checked_mul(power)?;
             Some((term.coefficient.numer().to_i128()?, denominator))
         };
@@ -110,10 +99,9 @@ impl<'a> Recursion<'a> {
                 .map(|(term, (_, derivative))| (term, coefficient(term, *derivative)))
                 .collect(),
             sine: match &plan.sine {
-                Some((_, rate)) => Some(Sine::new((
-                    rate.numer().to_i128()?,
-                    rate.denom().to_i128()?,
-                ))),
+                Some((_, rate)) => {
+                    Some(Sine::new((rate.numer().to_i128()?, rate.denom().to_i128()?)))
+                }
                 None => None,
             },
             tables: (0..plan.tables).map(|_| list()).collect(),
@@ -157,12 +145,7 @@ impl<'a> Recursion<'a> {
     /// What is complete.
     fn orders(mut self) -> Vec<Order> {
         let numbers = self.frequency_squared.into_iter().zip(self.frequency);
-        let orders = self
-            .tables
-            .swap_remove(0)
-            .into_iter()
-            .zip(numbers)
-            .take(self.complete);
+        let orders = self.tables.swap_remove(0).into_iter().zip(numbers).take(self.complete);
         orders
             .map(|(displacement, (frequency_squared, frequency))| Order {
                 displacement,
@@ -213,11 +196,7 @@ impl<'a> Recursion<'a> {
         for i in (1..=order / 2).filter(|i| !self.frequency[*i].is_zero()) {
             let (own, other) = (&self.frequency[i], &self.frequency[order - i]);
             let times = if 2 * i == order { 2 } else { 1 };
-            parts.push((
-                -own.numerator(0),
-                own.denominator().checked_mul(times)?,
-                other,
-            ));
+            parts.push((-own.numerator(0), own.denominator().checked_mul(times)?, other));
         }
         combination(&parts).map(ShortSeries::reduced)
     }
@@ -288,9 +267,7 @@ impl<'a> Recursion<'a> {
         let sign = -slope.numerator(0).signum();
         let amplitude = ShortSeries::constant(
             sine.harmonics(),
-            sine.numerator(0)
-                .checked_mul(slope.denominator())?
-                .checked_mul(sign)?,
+            sine.numerator(0).checked_mul(slope.denominator())?.checked_mul(sign)?,
             sine.denominator().checked_mul(slope.numerator(0).abs())?,
         )?;
         let amplitude = amplitude.reduced();
@@ -379,38 +356,25 @@ impl<'a> Recursion<'a> {
         let plan = self.plan;
         // Of y and of omega y': themselves.
         let leaves = 1 + usize::from(plan.has_velocity);
-        let mut tables: Vec<ShortSeries> = self.tables[..leaves]
-            .iter()
-            .map(|table| table[0].clone())
-            .collect();
+        let mut tables: Vec<ShortSeries> =
+            self.tables[..leaves].iter().map(|table| table[0].clone()).collect();
         for product in &plan.products {
             let varied = |varied: usize, other: usize| {
                 let own = std::slice::from_ref(&tables[varied]);
                 convolution(own, &self.tables[other][..1])
             };
-            let (left, right) = (
-                varied(product.left, product.right)?,
-                varied(product.right, product.left)?,
-            );
+            let (left, right) =
+                (varied(product.left, product.right)?, varied(product.right, product.left)?);
             let series = combination(&[(1, 1, &left), (1, 1, &right)])?.reduced();
             tables.push(series);
         }
         let at = |term: &Term, table: usize| tables.get(table).filter(|_| term.order == 1);
         let plain = sum_of_parts(&self.parts(false, at)?)?;
         let damped = derivative_of_parts(&self.parts(true, at)?)?;
-        let parts: Vec<_> = plain
-            .iter()
-            .chain(&damped)
-            .map(|part| (-1, 1, part))
-            .collect();
+        let parts: Vec<_> = plain.iter().chain(&damped).map(|part| (-1, 1, part)).collect();
         let right_side = combination(&parts)?.reduced();
         let slope = right_side.coefficient(plan.resonant())?;
-        (!slope.is_zero()).then_some(Variation {
-            tables,
-            right_side,
-            damped,
-            slope,
-        })
+        (!slope.is_zero()).then_some(Variation { tables, right_side, damped, slope })
     }
 }
 
@@ -451,13 +415,7 @@ struct Sine {
 
 impl Sine {
     fn new(rate: (i128, i128)) -> Self {
-        Self {
-            rate,
-            scaled: vec![],
-            sine: vec![],
-            cosine: vec![],
-            rest: None,
-        }
+        Self { rate, scaled: vec![], sine: vec![], cosine: vec![], rest: None }
     }
 
     /// Forms `S_n - y_n`, for the order after those that are known.
@@ -471,12 +429,11 @@ impl Sine {
     /// Takes the motion of an order.
     fn push(&mut self, order: usize, displacement: &ShortSeries) -> Option<()> {
         let number = i128::try_from(order).ok()?;
-        self.scaled
-            .push(combination(&[(2 * number + 1, 2, displacement)])?.reduced());
+        self.scaled.push(combination(&[(2 * number + 1, 2, displacement)])?.reduced());
         match self.rest.take() {
-            Some(rest) => self
-                .sine
-                .push(combination(&[(1, 1, &rest), (1, 1, displacement)])?.reduced()),
+            Some(rest) => {
+                self.sine.push(combination(&[(1, 1, &rest), (1, 1, displacement)])?.reduced())
+            }
             None => {
                 // Of order zero the sine is the motion, and the cosine is one.
                 self.sine.push(displacement.clone());
@@ -486,8 +443,7 @@ impl Sine {
         }
         let sum = convolution(&self.sine[..=order], &self.scaled[..=order])?;
         let over = self.rate.1.checked_mul(number + 1)?;
-        self.cosine
-            .push(combination(&[(self.rate.0, over, &sum)])?.reduced());
+        self.cosine.push(combination(&[(self.rate.0, over, &sum)])?.reduced());
         Some(())
     }
 }

@@ -170,9 +170,7 @@ pub fn bounded(
     if degree <= HIGH_POWER {
         return Ok(());
     }
-    let harmonics = highest
-        .saturating_mul(degree.saturating_sub(1) as usize)
-        .saturating_add(1);
+    let harmonics = highest.saturating_mul(degree.saturating_sub(1) as usize).saturating_add(1);
     // Products of series of so many harmonics, whose coefficients are as long as binomials of that
     // size.
     let (orders, length) = (highest as f64, harmonics as f64);
@@ -261,25 +259,12 @@ pub(crate) fn expand_numbers_supervised(
     extent: Extent,
     supervision: Supervision,
 ) -> Result<Expansion<Integers>, SecularError> {
-    bounded(
-        force
-            .iter()
-            .map(|term| (term.order, term.position + term.velocity)),
-        highest,
-    )?;
+    bounded(force.iter().map(|term| (term.order, term.position + term.velocity)), highest)?;
     // Where all terms stand at multiples of an order, as with an amplitude that enters squared, so
     // does everything.
-    let step = force
-        .iter()
-        .fold(0, |common, term| common.gcd(&term.order))
-        .max(1);
-    let compressed: Vec<ForceTerm<Integers>> = force
-        .iter()
-        .map(|term| ForceTerm {
-            order: term.order / step,
-            ..term.clone()
-        })
-        .collect();
+    let step = force.iter().fold(0, |common, term| common.gcd(&term.order)).max(1);
+    let compressed: Vec<ForceTerm<Integers>> =
+        force.iter().map(|term| ForceTerm { order: term.order / step, ..term.clone() }).collect();
     let orders = highest / step;
     let by_words = reconstruct::expand(&compressed, orders, scheme, extent, supervision);
     let mut expansion = match by_words {
@@ -348,25 +333,14 @@ pub(crate) fn expand_polynomials_supervised(
 ) -> Result<Expansion<Polynomials<Integers>>, SecularError> {
     /// Below, there are few products.
     const MANY: usize = 2;
-    bounded(
-        force
-            .iter()
-            .map(|term| (term.order, term.position + term.velocity)),
-        highest,
-    )?;
+    bounded(force.iter().map(|term| (term.order, term.position + term.velocity)), highest)?;
     if highest >= MANY
         && let Some(expansion) = symbolic::expand(force, highest, scheme, extent, supervision)
     {
         return Ok(expansion);
     }
-    let mut expansion = expand_supervised(
-        &Polynomials(Integers),
-        force,
-        highest,
-        scheme,
-        None,
-        supervision,
-    )?;
+    let mut expansion =
+        expand_supervised(&Polynomials(Integers), force, highest, scheme, None, supervision)?;
     if extent == Extent::Frequency {
         expansion.forget_motion();
     }
@@ -387,11 +361,8 @@ impl Expansion<Integers> {
     fn spread(self, step: usize, highest: usize) -> Self {
         let zero = || FourierSeries::zero(Integers);
         let from = |first: usize, series: Vec<FourierSeries<Integers>>| {
-            let mut spread: Vec<_> = if series.is_empty() {
-                vec![]
-            } else {
-                vec![zero(); highest + 1 - first]
-            };
+            let mut spread: Vec<_> =
+                if series.is_empty() { vec![] } else { vec![zero(); highest + 1 - first] };
             for (order, own) in series.into_iter().enumerate() {
                 spread[(order + first) * step - first] = own;
             }
@@ -441,14 +412,7 @@ pub fn expand_from_root<R: Ring>(
     scheme: &Scheme,
     inverse_slope: Option<FourierSeries<R>>,
 ) -> Result<Expansion<R>, SecularError> {
-    expand_supervised(
-        ring,
-        force,
-        highest,
-        scheme,
-        inverse_slope,
-        Supervision::default(),
-    )
+    expand_supervised(ring, force, highest, scheme, inverse_slope, Supervision::default())
 }
 
 /// As [`expand_from_root`], to the order that it has reached where it is stopped; the first is
@@ -465,9 +429,7 @@ pub(crate) fn expand_supervised<R: Ring>(
     supervision: Supervision,
 ) -> Result<Expansion<R>, SecularError> {
     let of_amplitude = usize::from(scheme.amplitude == Amplitude::Determined);
-    let powers = force
-        .iter()
-        .map(|term| (term.order, term.position + term.velocity));
+    let powers = force.iter().map(|term| (term.order, term.position + term.velocity));
     bounded(powers, highest.saturating_add(of_amplitude))?;
     let mut order_by_order = OrderByOrder::new(ring, force, highest, *scheme, inverse_slope);
     supervision.progress.begin(highest);
@@ -509,20 +471,13 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
         let mut convolutions = Convolutions::new(ring.clone());
         let (position, velocity) = (convolutions.leaf(), convolutions.leaf());
         // The last amplitude of a limit cycle follows from one order more than is kept.
-        let last = if scheme.amplitude == Amplitude::Determined {
-            highest + 1
-        } else {
-            highest
-        };
+        let last = if scheme.amplitude == Amplitude::Determined { highest + 1 } else { highest };
         let mut product_of = |term: &ForceTerm<R>| {
             let powers = [(position, term.position), (velocity, term.velocity)];
             let powers = powers.into_iter().filter(|power| power.1 > 0);
-            let nodes: Vec<Node> = powers
-                .map(|(node, exponent)| convolutions.power(node, exponent))
-                .collect();
-            let node = nodes
-                .into_iter()
-                .reduce(|left, right| convolutions.product(left, right))?;
+            let nodes: Vec<Node> =
+                powers.map(|(node, exponent)| convolutions.power(node, exponent)).collect();
+            let node = nodes.into_iter().reduce(|left, right| convolutions.product(left, right))?;
             if let Some(needed) = last.checked_sub(term.order) {
                 convolutions.require(node, needed);
             }
@@ -597,11 +552,7 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
             }
         }
         for lower in 1..order {
-            terms.push((
-                -1,
-                &self.result.frequency_squared[lower],
-                &self.detuned[order - lower],
-            ));
+            terms.push((-1, &self.result.frequency_squared[lower], &self.detuned[order - lower]));
         }
         sum_of_products(self.ring, &terms)
     }
@@ -632,18 +583,11 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
         let correction = match &self.inverse_slope {
             _ if needed.is_zero() => FourierSeries::zero(self.ring.clone()),
             Some(inverse) => needed.product(inverse),
-            None => needed
-                .divided_by_constant(&slope)
-                .ok_or(SecularError::Degenerate { order })?,
+            None => needed.divided_by_constant(&slope).ok_or(SecularError::Degenerate { order })?,
         };
         let correction = divided(order, correction)?;
-        self.result.amplitudes.push(SecularSine {
-            sine,
-            slope,
-            amplitude: correction.clone(),
-        });
-        self.convolutions
-            .correct(order - 1, &correction, &self.variations);
+        self.result.amplitudes.push(SecularSine { sine, slope, amplitude: correction.clone() });
+        self.convolutions.correct(order - 1, &correction, &self.variations);
         let corrected = self.result.displacement[order - 1].sum(&correction.product(&self.wave()));
         self.detuned[order - 1] = self.detuned(&corrected);
         self.result.displacement[order - 1] = corrected;
@@ -660,13 +604,9 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
 
     fn push_frequency(&mut self, order: usize) -> Result<(), SecularError> {
         let lower = &self.result.frequency;
-        let products: Vec<_> = (1..order)
-            .map(|i| (-1, &lower[i], &lower[order - i]))
-            .collect();
+        let products: Vec<_> = (1..order).map(|i| (-1, &lower[i], &lower[order - i])).collect();
         let squares = sum_of_products(self.ring, &products);
-        let frequency = self.result.frequency_squared[order]
-            .sum(&squares)
-            .divided_by(2);
+        let frequency = self.result.frequency_squared[order].sum(&squares).divided_by(2);
         self.result.frequency.push(divided(order, frequency)?);
         Ok(())
     }
@@ -706,12 +646,8 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
             // Time is measured in the frequency itself, none of it expanded.
             Detuning::Displacement => displacement.derivative(),
             Detuning::Acceleration => {
-                let derivatives: Vec<_> = self
-                    .result
-                    .displacement
-                    .iter()
-                    .map(FourierSeries::derivative)
-                    .collect();
+                let derivatives: Vec<_> =
+                    self.result.displacement.iter().map(FourierSeries::derivative).collect();
                 let products: Vec<_> = (0..=order)
                     .map(|i| (1, &self.result.frequency[i], &derivatives[order - i]))
                     .collect();
@@ -729,9 +665,7 @@ fn divided<R: Ring>(
     series: FourierSeries<R>,
 ) -> Result<FourierSeries<R>, SecularError> {
     let divided = series.divided();
-    divided
-        .map(|()| series)
-        .map_err(|indivisible| SecularError::Indivisible { order, indivisible })
+    divided.map(|()| series).map_err(|indivisible| SecularError::Indivisible { order, indivisible })
 }
 
 #[cfg(test)]
@@ -742,11 +676,7 @@ mod tests {
     use crate::series::fourier::fraction;
 
     fn numbers(series: &[FourierSeries<Integers>]) -> Vec<Rational> {
-        series
-            .iter()
-            .map(|constant| constant.mean())
-            .map(|(n, d)| fraction(&n, d))
-            .collect()
+        series.iter().map(|constant| constant.mean()).map(|(n, d)| fraction(&n, d)).collect()
     }
 
     pub(super) fn term(
@@ -756,12 +686,7 @@ mod tests {
         value: (i64, i64),
     ) -> ForceTerm<Integers> {
         let coefficient = FourierSeries::integer(Integers, value.0).divided_by(value.1);
-        ForceTerm {
-            order,
-            position,
-            velocity,
-            coefficient,
-        }
+        ForceTerm { order, position, velocity, coefficient }
     }
 
     fn scheme(amplitude: Amplitude) -> Scheme {
@@ -774,57 +699,26 @@ mod tests {
 
     #[test]
     fn duffing_and_van_der_pol_from_the_literature() {
-        let duffing = expand(
-            &Integers,
-            &[term(1, 3, 0, (1, 1))],
-            4,
-            &scheme(Amplitude::Free),
-        )
-        .expect("periodic");
-        let expected = [
-            ratio(1, 1),
-            ratio(3, 4),
-            ratio(-3, 128),
-            ratio(9, 512),
-            ratio(-1779, 131_072),
-        ];
+        let duffing = expand(&Integers, &[term(1, 3, 0, (1, 1))], 4, &scheme(Amplitude::Free))
+            .expect("periodic");
+        let expected =
+            [ratio(1, 1), ratio(3, 4), ratio(-3, 128), ratio(9, 512), ratio(-1779, 131_072)];
         assert_eq!(numbers(&duffing.frequency_squared), expected);
         // x'' + x + mu (x^2 - 1) x' with x = 2 y: Andersen and Geer 1982.
         let force = [term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))];
         let cycle =
             expand(&Integers, &force, 4, &scheme(Amplitude::Determined)).expect("a limit cycle");
-        let expected = [
-            ratio(1, 1),
-            ratio(0, 1),
-            ratio(-1, 16),
-            ratio(0, 1),
-            ratio(17, 3072),
-        ];
+        let expected = [ratio(1, 1), ratio(0, 1), ratio(-1, 16), ratio(0, 1), ratio(17, 3072)];
         assert_eq!(numbers(&cycle.frequency), expected);
-        let amplitudes: Vec<_> = cycle
-            .displacement
-            .iter()
-            .map(FourierSeries::at_zero)
-            .map(|y| y.times(2))
-            .collect();
-        let expected = [
-            ratio(2, 1),
-            ratio(0, 1),
-            ratio(1, 96),
-            ratio(0, 1),
-            ratio(-1033, 552_960),
-        ];
+        let amplitudes: Vec<_> =
+            cycle.displacement.iter().map(FourierSeries::at_zero).map(|y| y.times(2)).collect();
+        let expected = [ratio(2, 1), ratio(0, 1), ratio(1, 96), ratio(0, 1), ratio(-1033, 552_960)];
         assert_eq!(numbers(&amplitudes), expected);
     }
 
     #[test]
     fn viscous_damping_leaves_a_secular_sine() {
-        let damped = expand(
-            &Integers,
-            &[term(1, 0, 1, (2, 1))],
-            3,
-            &scheme(Amplitude::Free),
-        );
+        let damped = expand(&Integers, &[term(1, 0, 1, (2, 1))], 3, &scheme(Amplitude::Free));
         assert_eq!(damped.err(), Some(SecularError::Growth { order: 1 }));
     }
 }

@@ -47,9 +47,7 @@ impl Image {
         let Some(start) = places.start.checked_sub(self.start) else {
             return &[];
         };
-        self.displacement
-            .get(start..places.end - self.start)
-            .unwrap_or(&[])
+        self.displacement.get(start..places.end - self.start).unwrap_or(&[])
     }
 }
 
@@ -100,17 +98,10 @@ impl<A: Arithmetic> NullaryFnOnce for Prepare<'_, A> {
     #[inline(always)]
     fn call(self) -> Self::Output {
         let Self(arithmetic, plan, moduli) = self;
-        let residues = Residues {
-            arithmetic,
-            moduli: Moduli::of(moduli),
-        };
+        let residues = Residues { arithmetic, moduli: Moduli::of(moduli) };
         let mut coefficients = Vec::with_capacity(plan.terms.len());
         for (term, (_, derivative)) in plan.terms.iter().zip(&plan.of_terms) {
-            let power = if *derivative {
-                i64::from(term.position) + 1
-            } else {
-                1
-            };
+            let power = if *derivative { i64::from(term.position) + 1 } else { 1 };
             coefficients.push(coefficient(moduli, &term.coefficient, power)?);
         }
         Some(Field {
@@ -119,11 +110,9 @@ impl<A: Arithmetic> NullaryFnOnce for Prepare<'_, A> {
             factors: Factors::new(&residues, plan)?,
             coefficients,
             sine: match &plan.sine {
-                Some((_, rate)) => Some(SineFactors::new(
-                    &residues,
-                    coefficient(moduli, rate, 1)?,
-                    plan.last,
-                )?),
+                Some((_, rate)) => {
+                    Some(SineFactors::new(&residues, coefficient(moduli, rate, 1)?, plan.last)?)
+                }
                 None => None,
             },
         })
@@ -185,12 +174,7 @@ impl Factors {
         }
         residues.invert(&mut solution)?;
         solution[plan.resonant()] = Lanes::default();
-        Some(Self {
-            solution,
-            detuning,
-            rising,
-            falling,
-        })
+        Some(Self { solution, detuning, rising, falling })
     }
 
     /// For the derivative of a sum of these waves.
@@ -250,10 +234,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     pub fn room(plan: &Plan) -> usize {
         let tables = Tables::room(plan.grid.size(), &Self::lengths(plan));
         tables
-            + Self::harmonics(plan)
-                .map(|count| Harmonics::room(plan, count))
-                .iter()
-                .sum::<usize>()
+            + Self::harmonics(plan).map(|count| Harmonics::room(plan, count)).iter().sum::<usize>()
     }
 
     /// The entries in a row of each table.
@@ -274,14 +255,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     /// How many harmonics are kept of the motion, and of the terms with one velocity.
     fn harmonics(plan: &Plan) -> [usize; 2] {
         let has_damping = plan.of_terms.iter().any(|(_, derivative)| *derivative);
-        [
-            plan.most_harmonics(),
-            if has_damping {
-                plan.most_harmonics()
-            } else {
-                0
-            },
-        ]
+        [plan.most_harmonics(), if has_damping { plan.most_harmonics() } else { 0 }]
     }
 
     /// All orders in that much [room](Self::room).
@@ -324,10 +298,8 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         primes: &[u64],
         wanted: &dyn Fn(usize) -> usize,
     ) -> Option<Vec<Image>> {
-        let moduli: Vec<Modulus> = primes
-            .iter()
-            .map(|prime| Modulus::new(*prime, A::RADIX))
-            .collect();
+        let moduli: Vec<Modulus> =
+            primes.iter().map(|prime| Modulus::new(*prime, A::RADIX)).collect();
         let mut field = Field::new(self.arithmetic, self.plan, &moduli)?;
         let coefficients = std::mem::take(&mut field.coefficients);
         self.expand(&mut field, &coefficients)?;
@@ -437,14 +409,9 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         }
         let twice = residues.difference(square, products);
         self.frequency_squared.push(square);
-        self.frequency
-            .push(residues.product(twice, field.waves.half()));
+        self.frequency.push(residues.product(twice, field.waves.half()));
         let count = self.plan.harmonics(order);
-        multiply(
-            residues,
-            &mut self.right_side[..count],
-            &field.factors.solution,
-        );
+        multiply(residues, &mut self.right_side[..count], &field.factors.solution);
         self.normalise(field, order);
         Some(())
     }
@@ -465,9 +432,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             let any = self.mix(field, coefficients, order, derivative);
             let own = if derivative { wave.other() } else { wave };
             match any {
-                true => field
-                    .waves
-                    .coefficients(&residues, own, &mut self.values, change_here),
+                true => field.waves.coefficients(&residues, own, &mut self.values, change_here),
                 false => change_here.fill(Lanes::default()),
             }
             if derivative {
@@ -498,19 +463,11 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         derivative: bool,
     ) -> bool {
         self.parts.clear();
-        for ((term, (table, own)), factor) in self
-            .plan
-            .terms
-            .iter()
-            .zip(&self.plan.of_terms)
-            .zip(coefficients)
+        for ((term, (table, own)), factor) in
+            self.plan.terms.iter().zip(&self.plan.of_terms).zip(coefficients)
         {
             if *own == derivative && term.order <= order {
-                self.parts.push(Part {
-                    factor: *factor,
-                    table: *table,
-                    order: order - term.order,
-                });
+                self.parts.push(Part { factor: *factor, table: *table, order: order - term.order });
             }
         }
         if let (Some((sine, _)), Some(factors), false) = (&self.plan.sine, &field.sine, derivative)
@@ -541,11 +498,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             return;
         };
         let residues = &field.residues;
-        let whole = Part {
-            factor: residues.one(),
-            table: 0,
-            order,
-        };
+        let whole = Part { factor: residues.one(), table: 0, order };
         self.form(residues, &[factors.scaled(order)], (sine.scaled, order));
         match order {
             0 => {
@@ -553,20 +506,12 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
                 self.values.fill(residues.one());
                 self.tables.write(sine.cosine, 0, &self.values);
             }
-            _ => self.form(
-                residues,
-                &[factors.sine(sine, order), whole],
-                (sine.sine, order),
-            ),
+            _ => self.form(residues, &[factors.sine(sine, order), whole], (sine.sine, order)),
         }
         let products = std::slice::from_ref(&sine.of_cosine);
         convolve(residues, products, &mut self.tables, order);
         if order < self.plan.last {
-            self.form(
-                residues,
-                &[factors.cosine(sine, order)],
-                (sine.cosine, order + 1),
-            );
+            self.form(residues, &[factors.cosine(sine, order)], (sine.cosine, order + 1));
         }
     }
 
@@ -631,13 +576,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let secular = residues.negative(self.right_side[resonant]);
         let amplitude = residues.product(secular, variation.inverse_slope);
         for (table, change) in variation.tables.iter().enumerate() {
-            vary(
-                residues,
-                &mut self.tables,
-                (table, order - 1),
-                amplitude,
-                change,
-            );
+            vary(residues, &mut self.tables, (table, order - 1), amplitude, change);
         }
         add_multiple(residues, &mut self.right_side, amplitude, &variation.plain);
         let minus = residues.negative(amplitude);
@@ -685,9 +624,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let (wave, count) = (plan.wave(order), plan.harmonics(order));
         let displacement = &self.right_side[..count];
         self.motion.push(plan, order, displacement);
-        field
-            .waves
-            .values(&residues, wave, displacement, &mut self.values);
+        field.waves.values(&residues, wave, displacement, &mut self.values);
         self.tables.write(0, order, &self.values);
         if plan.has_velocity {
             let mut change = std::mem::take(&mut self.change);
@@ -699,9 +636,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
                 Detuning::Displacement => own.copy_from_slice(displacement),
             }
             multiply(&residues, own, field.factors.derivative(wave));
-            field
-                .waves
-                .values(&residues, wave.other(), own, &mut self.values);
+            field.waves.values(&residues, wave.other(), own, &mut self.values);
             self.tables.write(1, order, &self.values);
             self.change = change;
         }
@@ -760,12 +695,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         if slope.0.contains(&0) {
             return None;
         }
-        Some(Variation {
-            tables,
-            plain,
-            damped,
-            inverse_slope: residues.inverse(slope),
-        })
+        Some(Variation { tables, plain, damped, inverse_slope: residues.inverse(slope) })
     }
 }
 

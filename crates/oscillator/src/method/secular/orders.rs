@@ -35,12 +35,7 @@ impl Order {
         };
         Self {
             denominator: motion.denominator().into(),
-            displacement: motion
-                .numerators()
-                .iter()
-                .copied()
-                .map(Integer::from)
-                .collect(),
+            displacement: motion.numerators().iter().copied().map(Integer::from).collect(),
             first_harmonic: first.as_ref().map_or_else(Rational::zero, constant),
             frequency_squared: constant(&order.frequency_squared),
             frequency: constant(&order.frequency),
@@ -76,14 +71,9 @@ pub(super) fn expansion(
         };
         FourierSeries::in_lowest_terms(Integers, denominator, cosine, sine)
     };
-    let frequency_squared: Vec<_> = orders
-        .iter()
-        .map(|order| constant(&order.frequency_squared))
-        .collect();
-    let frequency = orders
-        .iter()
-        .map(|order| constant(&order.frequency))
-        .collect();
+    let frequency_squared: Vec<_> =
+        orders.iter().map(|order| constant(&order.frequency_squared)).collect();
+    let frequency = orders.iter().map(|order| constant(&order.frequency)).collect();
     let squares = orders.iter().skip(1).map(|order| &order.frequency_squared);
     let removed = squares.map(|square| constant(&-square)).collect();
     // The first harmonic of a limit cycle is the amplitude that its secular sine has fixed.
@@ -105,9 +95,8 @@ pub(super) fn expansion(
     if extent == Extent::Motion {
         expansion.removed = removed;
         let orders = orders.into_iter().enumerate();
-        expansion.displacement = orders
-            .map(|(order, own)| series(order, own.denominator, own.displacement))
-            .collect();
+        expansion.displacement =
+            orders.map(|(order, own)| series(order, own.denominator, own.displacement)).collect();
     }
     expansion
 }

@@ -65,9 +65,7 @@ impl<'a> Plan<'a> {
         frequency_alone: bool,
     ) -> Option<Self> {
         let conservative = terms.iter().all(|term| term.velocity % 2 == 0);
-        let alternating = terms
-            .iter()
-            .all(|term| term.velocity as usize % 2 == term.order % 2);
+        let alternating = terms.iter().all(|term| term.velocity as usize % 2 == term.order % 2);
         if !(conservative || alternating)
             || terms.iter().any(|term| term.position + term.velocity == 0)
         {
@@ -75,9 +73,7 @@ impl<'a> Plan<'a> {
         }
         let power = |term: &Term| (term.position + term.velocity) as usize;
         let half_wave = terms.iter().all(|term| power(term) % 2 == 1);
-        let growths = terms
-            .iter()
-            .map(|term| (power(term) - 1).div_ceil(term.order));
+        let growths = terms.iter().map(|term| (power(term) - 1).div_ceil(term.order));
         let growth = growths.chain(sine.as_ref().map(|_| 2)).max()?;
         let determined = scheme.amplitude == Amplitude::Determined;
         let last = highest + usize::from(determined);
@@ -92,10 +88,7 @@ impl<'a> Plan<'a> {
         };
         let mut plan = Self {
             terms,
-            scheme: Scheme {
-                normalisation,
-                ..scheme
-            },
+            scheme: Scheme { normalisation, ..scheme },
             highest,
             last,
             half_wave,
@@ -130,10 +123,8 @@ impl<'a> Plan<'a> {
             (position, 1) => (self.power(0, position + 1, needed), true),
             (0, velocity) => (self.power(1, velocity, needed), false),
             (position, velocity) => {
-                let (position, velocity) = (
-                    self.power(0, position, needed),
-                    self.power(1, velocity, needed),
-                );
+                let (position, velocity) =
+                    (self.power(0, position, needed), self.power(1, velocity, needed));
                 (self.product(position, velocity, needed), false)
             }
         }
@@ -145,32 +136,21 @@ impl<'a> Plan<'a> {
             return base;
         }
         let square = self.product(base, base, needed);
-        let start = if exponent.is_multiple_of(2) {
-            square
-        } else {
-            base
-        };
+        let start = if exponent.is_multiple_of(2) { square } else { base };
         (1..exponent.div_ceil(2)).fold(start, |power, _| self.product(power, square, needed))
     }
 
     fn product(&mut self, left: usize, right: usize, needed: usize) -> usize {
         let (left, right) = (left.min(right), left.max(right));
-        let known = self
-            .products
-            .iter_mut()
-            .find(|known| (known.left, known.right) == (left, right));
+        let known =
+            self.products.iter_mut().find(|known| (known.left, known.right) == (left, right));
         if let Some(known) = known {
             known.needed = known.needed.max(needed);
             return known.to;
         }
         let to = self.tables;
         self.tables += 1;
-        self.products.push(Product {
-            left,
-            right,
-            to,
-            needed,
-        });
+        self.products.push(Product { left, right, to, needed });
         to
     }
 
@@ -296,19 +276,13 @@ impl<'m> Harmonics<'m> {
     pub fn room(plan: &Plan, count: usize) -> usize {
         let parities = 0..plan.step();
         parities
-            .map(|parity| {
-                (0..count)
-                    .map(|index| Self::orders(plan, index, parity))
-                    .sum::<usize>()
-            })
+            .map(|parity| (0..count).map(|index| Self::orders(plan, index, parity)).sum::<usize>())
             .sum()
     }
 
     /// The orders of a symmetry at which a harmonic need not be zero.
     fn orders(plan: &Plan, index: usize, parity: usize) -> usize {
-        (plan.last + 1)
-            .saturating_sub(plan.first(index, parity))
-            .div_ceil(plan.step())
+        (plan.last + 1).saturating_sub(plan.first(index, parity)).div_ceil(plan.step())
     }
 
     /// So many harmonics, in that much [room](Self::room).
@@ -322,17 +296,11 @@ impl<'m> Harmonics<'m> {
             };
             (0..count).map(row).collect()
         };
-        Self {
-            rows: [rows(0), if plan.step() == 2 { rows(1) } else { vec![] }],
-            entries,
-        }
+        Self { rows: [rows(0), if plan.step() == 2 { rows(1) } else { vec![] }], entries }
     }
 
     pub fn clear(&mut self) {
-        self.rows
-            .iter_mut()
-            .flatten()
-            .for_each(|row| row.length = 0);
+        self.rows.iter_mut().flatten().for_each(|row| row.length = 0);
     }
 
     /// All that there is.
@@ -341,11 +309,7 @@ impl<'m> Harmonics<'m> {
     }
 
     fn parity(&self, order: usize) -> usize {
-        if self.rows[1].is_empty() {
-            0
-        } else {
-            order % 2
-        }
+        if self.rows[1].is_empty() { 0 } else { order % 2 }
     }
 
     /// The coefficients of the next order.
@@ -373,18 +337,12 @@ impl<'m> Harmonics<'m> {
     pub fn row(&self, plan: &Plan, index: usize, order: usize) -> (usize, &[Lanes]) {
         let parity = if plan.step() == 2 { order % 2 } else { 0 };
         let row = self.rows[parity][index];
-        (
-            plan.first(index, order),
-            &self.entries[row.begin..][..row.length],
-        )
+        (plan.first(index, order), &self.entries[row.begin..][..row.length])
     }
 
     pub fn at(&self, plan: &Plan, index: usize, order: usize) -> Lanes {
         let (first, row) = self.row(plan, index, order);
         let place = order.checked_sub(first).map(|after| after / plan.step());
-        place
-            .and_then(|place| row.get(place))
-            .copied()
-            .unwrap_or_default()
+        place.and_then(|place| row.get(place)).copied().unwrap_or_default()
     }
 }

@@ -63,24 +63,15 @@ pub fn expand(
         (Amplitude::Free, _) | (_, Extent::Frequency) => None,
         (Amplitude::Determined, Extent::Motion) => Some(slope(force, scheme, &beginning)?),
     };
-    let orders: Vec<Order> = beginning
-        .orders
-        .iter()
-        .map(|order| Order::of_short(&plan, order))
-        .collect();
+    let orders: Vec<Order> =
+        beginning.orders.iter().map(|order| Order::of_short(&plan, order)).collect();
     if orders.len() > highest {
         return Some(expansion(&plan, orders, slope.as_ref(), extent));
     }
     if highest < LONG {
         return None;
     }
-    by_widest(Expand {
-        equation: &equation,
-        plan: &plan,
-        slope,
-        orders,
-        supervision,
-    })
+    by_widest(Expand { equation: &equation, plan: &plan, slope, orders, supervision })
 }
 
 /// Where the amplitude is determined, its condition has the same slope at every order.
@@ -90,10 +81,7 @@ fn slope(
     beginning: &fixed_width::Beginning,
 ) -> Option<Rational> {
     if let Some(slope) = &beginning.slope {
-        return Some(Rational::new_raw(
-            slope.numerator(0).into(),
-            slope.denominator().into(),
-        ));
+        return Some(Rational::new_raw(slope.numerator(0).into(), slope.denominator().into()));
     }
     let first = super::expand(&Integers, force, 1, scheme).ok()?;
     let (numerator, denominator) = first.amplitudes.first()?.slope.mean();
@@ -131,23 +119,12 @@ impl Equation {
             Amplitude::Free => super::sine::split(terms, highest),
             Amplitude::Determined => (None, terms),
         };
-        Self {
-            terms,
-            sine,
-            scheme,
-            extent,
-        }
+        Self { terms, sine, scheme, extent }
     }
 
     fn plan(&self, highest: usize) -> Option<Plan<'_>> {
         let frequency_alone = self.extent == Extent::Frequency;
-        Plan::new(
-            &self.terms,
-            self.sine.clone(),
-            highest,
-            self.scheme,
-            frequency_alone,
-        )
+        Plan::new(&self.terms, self.sine.clone(), highest, self.scheme, frequency_alone)
     }
 }
 
@@ -166,22 +143,14 @@ impl Work for Expand<'_> {
     fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
         /// So many show how denominators grow.
         const SOME: usize = 8;
-        let Self {
-            equation,
-            plan,
-            slope,
-            orders: short,
-            supervision,
-        } = self;
+        let Self { equation, plan, slope, orders: short, supervision } = self;
         let extent = equation.extent;
         let beginning = match short.len() >= SOME {
             true => Some(Beginning::of(&short)?),
             false => None,
         };
         // A guess about the denominators that turns out wrong costs little where the order is low.
-        let evident = beginning
-            .as_ref()
-            .is_some_and(|beginning| beginning.is_power(plan));
+        let evident = beginning.as_ref().is_some_and(|beginning| beginning.is_power(plan));
         let (beginning, mut orders) = match plan.highest > 2 * GUESSED && !evident {
             false => (beginning, short),
             true => {
@@ -260,9 +229,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             }
         }
         // Numbers may shrink more slowly later on.
-        beginning
-            .shrinks()
-            .then(|| self.orders_from(first, Some(beginning.without_shrinking())))?
+        beginning.shrinks().then(|| self.orders_from(first, Some(beginning.without_shrinking())))?
     }
 
     /// The number of primes whose product has more than so many binary digits; `None` where there
@@ -355,11 +322,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             if count > MOST_PRIMES {
                 return None;
             }
-            let from = if self.extent == Extent::Motion {
-                0
-            } else {
-                usize::MAX
-            };
+            let from = if self.extent == Extent::Motion { 0 } else { usize::MAX };
             let more = self.images(count, &|_| from)?;
             self.first.extend(more);
             if self.first.len() < count {
@@ -369,10 +332,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             let images = &self.first[..count];
             let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
             let remainders = Remainders::new(self.arithmetic, &moduli);
-            let product: Integer = moduli
-                .iter()
-                .map(|modulus| Integer::from(modulus.prime))
-                .product();
+            let product: Integer =
+                moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
             let known = |count, number: &dyn Fn(&Image, usize) -> u64| {
                 known(images, count, &remainders, &product, number)
             };
@@ -382,9 +343,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
                     Extent::Motion => self.plan.harmonics(order),
                     Extent::Frequency => 0,
                 };
-                let motion = known(count, &|image, index| {
-                    image.displacement(self.plan, order)[index]
-                });
+                let motion =
+                    known(count, &|image, index| image.displacement(self.plan, order)[index]);
                 let frequency = known(2, &|image, index| match index {
                     0 => image.frequency[order],
                     _ => image.frequency_squared[order],
@@ -425,9 +385,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         }
         if self.extent == Extent::Motion {
             let orders = counts.iter().enumerate();
-            let kept: usize = orders
-                .map(|(order, count)| self.plan.harmonics(order) * count)
-                .sum();
+            let kept: usize = orders.map(|(order, count)| self.plan.harmonics(order) * count).sum();
             if kept > MOST_RESIDUES {
                 return None;
             }
@@ -438,9 +396,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             Extent::Motion => counts.partition_point(|count| *count < place).max(first),
             Extent::Frequency => usize::MAX,
         };
-        self.supervision
-            .progress
-            .begin((most + 1).saturating_sub(self.first.len()));
+        self.supervision.progress.begin((most + 1).saturating_sub(self.first.len()));
         let images: Vec<Image> = self.images(most + 1, &wanted)?;
         let all: Vec<&Image> = self.first.iter().chain(&images).collect();
         let stopped = self.supervision.interrupt.is_requested();
@@ -533,9 +489,7 @@ impl Beginning {
         let fits = |guess: &Guess| {
             let divisors = |order| plan.largest_factor(order);
             guess.known.len() <= plan.highest
-                && Growth::Power
-                    .denominators(&guess.known, plan.highest, &divisors)
-                    .is_some()
+                && Growth::Power.denominators(&guess.known, plan.highest, &divisors).is_some()
         };
         [&self.motion, &self.frequency].into_iter().all(fits)
     }
@@ -548,16 +502,12 @@ impl Beginning {
                 numbers.map(Integer::bits).max().unwrap_or(0) as f64
             };
             let size = bits(&mut order.displacement.iter()) - order.denominator.bits() as f64;
-            beginning
-                .motion
-                .push(Factored::of(&order.denominator)?, size);
+            beginning.motion.push(Factored::of(&order.denominator)?, size);
             let both = [&order.frequency, &order.frequency_squared];
             let denominator = Factored::of(&both[0].denom().lcm(both[1].denom()))?;
             let sizes =
                 both.map(|number| number.numer().bits() as f64 - number.denom().bits() as f64);
-            beginning
-                .frequency
-                .push(denominator, sizes[0].max(sizes[1]));
+            beginning.frequency.push(denominator, sizes[0].max(sizes[1]));
         }
         Some(beginning)
     }
@@ -591,11 +541,7 @@ impl Guess {
         // counted.
         let middle = order / 2;
         let slope = (size - self.sizes[middle]) / (order - middle).max(1) as f64;
-        self.decay = if order >= Self::ENOUGH {
-            (slope + 1.0).min(0.0)
-        } else {
-            0.0
-        };
+        self.decay = if order >= Self::ENOUGH { (slope + 1.0).min(0.0) } else { 0.0 };
     }
 
     /// Below so many orders nothing is said of shrinking.
@@ -640,9 +586,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
             images,
             remainders: Remainders::new(arithmetic, &moduli),
             test,
-            powers: std::iter::successors(Some(test.modulus.one), next)
-                .take(digits)
-                .collect(),
+            powers: std::iter::successors(Some(test.modulus.one), next).take(digits).collect(),
         }
     }
 
@@ -670,9 +614,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
             let common = denominator.common(&displacement);
             if !common.is_one() {
                 let divisor = common.value();
-                displacement
-                    .iter_mut()
-                    .for_each(|numerator| *numerator /= &divisor);
+                displacement.iter_mut().for_each(|numerator| *numerator /= &divisor);
                 excess = excess.times(&common);
             }
             let whole = &frequency[order];
@@ -708,15 +650,8 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
     fn displacement(&self, order: usize, over: &Over) -> Option<Vec<Integer>> {
         let count = self.test.displacement(self.plan, order).len();
         self.numbers(over, count, |image, block, lanes| {
-            let own = image
-                .displacement(self.plan, order)
-                .iter()
-                .skip(block * WIDTH);
-            lanes
-                .0
-                .iter_mut()
-                .zip(own)
-                .for_each(|(lane, residue)| *lane = *residue);
+            let own = image.displacement(self.plan, order).iter().skip(block * WIDTH);
+            lanes.0.iter_mut().zip(own).for_each(|(lane, residue)| *lane = *residue);
         })
     }
 
@@ -726,9 +661,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
             Some(mut last) => {
                 let ratio = denominator.over(&last.denominator).ladder();
                 for (weight, image) in last.weights.iter_mut().zip(self.images) {
-                    *weight = image
-                        .modulus
-                        .product(*weight, ratio.residue(&image.modulus));
+                    *weight = image.modulus.product(*weight, ratio.residue(&image.modulus));
                 }
                 let test = &self.test.modulus;
                 Over {
@@ -741,10 +674,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
                 let ladder = denominator.ladder();
                 Over {
                     denominator: denominator.clone(),
-                    weights: self
-                        .remainders
-                        .weights(|modulus| ladder.residue(modulus))
-                        .collect(),
+                    weights: self.remainders.weights(|modulus| ladder.residue(modulus)).collect(),
                     in_test: ladder.residue(&self.test.modulus),
                 }
             }
@@ -767,8 +697,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
             for (own, image) in residues.iter_mut().zip(self.images) {
                 eight(image, block, own);
             }
-            self.remainders
-                .lift(&mut residues, &over.weights, &mut numbers);
+            self.remainders.lift(&mut residues, &over.weights, &mut numbers);
             let mut in_test = Lanes::default();
             eight(self.test, block, &mut in_test);
             let found = numbers.residues(self.arithmetic, modulus, &self.powers);
@@ -805,25 +734,13 @@ mod tests {
     /// Every number of the expansion, its steps included, is that of the recursion over whole
     /// numbers.
     fn agrees(force: &[ForceTerm<Integers>], highest: usize, amplitude: Amplitude) {
-        for normalisation in [
-            AmplitudeConvention::Initial,
-            AmplitudeConvention::FirstHarmonic,
-        ] {
+        for normalisation in [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic] {
             for detuning in [Detuning::Acceleration, Detuning::Displacement] {
-                let scheme = Scheme {
-                    normalisation,
-                    amplitude,
-                    detuning,
-                };
+                let scheme = Scheme { normalisation, amplitude, detuning };
                 let exact =
                     super::super::expand(&Integers, force, highest, &scheme).expect("an expansion");
-                let widest = super::expand(
-                    force,
-                    highest,
-                    &scheme,
-                    Extent::Motion,
-                    Supervision::default(),
-                );
+                let widest =
+                    super::expand(force, highest, &scheme, Extent::Motion, Supervision::default());
                 let widest = widest.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
                 let equation = Equation::new(force, highest, scheme, Extent::Motion);
                 let by_primes = Expand {
@@ -842,10 +759,7 @@ mod tests {
                     Supervision::default(),
                 );
                 let alone = alone.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
-                assert_eq!(
-                    alone.frequency_squared, exact.frequency_squared,
-                    "{scheme:?}"
-                );
+                assert_eq!(alone.frequency_squared, exact.frequency_squared, "{scheme:?}");
                 assert_eq!(alone.frequency, exact.frequency);
                 assert!(alone.displacement.is_empty());
                 for found in [widest, portable] {
@@ -882,24 +796,8 @@ mod tests {
         // among them; the pendulum.
         agrees(&[term(1, 3, 0, (1, 1))], 24, free);
         agrees(&[term(1, 2, 0, (1, 1))], 13, free);
-        agrees(
-            &[
-                term(1, 3, 0, (2, 7)),
-                term(1, 1, 2, (1, 2)),
-                term(2, 5, 0, (-1, 3)),
-            ],
-            13,
-            free,
-        );
-        agrees(
-            &[
-                term(1, 2, 0, (3, 1)),
-                term(2, 3, 0, (1, 5)),
-                term(3, 0, 2, (1, 1)),
-            ],
-            12,
-            free,
-        );
+        agrees(&[term(1, 3, 0, (2, 7)), term(1, 1, 2, (1, 2)), term(2, 5, 0, (-1, 3))], 13, free);
+        agrees(&[term(1, 2, 0, (3, 1)), term(2, 3, 0, (1, 5)), term(3, 0, 2, (1, 1))], 12, free);
         let mut coefficient = Rational::one();
         let mut sine: Vec<_> = (1..=12_i64)
             .map(|order| {
@@ -921,15 +819,7 @@ mod tests {
         // van der Pol, x = 2 y; Rayleigh; both with a nonlinear spring of the second order.
         agrees(&[term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))], 16, cycle);
         agrees(&[term(1, 0, 3, (4, 3)), term(1, 0, 1, (-1, 1))], 13, cycle);
-        agrees(
-            &[
-                term(1, 2, 1, (4, 1)),
-                term(1, 0, 1, (-1, 1)),
-                term(2, 3, 0, (1, 3)),
-            ],
-            12,
-            cycle,
-        );
+        agrees(&[term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1)), term(2, 3, 0, (1, 3))], 12, cycle);
     }
 
     #[test]
@@ -940,11 +830,7 @@ mod tests {
             detuning: Detuning::Acceleration,
         };
         // A spring and damping at the same order: sines and cosines in every y_n.
-        let mixed = [
-            term(1, 2, 1, (4, 1)),
-            term(1, 0, 1, (-1, 1)),
-            term(1, 3, 0, (1, 1)),
-        ];
+        let mixed = [term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1)), term(1, 3, 0, (1, 1))];
         assert!(
             expand(
                 &mixed,

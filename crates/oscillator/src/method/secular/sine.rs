@@ -35,12 +35,7 @@ pub(super) struct Sine {
 impl Sine {
     /// From the table `first` on; how many there are is [`Self::TABLES`].
     pub fn new(first: usize, last: usize) -> Self {
-        let product = |left, to| Product {
-            left,
-            right: first,
-            to,
-            needed: last,
-        };
+        let product = |left, to| Product { left, right: first, to, needed: last };
         Self {
             scaled: first,
             sine: first + 1,
@@ -75,9 +70,7 @@ fn place(term: &Term) -> Option<usize> {
 fn rate(terms: &[Term], highest: usize) -> Option<Rational> {
     let coefficient = |n: usize| {
         let mut own = terms.iter().filter(|term| place(term) == Some(n));
-        own.next()
-            .filter(|_| own.next().is_none())
-            .map(|term| &term.coefficient)
+        own.next().filter(|_| own.next().is_none()).map(|term| &term.coefficient)
     };
     let rate = coefficient(1)? * Rational::from_integer(Integer::from(6));
     // Numerator and denominator of `rate^n/(2n+1)!`, not in lowest terms.
@@ -129,29 +122,17 @@ impl SineFactors {
 
     /// `V_n` from `y_n`, which stands in the first table.
     pub fn scaled(&self, order: usize) -> Part {
-        Part {
-            factor: self.scaled[order],
-            table: 0,
-            order,
-        }
+        Part { factor: self.scaled[order], table: 0, order }
     }
 
     /// `S_n` without what it has of `y_n`.
     pub fn sine(&self, sine: &Sine, order: usize) -> Part {
-        Part {
-            factor: self.sine[order],
-            table: sine.of_sine.to,
-            order,
-        }
+        Part { factor: self.sine[order], table: sine.of_sine.to, order }
     }
 
     /// `C_(n+1)`.
     pub fn cosine(&self, sine: &Sine, order: usize) -> Part {
-        Part {
-            factor: self.cosine[order],
-            table: sine.of_cosine.to,
-            order,
-        }
+        Part { factor: self.cosine[order], table: sine.of_cosine.to, order }
     }
 }
 
@@ -173,18 +154,10 @@ mod tests {
         let mut terms: Vec<Term> = (1..=8)
             .map(|n| {
                 power *= &third;
-                term(
-                    n,
-                    &power / Rational::from_integer(factorial(2 * n as u32 + 1)),
-                )
+                term(n, &power / Rational::from_integer(factorial(2 * n as u32 + 1)))
             })
             .collect();
-        terms.push(Term {
-            order: 1,
-            position: 1,
-            velocity: 2,
-            coefficient: Rational::one(),
-        });
+        terms.push(Term { order: 1, position: 1, velocity: 2, coefficient: Rational::one() });
         let (rate, others) = split(terms.clone(), 8);
         assert_eq!(rate, Some(third));
         assert_eq!((others.len(), others[0].velocity), (1, 2));

@@ -96,10 +96,7 @@ impl Work for Expand<'_> {
                 images: vec![],
             };
             let orders = search.orders()?;
-            if best
-                .as_ref()
-                .is_none_or(|best| best.frequency.len() < orders.len())
-            {
+            if best.as_ref().is_none_or(|best| best.frequency.len() < orders.len()) {
                 let monomials = lower_set.monomials(&groups.kinds, base);
                 best = Some(expansion(&plan, &orders, &monomials, extent));
             }
@@ -123,10 +120,7 @@ struct Groups {
 /// The terms of the force with numbers for coefficients, and what symbols each of them has.
 fn grouped(force: &[ForceTerm<Symbols>]) -> Option<(Vec<Term>, Groups)> {
     let mut terms = Vec::new();
-    let mut groups = Groups {
-        kinds: vec![],
-        of_terms: vec![],
-    };
+    let mut groups = Groups { kinds: vec![], of_terms: vec![] };
     for own in force {
         let (numerator, denominator) = own.coefficient.mean();
         for (monomial, number) in numerator.terms() {
@@ -162,11 +156,7 @@ impl LowerSet {
     fn new(weights: &[usize], base: usize, highest: usize, most: usize) -> Option<Self> {
         let mut of_weight: Vec<Vec<Vec<usize>>> = vec![vec![]; highest + 1];
         of_weight[0].push(vec![0; weights.len()]);
-        for (group, weight) in weights
-            .iter()
-            .enumerate()
-            .filter(|(group, _)| *group != base)
-        {
+        for (group, weight) in weights.iter().enumerate().filter(|(group, _)| *group != base) {
             for total in *weight..=highest {
                 let more: Vec<Vec<usize>> = of_weight[total - weight]
                     .iter()
@@ -191,11 +181,8 @@ impl LowerSet {
         if points.len() > most {
             return None;
         }
-        let place: HashMap<&[usize], usize> = points
-            .iter()
-            .enumerate()
-            .map(|(place, point)| (&point[..], place))
-            .collect();
+        let place: HashMap<&[usize], usize> =
+            points.iter().enumerate().map(|(place, point)| (&point[..], place)).collect();
         let line = |start: &Vec<usize>, group: usize| -> Vec<usize> {
             let mut point = start.clone();
             let mut next = || {
@@ -207,17 +194,11 @@ impl LowerSet {
         };
         let lines = (0..weights.len())
             .map(|group| {
-                let starts = points
-                    .iter()
-                    .filter(|point| point[group] == 0 && group != base);
+                let starts = points.iter().filter(|point| point[group] == 0 && group != base);
                 starts.map(|start| line(start, group)).collect()
             })
             .collect();
-        Some(Self {
-            points,
-            counts,
-            lines,
-        })
+        Some(Self { points, counts, lines })
     }
 
     /// From values at the points of an order, `numbers` side by side at each, to coefficients, in
@@ -273,18 +254,12 @@ impl LowerSet {
     ) -> (Vec<(Monomial, usize)>, Monomial) {
         let of_point = |point: &Vec<usize>| {
             let parts = point.iter().zip(kinds);
-            parts.fold(
-                (Monomial::one(), 0),
-                |(product, weight), (exponent, (order, monomial))| {
-                    let power = monomial.power(i32::try_from(*exponent).unwrap_or(i32::MAX));
-                    (product.product(&power), weight + order * exponent)
-                },
-            )
+            parts.fold((Monomial::one(), 0), |(product, weight), (exponent, (order, monomial))| {
+                let power = monomial.power(i32::try_from(*exponent).unwrap_or(i32::MAX));
+                (product.product(&power), weight + order * exponent)
+            })
         };
-        (
-            self.points.iter().map(of_point).collect(),
-            kinds[base].1.clone(),
-        )
+        (self.points.iter().map(of_point).collect(), kinds[base].1.clone())
     }
 }
 
@@ -327,12 +302,8 @@ impl<A: Arithmetic> Search<'_, A> {
     fn values(&self, modulus: Modulus, points: &[Vec<usize>]) -> Option<Vec<Vec<u64>>> {
         let mut field = Field::new(self.arithmetic, self.plan, &[modulus])?;
         let mut memory = Memory::zeroed(Recursion::<A>::room(self.plan));
-        let mut recursion = Recursion::new(
-            self.arithmetic,
-            self.plan,
-            self.supervision.interrupt,
-            memory.lanes(),
-        );
+        let mut recursion =
+            Recursion::new(self.arithmetic, self.plan, self.supervision.interrupt, memory.lanes());
         let own = std::mem::take(&mut field.coefficients);
         let mut coefficients = own.clone();
         let mut found = Vec::with_capacity(points.len());
@@ -379,10 +350,7 @@ impl<A: Arithmetic> Search<'_, A> {
         if points.len() * self.plan.highest > ALONE {
             /// So many lots for each thread let none of them wait for long.
             const LOTS: usize = 4;
-            let length = points
-                .len()
-                .div_ceil(LOTS * threads())
-                .next_multiple_of(WIDTH);
+            let length = points.len().div_ceil(LOTS * threads()).next_multiple_of(WIDTH);
             let lots: Vec<_> = points.chunks(length).collect();
             let found = each(&lots, |points| self.values(modulus, points));
             let found: Option<Vec<Vec<Vec<u64>>>> = found.into_iter().collect();
@@ -422,11 +390,8 @@ impl<A: Arithmetic> Search<'_, A> {
                 values.extend_from_slice(&own[*taken..*taken + numbers]);
                 *taken += numbers;
             }
-            self.lower_set
-                .interpolate(&modulus, &inverses, order, &mut values, numbers);
-            values
-                .iter_mut()
-                .for_each(|value| *value = modulus.plain(*value));
+            self.lower_set.interpolate(&modulus, &inverses, order, &mut values, numbers);
+            values.iter_mut().for_each(|value| *value = modulus.plain(*value));
             orders.push(values);
         }
         Some(Image { modulus, orders })
@@ -463,19 +428,14 @@ impl<A: Arithmetic> Search<'_, A> {
                 break;
             }
             let remainders = Remainders::new(self.arithmetic, &moduli);
-            let product: Integer = moduli
-                .iter()
-                .map(|modulus| Integer::from(modulus.prime))
-                .product();
+            let product: Integer =
+                moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
             while let Some(in_test) = test.orders.get(orders.len()) {
                 let order = orders.len();
                 let Some(found) = fractions(images, &remainders, &product, order) else {
                     break;
                 };
-                let found = Order {
-                    numbers: self.numbers(order),
-                    ..found
-                };
+                let found = Order { numbers: self.numbers(order), ..found };
                 if !found.agrees(&test.modulus, in_test) {
                     break;
                 }
@@ -506,11 +466,7 @@ fn fractions<A: Arithmetic>(
         let start = *first.get_or_insert_with(|| {
             for (residues, image) in residues.iter_mut().zip(images) {
                 let own = image.orders[order][index..].iter();
-                residues
-                    .0
-                    .iter_mut()
-                    .zip(own)
-                    .for_each(|(lane, residue)| *lane = *residue);
+                residues.0.iter_mut().zip(own).for_each(|(lane, residue)| *lane = *residue);
             }
             remainders.lift(&mut residues, &weights, &mut eight);
             index
@@ -535,11 +491,7 @@ fn fractions<A: Arithmetic>(
     for (numerator, over) in numerators.iter_mut().zip(over) {
         *numerator *= &denominator / over;
     }
-    Some(Order {
-        denominator,
-        numerators,
-        numbers: 0,
-    })
+    Some(Order { denominator, numerators, numbers: 0 })
 }
 
 impl Order {
@@ -645,16 +597,9 @@ mod tests {
 
     /// Every number of the expansion is that of the recursion over polynomials.
     fn agrees(force: &[ForceTerm<Symbols>], highest: usize) {
-        for normalisation in [
-            AmplitudeConvention::Initial,
-            AmplitudeConvention::FirstHarmonic,
-        ] {
+        for normalisation in [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic] {
             for detuning in [Detuning::Acceleration, Detuning::Displacement] {
-                let scheme = Scheme {
-                    normalisation,
-                    amplitude: Amplitude::Free,
-                    detuning,
-                };
+                let scheme = Scheme { normalisation, amplitude: Amplitude::Free, detuning };
                 let exact = super::super::expand(&Polynomials(Integers), force, highest, &scheme)
                     .expect("an expansion");
                 let nobody = Supervision::default();
@@ -701,13 +646,7 @@ mod tests {
         let mut sum = a.clone();
         sum.accumulate(&b.product(&b));
         for highest in [1, 2, 3, 4] {
-            agrees(
-                &[
-                    term(1, 3, 0, (sum.clone(), 1)),
-                    term(1, 5, 0, (b.clone(), 1)),
-                ],
-                highest,
-            );
+            agrees(&[term(1, 3, 0, (sum.clone(), 1)), term(1, 5, 0, (b.clone(), 1))], highest);
         }
     }
 
@@ -726,22 +665,13 @@ mod tests {
                 .map(|point| coefficient(point) * power(at[1], point[1]) * power(at[2], point[2]))
                 .sum()
         };
-        let mut values: Vec<u64> = set
-            .points
-            .iter()
-            .map(|at| modulus.small(value(at)))
-            .collect();
+        let mut values: Vec<u64> = set.points.iter().map(|at| modulus.small(value(at))).collect();
         let mut inverses: Vec<u64> = (1..7).map(|k| modulus.small(k)).collect();
-        modulus
-            .invert(&mut inverses)
-            .expect("no multiple of the prime");
+        modulus.invert(&mut inverses).expect("no multiple of the prime");
         inverses.insert(0, 0);
         set.interpolate(&modulus, &inverses, 5, &mut values, 1);
-        let expected: Vec<u64> = set
-            .points
-            .iter()
-            .map(|point| modulus.small(coefficient(point)))
-            .collect();
+        let expected: Vec<u64> =
+            set.points.iter().map(|point| modulus.small(coefficient(point))).collect();
         assert_eq!(values, expected);
     }
 
@@ -750,11 +680,8 @@ mod tests {
     #[test]
     fn the_first_points_are_enough_for_the_lower_orders() {
         let [a, b] = ["a", "b"].map(letter);
-        let force = [
-            term(1, 2, 0, (a.clone(), 1)),
-            term(1, 3, 0, (b.clone(), 3)),
-            term(2, 5, 0, (a, 7)),
-        ];
+        let force =
+            [term(1, 2, 0, (a.clone(), 1)), term(1, 3, 0, (b.clone(), 3)), term(2, 5, 0, (a, 7))];
         let scheme = Scheme {
             normalisation: AmplitudeConvention::Initial,
             amplitude: Amplitude::Free,
@@ -778,20 +705,12 @@ mod tests {
         let modulus = Modulus::new(prime, 32);
         let values = search.values_at_points(modulus).expect("numbers");
         let all = search.interpolated(modulus, &values).expect("all orders");
-        assert_eq!(
-            (values.len(), all.orders.len()),
-            (lower_set.points.len(), 7)
-        );
+        assert_eq!((values.len(), all.orders.len()), (lower_set.points.len(), 7));
         for count in 0..values.len() {
-            let some = search
-                .interpolated(modulus, &values[..count])
-                .expect("some orders");
+            let some = search.interpolated(modulus, &values[..count]).expect("some orders");
             let reached = some.orders.len();
             assert_eq!(some.orders, all.orders[..reached]);
-            assert!(
-                lower_set.counts[reached] > count,
-                "{count} points are enough for more"
-            );
+            assert!(lower_set.counts[reached] > count, "{count} points are enough for more");
         }
     }
 
@@ -802,15 +721,9 @@ mod tests {
             amplitude: Amplitude::Free,
             detuning: Detuning::Acceleration,
         };
-        let terms = [
-            term(2, 3, 0, (letter("a"), 1)),
-            term(3, 5, 0, (letter("b"), 1)),
-        ];
+        let terms = [term(2, 3, 0, (letter("a"), 1)), term(3, 5, 0, (letter("b"), 1))];
         assert!(expand(&terms, 6, &scheme, Extent::Motion, Supervision::default()).is_none());
-        let damped = [
-            term(1, 0, 1, (letter("a"), 1)),
-            term(1, 3, 0, (letter("b"), 1)),
-        ];
+        let damped = [term(1, 0, 1, (letter("a"), 1)), term(1, 3, 0, (letter("b"), 1))];
         assert!(expand(&damped, 6, &scheme, Extent::Motion, Supervision::default()).is_none());
     }
 }

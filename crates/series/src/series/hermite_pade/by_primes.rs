@@ -60,10 +60,8 @@ impl Exact<'_> {
     fn image(&self, modulus: Modulus) -> Option<Image> {
         let order = self.0.iter().map(|(_, degree)| degree + 1).sum::<usize>() - 1;
         let residues = |numbers: &[Rational]| {
-            let mut inverses: Vec<u64> = numbers
-                .iter()
-                .map(|number| modulus.integer(number.denom()))
-                .collect();
+            let mut inverses: Vec<u64> =
+                numbers.iter().map(|number| modulus.integer(number.denom())).collect();
             modulus.invert(&mut inverses)?;
             let pairs = numbers.iter().zip(inverses);
             Some(
@@ -129,10 +127,8 @@ impl Work for Exact<'_> {
             }
             if let Some(numbers) = lifted(arithmetic, &images[..=count]) {
                 let mut numbers = numbers.into_iter();
-                let lists = self
-                    .0
-                    .iter()
-                    .map(|(_, degree)| numbers.by_ref().take(degree + 1).collect());
+                let lists =
+                    self.0.iter().map(|(_, degree)| numbers.by_ref().take(degree + 1).collect());
                 return Some(lists.collect());
             }
             count += count / 2;
@@ -147,20 +143,14 @@ fn lifted<A: Arithmetic>(arithmetic: A, images: &[Image]) -> Option<Vec<Integer>
     let (test, images) = images.split_last()?;
     let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
     let remainders = Remainders::new(arithmetic, &moduli);
-    let product: Integer = moduli
-        .iter()
-        .map(|modulus| Integer::from(modulus.prime))
-        .product();
+    let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
     let digit = test.modulus.residue(1 << A::DIGIT);
     let digits = (images.len() + 1) * A::BITS as usize / A::DIGIT as usize + 2 + WIDTH;
     let next = |power: &u64| Some(test.modulus.product(*power, digit));
-    let powers: Vec<u64> = std::iter::successors(Some(test.modulus.one), next)
-        .take(digits)
-        .collect();
+    let powers: Vec<u64> =
+        std::iter::successors(Some(test.modulus.one), next).take(digits).collect();
     let weights = |factor: &Integer| -> Vec<u64> {
-        remainders
-            .weights(|modulus| modulus.integer(factor))
-            .collect()
+        remainders.weights(|modulus| modulus.integer(factor)).collect()
     };
     let length = test.numbers.len();
     // The numbers of the highest powers have the longest denominators.
@@ -178,20 +168,15 @@ fn lifted<A: Arithmetic>(arithmetic: A, images: &[Image]) -> Option<Vec<Integer>
         let start = *lifted.get_or_insert_with(|| {
             for (residues, image) in residues.iter_mut().zip(images) {
                 let own = image.numbers[..=place].iter().rev();
-                residues
-                    .0
-                    .iter_mut()
-                    .zip(own)
-                    .for_each(|(lane, residue)| *lane = *residue);
+                residues.0.iter_mut().zip(own).for_each(|(lane, residue)| *lane = *residue);
             }
             remainders.lift(&mut residues, &over, &mut eight);
             in_test = eight.residues(arithmetic, &test.modulus, &powers);
             place
         });
         let found = eight.integer::<A>(start - place);
-        let expected = test
-            .modulus
-            .product(test.numbers[place], test.modulus.integer(&denominator));
+        let expected =
+            test.modulus.product(test.numbers[place], test.modulus.integer(&denominator));
         if !first && in_test[start - place] == expected {
             numerators.push(found);
             if start - place == WIDTH - 1 {
@@ -207,25 +192,19 @@ fn lifted<A: Arithmetic>(arithmetic: A, images: &[Image]) -> Option<Vec<Integer>
         }
         lifted = None;
         // What was found before is over the shorter denominator.
-        numerators
-            .iter_mut()
-            .for_each(|numerator: &mut Integer| *numerator *= &more);
+        numerators.iter_mut().for_each(|numerator: &mut Integer| *numerator *= &more);
         denominator *= more;
         over = weights(&denominator);
         first = false;
     }
     numerators.reverse();
     // The first number is one over the denominator: nothing is common to all of them.
-    let common = numerators
-        .iter()
-        .fold(Integer::zero(), |common, number| common.gcd(number));
+    let common = numerators.iter().fold(Integer::zero(), |common, number| common.gcd(number));
     if common > Integer::one() {
         numerators.iter_mut().for_each(|number| *number /= &common);
     }
     if numerators.first().is_some_and(Signed::is_negative) {
-        numerators
-            .iter_mut()
-            .for_each(|number| *number = -std::mem::take(number));
+        numerators.iter_mut().for_each(|number| *number = -std::mem::take(number));
     }
     Some(numerators)
 }
@@ -253,10 +232,7 @@ mod tests {
                 assert_eq!(quotient, expected, "[{above}/{below}] {j}");
                 expected = -expected * ratio(below - j, (j + 1) * (above + below - j).max(1));
             }
-            assert_eq!(
-                (found[0].len(), found[1].len()),
-                (below as usize + 1, above as usize + 1)
-            );
+            assert_eq!((found[0].len(), found[1].len()), (below as usize + 1, above as usize + 1));
         }
     }
 
@@ -269,14 +245,10 @@ mod tests {
         }
         let mut one = vec![ratio(0, 1); root.len()];
         one[0] = ratio(1, 1);
-        let square: Vec<Rational> = (0..root.len())
-            .map(|n| (0..=n).map(|k| &root[k] * &root[n - k]).sum())
-            .collect();
+        let square: Vec<Rational> =
+            (0..root.len()).map(|n| (0..=n).map(|k| &root[k] * &root[n - k]).sum()).collect();
         let whole = |numbers: &[i64]| {
-            numbers
-                .iter()
-                .map(|number| Integer::from(*number))
-                .collect::<Vec<_>>()
+            numbers.iter().map(|number| Integer::from(*number)).collect::<Vec<_>>()
         };
         let found = exact(&[(one, 1), (root, 0), (square, 0)]).expect("its equation");
         assert_eq!(found, [whole(&[1, 1]), whole(&[0]), whole(&[-1])]);

@@ -101,9 +101,7 @@ fn certified_cycle(
         claim: Rational::zero(),
         formula,
     };
-    certificate
-        .well_formed_formula()
-        .map_err(NotCertified::Formula)?;
+    certificate.well_formed_formula().map_err(NotCertified::Formula)?;
     let certified = proved_by_some_block(&mut certificate, seen)?;
     Ok((certificate, certified))
 }
@@ -132,28 +130,16 @@ pub fn certify_driven(
     solution: &Solution,
     at: &Values,
 ) -> Result<(DampedCertificate, Certified), NotCertified> {
-    let resonance = solution
-        .modulation
-        .as_ref()
-        .and_then(|slow| slow.resonance.as_ref());
+    let resonance = solution.modulation.as_ref().and_then(|slow| slow.resonance.as_ref());
     let resonance = resonance.ok_or(NotCertified::NoSteadyMotion)?;
     let (values, _) = at.split(&oscillator.parameters);
-    let given = resonance
-        .driving_frequency
-        .substitute_all(&values)?
-        .expand()?;
-    let frequency = given
-        .as_number()
-        .map(|number| number.abs())
-        .filter(|number| !number.is_zero());
+    let given = resonance.driving_frequency.substitute_all(&values)?.expand()?;
+    let frequency = given.as_number().map(|number| number.abs()).filter(|number| !number.is_zero());
     let frequency = frequency.ok_or_else(|| NotCertified::DrivingFrequency(given.to_string()))?;
     let [damping, force] = driven_parts(oscillator, &values, &frequency)?;
     let samples = verify::motions(oscillator, solution, at)?.ok_or(NotCertified::NoSteadyMotion)?;
     let places = |samples: &[verify::Sample]| -> Vec<f64> {
-        samples[..samples.len() - 1]
-            .iter()
-            .map(|(_, x, _)| *x)
-            .collect()
+        samples[..samples.len() - 1].iter().map(|(_, x, _)| *x).collect()
     };
     let truth = harmonics_of(&places(&samples.truth));
     let seen = truth.cosines.len().max(truth.sines.len());
@@ -197,9 +183,7 @@ pub fn certify_driven(
     certificate.odd = has_odd_alone(&truth) && certificate.is_odd()?;
     if certificate.odd {
         for list in [&mut certificate.cosines, &mut certificate.sines] {
-            list.iter_mut()
-                .step_by(2)
-                .for_each(|even| *even = Integer::zero());
+            list.iter_mut().step_by(2).for_each(|even| *even = Integer::zero());
         }
     }
     certificate.highest = (3 * seen / 2).clamp(15, most(certificate.odd)) | 1;
@@ -254,10 +238,7 @@ fn is_near_all(exact: &FourierSeries, harmonics: &Harmonics) -> bool {
     let size = harmonics.cosines.iter().chain(&harmonics.sines);
     let size = size.fold(0.0_f64, |most, value| most.max(value.abs()));
     let near = |ball: &Ball, double: f64| (WORKING.nearest(ball) - double).abs() <= ROUNDING * size;
-    let last = exact
-        .length()
-        .max(harmonics.cosines.len())
-        .max(harmonics.sines.len());
+    let last = exact.length().max(harmonics.cosines.len()).max(harmonics.sines.len());
     (0..last).all(|k| {
         near(&exact.cosine(k), own(&harmonics.cosines, k))
             && near(&exact.sine(k), own(&harmonics.sines, k))
@@ -286,9 +267,7 @@ fn has_odd_alone(harmonics: &Harmonics) -> bool {
     let all = || harmonics.cosines.iter().chain(&harmonics.sines);
     let largest = all().fold(0.0_f64, |most, value| most.max(value.abs()));
     let even = [&harmonics.cosines, &harmonics.sines].map(|list| list.iter().step_by(2));
-    even.into_iter()
-        .flatten()
-        .all(|value| value.abs() < 1e3 * NOISE * largest)
+    even.into_iter().flatten().all(|value| value.abs() < 1e3 * NOISE * largest)
 }
 
 /// g and h of `x'' + g(x) x' + h(x, cos(Omega t), sin(Omega t)) = 0`, with numbers.
@@ -363,14 +342,7 @@ fn lienard(oscillator: &Oscillator, at: &Values) -> Result<[Expr; 2], NotCertifi
     }
     let velocity = oscillator.velocity();
     let mut terms = parts.damping.terms().to_vec();
-    terms.extend(
-        parts
-            .inertia
-            .terms()
-            .iter()
-            .filter(|term| !term.is_zero())
-            .cloned(),
-    );
+    terms.extend(parts.inertia.terms().iter().filter(|term| !term.is_zero()).cloned());
     for term in terms {
         if !is_linear_in(&term, velocity)? {
             return Err(NotCertified::NotLienard {
@@ -405,11 +377,7 @@ fn of_velocity(oscillator: &Oscillator, parts: &Parts) -> Option<String> {
     let lost = &parts.damping + &parts.inertia;
     let linear = !stiffness.contains(coordinate)
         && !lost.contains(coordinate)
-        && parts
-            .restoring
-            .substitute(coordinate, &Expr::zero())
-            .ok()?
-            .is_zero();
+        && parts.restoring.substitute(coordinate, &Expr::zero()).ok()?.is_zero();
     let slope = lost.differentiate(velocity).ok()?;
     let damping = slope.substitute(velocity, &Expr::from(coordinate)).ok()?;
     let drag = &damping * &Expr::from(velocity);
@@ -424,20 +392,14 @@ fn from_samples(samples: &[verify::Sample], odd: bool) -> (f64, Harmonics) {
     let places: Vec<f64> = samples[..count].iter().map(|(_, x, _)| *x).collect();
     let found = Transform::new(count).harmonics(&places, HIGHEST_HARMONIC.min(count / 2));
     let phase = found.sines[1].atan2(found.cosines[1]);
-    let mut turned = Harmonics {
-        cosines: vec![found.cosines[0] / 2.0],
-        sines: vec![0.0],
-    };
+    let mut turned = Harmonics { cosines: vec![found.cosines[0] / 2.0], sines: vec![0.0] };
     for (k, (a, b)) in found.cosines.iter().zip(&found.sines).enumerate().skip(1) {
         let (sine, cosine) = (k as f64 * phase).sin_cos();
         turned.cosines.push(a * cosine + b * sine);
         turned.sines.push(b * cosine - a * sine);
     }
     turned.sines[1] = 0.0;
-    let largest = turned
-        .cosines
-        .iter()
-        .fold(0.0_f64, |most, value| most.max(value.abs()));
+    let largest = turned.cosines.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     for list in [&mut turned.cosines, &mut turned.sines] {
         if odd {
             list.iter_mut().step_by(2).for_each(|even| *even = 0.0);
@@ -452,9 +414,7 @@ fn from_samples(samples: &[verify::Sample], odd: bool) -> (f64, Harmonics) {
 /// The inverse of the derivative on the block, in doubles.
 fn inverse(certificate: &DampedCertificate) -> Result<Vec<Vec<Integer>>, NotProved> {
     let rows = derivative_of_block(certificate.problem())?;
-    inverted(DMatrix::from_fn(rows.len(), rows.len(), |row, column| {
-        rows[row][column]
-    }))
+    inverted(DMatrix::from_fn(rows.len(), rows.len(), |row, column| rows[row][column]))
 }
 
 /// Newton's iteration with one inverse.

@@ -98,9 +98,7 @@ pub struct DampedCertificate {
 pub fn check_damped(certificate: &DampedCertificate) -> Result<Certified, CheckError> {
     certificate.well_formed().map_err(CheckError::Malformed)?;
     let proof = theorem::prove(certificate.problem()).map_err(CheckError::NotProved)?;
-    let certified = certificate
-        .certified(proof)
-        .map_err(CheckError::NotProved)?;
+    let certified = certificate.certified(proof).map_err(CheckError::NotProved)?;
     formula::hold_claims(&certificate.claim, certificate.formula.as_ref(), &certified)?;
     Ok(certified)
 }
@@ -131,9 +129,7 @@ impl DampedCertificate {
         let waves = [phase.cos(), phase.sin()].into_iter().flatten();
         let values = theorem::waves_of_drive().into_iter().zip(waves).collect();
         // Without a value there it is shown as it is checked.
-        self.force
-            .substitute_all(&values)
-            .unwrap_or_else(|_| self.force.clone())
+        self.force.substitute_all(&values).unwrap_or_else(|_| self.force.clone())
     }
 
     /// Whether half a period later the equation is its mirror image.
@@ -157,10 +153,7 @@ impl DampedCertificate {
     /// The approximate motion.
     fn motion(&self) -> FourierSeries {
         let balls = |units: &[Integer]| {
-            units
-                .iter()
-                .map(|units| WORKING.dyadic(units, self.bits))
-                .collect()
+            units.iter().map(|units| WORKING.dyadic(units, self.bits)).collect()
         };
         FourierSeries::exactly(balls(&self.cosines), balls(&self.sines)).of_digits(self.bits)
     }
@@ -168,10 +161,7 @@ impl DampedCertificate {
     /// What does not fit together.
     fn well_formed(&self) -> Result<(), &'static str> {
         let drive = self.drive.as_ref();
-        let waves = drive
-            .map(|_| theorem::waves_of_drive())
-            .into_iter()
-            .flatten();
+        let waves = drive.map(|_| theorem::waves_of_drive()).into_iter().flatten();
         let letters: Vec<Symbol> = waves.chain([coordinate()]).collect();
         let fits = Sizes {
             bits: [self.bits, self.inverse_bits],
@@ -181,10 +171,7 @@ impl DampedCertificate {
             number: &self.reciprocal,
             coefficients: &[&self.cosines, &self.sines],
             inverse: &self.inverse,
-            expressions: &[
-                (&self.damping, &letters[letters.len() - 1..]),
-                (&self.force, &letters),
-            ],
+            expressions: &[(&self.damping, &letters[letters.len() - 1..]), (&self.force, &letters)],
         };
         // Sizes before arithmetic: the block may be as long as it is said to be.
         fits.of_numbers()?;
@@ -299,11 +286,7 @@ impl DampedCertificate {
             Some(_) => self.copies(&motion)?,
             None => vec![],
         };
-        let truth = Truth {
-            copies: &copies,
-            frequency: &frequency,
-            radius: proof.radius,
-        };
+        let truth = Truth { copies: &copies, frequency: &frequency, radius: proof.radius };
         let (exponent, amplitude, errors) = match &self.drive {
             None => {
                 let errors = |formula: &JudgedFormula| {
@@ -352,10 +335,7 @@ impl Drive {
         const MOST_PERIODS: usize = 20;
         let small = |integer: &Integer| integer.bits() <= 700;
         let demands = [
-            (
-                self.frequency.is_positive(),
-                "a drive whose frequency is not positive",
-            ),
+            (self.frequency.is_positive(), "a drive whose frequency is not positive"),
             (
                 small(self.frequency.numer()) && small(self.frequency.denom()),
                 "a number of more than 200 digits",
@@ -379,10 +359,7 @@ impl Drive {
 /// `sqrt(a_k^2 + b_k^2)`.
 fn amplitude_of(motion: &FourierSeries, harmonic: usize) -> Ball {
     let (cosine, sine) = (motion.cosine(harmonic), motion.sine(harmonic));
-    let square = WORKING.sum(
-        &WORKING.product(&cosine, &cosine),
-        &WORKING.product(&sine, &sine),
-    );
+    let square = WORKING.sum(&WORKING.product(&cosine, &cosine), &WORKING.product(&sine, &sine));
     WORKING.root(&square, 2).unwrap_or_else(|| {
         let mut near_zero = Ball::zero();
         near_zero.radius += WORKING.magnitude(&cosine) + WORKING.magnitude(&sine);
@@ -397,10 +374,7 @@ fn turned(motion: FourierSeries) -> FourierSeries {
     if sine.is_zero() && cosine.middle.is_positive() {
         return motion;
     }
-    let square = WORKING.sum(
-        &WORKING.product(&cosine, &cosine),
-        &WORKING.product(&sine, &sine),
-    );
+    let square = WORKING.sum(&WORKING.product(&cosine, &cosine), &WORKING.product(&sine, &sine));
     let part = |ball: &Ball| WORKING.quotient(ball, &WORKING.root(&square, 2)?);
     match part(&cosine).zip(part(&sine)) {
         Some((cosine, sine)) => motion.turned(&[cosine, sine]),

@@ -235,11 +235,7 @@ pub(super) fn derivative_of_block(problem: Problem) -> Result<Vec<Vec<f64>>, Not
         true => WORKING.nearest(&equations.by_reciprocal(row)),
         false => SHORT.nearest(&derivative.entry(row, equations.block[place])),
     };
-    let row = |row: &Wave| {
-        (0..equations.block.len())
-            .map(|place| entry(*row, place))
-            .collect()
-    };
+    let row = |row: &Wave| (0..equations.block.len()).map(|place| entry(*row, place)).collect();
     Ok(equations.block.iter().map(row).collect())
 }
 
@@ -252,18 +248,11 @@ struct Multiplier {
 impl Multiplier {
     fn of(series: &FourierSeries) -> Self {
         let halved = |(k, ball): (usize, &Ball)| {
-            let half = if k == 0 {
-                ball.clone()
-            } else {
-                WORKING.divided(ball, 2)
-            };
+            let half = if k == 0 { ball.clone() } else { WORKING.divided(ball, 2) };
             SHORT.converted(&half, WORKING)
         };
         let halves = |balls: &[Ball]| balls.iter().enumerate().map(halved).collect();
-        Self {
-            cosines: halves(&series.cosines),
-            sines: halves(&series.sines),
-        }
+        Self { cosines: halves(&series.cosines), sines: halves(&series.sines) }
     }
 
     /// The coefficient of one wave in the product with another.
@@ -287,11 +276,7 @@ impl Multiplier {
             (Wave::Cosine(_), Wave::Sine(_)) => SHORT.sum(&apart(j < k), &sine(k + j)),
         };
         // Of the constant both are one.
-        if k == 0 {
-            SHORT.divided(&both, 2)
-        } else {
-            both
-        }
+        if k == 0 { SHORT.divided(&both, 2) } else { both }
     }
 }
 
@@ -360,9 +345,7 @@ struct Equations<'a> {
 impl<'a> Equations<'a> {
     fn of(problem: Problem<'a>) -> Result<Self, NotProved> {
         let motion = &problem.motion;
-        let drag = problem
-            .along(problem.damping, motion)?
-            .product(&motion.derivative());
+        let drag = problem.along(problem.damping, motion)?.product(&motion.derivative());
         let force = problem.along(problem.force, motion)?;
         Ok(Self {
             squared: WORKING.product(&problem.reciprocal, &problem.reciprocal),
@@ -381,9 +364,7 @@ impl<'a> Equations<'a> {
     fn derivative(&self) -> Result<Derivative, NotProved> {
         let problem = &self.problem;
         let slope = problem.force.differentiate(coordinate())?;
-        let damping = problem
-            .along(problem.damping, &problem.motion)?
-            .shortened(ROUGH);
+        let damping = problem.along(problem.damping, &problem.motion)?.shortened(ROUGH);
         let slope = problem.along(&slope, &problem.motion)?.shortened(ROUGH);
         Ok(Derivative {
             reciprocal: SHORT.converted(&problem.reciprocal, WORKING),
@@ -399,9 +380,7 @@ impl<'a> Equations<'a> {
     fn beyond(&self, from: usize, to: usize) -> impl Iterator<Item = Wave> + use<> {
         let (step, highest) = (self.problem.step(), self.problem.highest);
         let from = from.max(highest + 1);
-        let harmonics = (highest + step..=to)
-            .step_by(step)
-            .skip_while(move |k| *k < from);
+        let harmonics = (highest + step..=to).step_by(step).skip_while(move |k| *k < from);
         harmonics.flat_map(|k| [Wave::Cosine(k), Wave::Sine(k)])
     }
 
@@ -415,20 +394,14 @@ impl<'a> Equations<'a> {
 
     /// `D_k + 2 p h_k`, the derivative by p.
     fn by_reciprocal(&self, wave: Wave) -> Ball {
-        let twice = WORKING.scaled(
-            &WORKING.product(&self.problem.reciprocal, &self.force.coefficient(wave)),
-            2,
-        );
+        let twice = WORKING
+            .scaled(&WORKING.product(&self.problem.reciprocal, &self.force.coefficient(wave)), 2);
         WORKING.sum(&self.drag.coefficient(wave), &twice)
     }
 
     /// The last harmonic that any of the series has.
     fn last(&self) -> usize {
-        self.problem
-            .motion
-            .length()
-            .max(self.drag.length())
-            .max(self.force.length())
+        self.problem.motion.length().max(self.drag.length()).max(self.force.length())
     }
 }
 
@@ -457,12 +430,7 @@ impl<'a> System<'a> {
             size_of_derivative =
                 size_of_derivative.max(norm * Bound::exactly(wave.harmonic() as f64));
         }
-        Ok(Self {
-            equations,
-            inverse,
-            size,
-            size_of_derivative,
-        })
+        Ok(Self { equations, inverse, size, size_of_derivative })
     }
 
     /// `B F`: the correction of p and of every harmonic, by which the approximation is the further
@@ -470,10 +438,7 @@ impl<'a> System<'a> {
     fn correction(&self) -> Correction<Wave> {
         let beyond = self.equations.beyond(0, self.equations.last()).map(|wave| {
             let image = WORKING.divided(&self.equations.bent(wave), wave.squared());
-            (
-                wave,
-                WORKING.difference(&self.equations.problem.motion.coefficient(wave), &image),
-            )
+            (wave, WORKING.difference(&self.equations.problem.motion.coefficient(wave), &image))
         });
         let vector: Vec<Ball> = self
             .equations
@@ -496,11 +461,7 @@ impl<'a> System<'a> {
     /// Y0.
     fn defect(&self) -> Bound {
         let correction = self.correction();
-        let beyond: Bound = correction
-            .beyond
-            .iter()
-            .map(|(_, y)| WORKING.magnitude(y))
-            .sum();
+        let beyond: Bound = correction.beyond.iter().map(|(_, y)| WORKING.magnitude(y)).sum();
         let unseen = WORKING.magnitude(&self.equations.problem.reciprocal)
             * self.equations.drag.tail
             + WORKING.magnitude(&self.equations.squared) * self.equations.force.tail;
@@ -523,10 +484,7 @@ impl<'a> System<'a> {
         let in_block = self.equations.block.iter().enumerate().skip(waves_from);
         let in_block = in_block.map(|(place, wave)| (*wave, Some(place)));
         // Where g and h' reach into the block, and beyond.
-        let near = self
-            .equations
-            .beyond(0, highest + width)
-            .map(|wave| (wave, None));
+        let near = self.equations.beyond(0, highest + width).map(|wave| (wave, None));
         for (wave, place) in in_block.chain(near) {
             largest = largest.max(self.column(derivative, wave, place));
             if largest + unseen >= one {
@@ -589,12 +547,8 @@ impl<'a> System<'a> {
         if j > self.equations.problem.highest + width {
             return tail;
         }
-        let vector: Vec<Ball> = self
-            .equations
-            .block
-            .iter()
-            .map(|row| derivative.entry(*row, column))
-            .collect();
+        let vector: Vec<Ball> =
+            self.equations.block.iter().map(|row| derivative.entry(*row, column)).collect();
         self.inverse.distance_from_unit(&vector, place) + tail
     }
 
@@ -617,9 +571,7 @@ impl<'a> System<'a> {
         let twice = |bound: Bound| bound + bound;
         let both_of_reciprocal = twice(size * force).over(sigma).over(sigma);
         let one_of_each = (steep * damping + twice(reciprocal * size * slope)).over(sigma);
-        both_of_reciprocal
-            .max(one_of_each)
-            .max(both_of_motion(reciprocal))
+        both_of_reciprocal.max(one_of_each).max(both_of_motion(reciprocal))
     }
 }
 
@@ -635,15 +587,10 @@ mod tests {
 
     fn certificate() -> DampedCertificate {
         let oscillator = Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0").expect("an equation");
-        let options = Options {
-            order: Some(2),
-            ..Options::default()
-        };
+        let options = Options { order: Some(2), ..Options::default() };
         let solution = solve(&oscillator, &options).expect("a solution");
         let at = "mu = 1/2".parse().expect("values");
-        certify_cycle(&oscillator, &solution, &at)
-            .expect("a certificate")
-            .0
+        certify_cycle(&oscillator, &solution, &at).expect("a certificate").0
     }
 
     /// A cycle nearby, of an equation that is neither odd nor one of polynomials.
@@ -660,8 +607,7 @@ mod tests {
         certificate.bits -= LESS;
         certificate.reciprocal = certificate.reciprocal.clone() >> LESS;
         for list in [&mut certificate.cosines, &mut certificate.sines] {
-            list.iter_mut()
-                .for_each(|units| *units = units.clone() >> LESS);
+            list.iter_mut().for_each(|units| *units = units.clone() >> LESS);
         }
         proved_by_some_block(&mut certificate, 30).expect("a proof");
         certificate
@@ -685,8 +631,7 @@ mod tests {
         const LESS: usize = 64;
         certificate.bits -= LESS;
         for list in [&mut certificate.cosines, &mut certificate.sines] {
-            list.iter_mut()
-                .for_each(|units| *units = units.clone() >> LESS);
+            list.iter_mut().for_each(|units| *units = units.clone() >> LESS);
         }
         proved_by_some_block(&mut certificate, 20).expect("a proof");
         certificate
@@ -727,12 +672,8 @@ mod tests {
             const STEP: f64 = 1.0 / 512.0;
             let next = step(state, STEP);
             if state[0] < 0.0 && next[0] >= 0.0 {
-                let [part, _] = bisect(
-                    |part| step(state, part)[0] < 0.0,
-                    0.0,
-                    STEP,
-                    Until::Halvings(60),
-                );
+                let [part, _] =
+                    bisect(|part| step(state, part)[0] < 0.0, 0.0, STEP, Until::Halvings(60));
                 crossings.push(t + part);
             }
             (state, t) = (next, t + STEP);
@@ -791,9 +732,7 @@ mod tests {
     fn place_of(system: &System, wave: Wave) -> Option<usize> {
         let first = system.equations.unknowns_before_waves();
         let mut waves = system.equations.block[first..].iter();
-        waves
-            .position(|other| *other == wave)
-            .map(|place| place + first)
+        waves.position(|other| *other == wave).map(|place| place + first)
     }
 
     /// The norm of B of a series, less a direction.
@@ -822,9 +761,7 @@ mod tests {
     fn directions(system: &System, highest: usize) -> Vec<(Option<Wave>, f64)> {
         let first = system.equations.unknowns_before_waves();
         let block = system.equations.block[first..].iter().copied();
-        let waves = block
-            .chain(system.equations.beyond(0, highest))
-            .map(|wave| (Some(wave), 1.0));
+        let waves = block.chain(system.equations.beyond(0, highest)).map(|wave| (Some(wave), 1.0));
         let reciprocal = (first > 0).then(|| (None, system.inverse.sigma.value()));
         reciprocal.into_iter().chain(waves).collect()
     }
@@ -832,22 +769,13 @@ mod tests {
     /// Every column of `1 - B DF` by its definition, that of p first.
     fn columns(system: &System, highest: usize) -> Vec<(Option<Wave>, f64)> {
         let equations = &system.equations;
-        let place = Place::of(
-            &equations.problem,
-            &equations.problem.motion,
-            &equations.problem.reciprocal,
-        );
+        let place =
+            Place::of(&equations.problem, &equations.problem.motion, &equations.problem.reciprocal);
         let column = |(direction, weight)| {
             let image = place.derivative(direction);
-            (
-                direction,
-                size_of_image(system, &image, Some(direction)) / weight,
-            )
+            (direction, size_of_image(system, &image, Some(direction)) / weight)
         };
-        directions(system, highest)
-            .into_iter()
-            .map(column)
-            .collect()
+        directions(system, highest).into_iter().map(column).collect()
     }
 
     #[test]
@@ -865,9 +793,8 @@ mod tests {
             for (certificate, is_proved) in [(&sound, true), (&spoilt, false), (&light, false)] {
                 let system = System::of(certificate.problem()).expect("a system");
                 let derivative = system.equations.derivative().expect("a derivative");
-                let contraction = system
-                    .contraction(&derivative)
-                    .map_or(f64::INFINITY, Bound::value);
+                let contraction =
+                    system.contraction(&derivative).map_or(f64::INFINITY, Bound::value);
                 assert_eq!(contraction < 0.5, is_proved, "{contraction}");
                 for (direction, size) in columns(&system, 3 * certificate.highest + 90) {
                     let bound = match direction {
@@ -875,14 +802,8 @@ mod tests {
                         Some(wave) => system.column(&derivative, wave, place_of(&system, wave)),
                     };
                     // What was cut from g and h' is not in the column, but in the sum.
-                    assert!(
-                        size <= bound.value() + 1e-9,
-                        "{direction:?}: {size}, {bound:?}"
-                    );
-                    assert!(
-                        size > 0.99 * bound.value() - 1e-9,
-                        "{direction:?}: {size}, {bound:?}"
-                    );
+                    assert!(size <= bound.value() + 1e-9, "{direction:?}: {size}, {bound:?}");
+                    assert!(size > 0.99 * bound.value() - 1e-9, "{direction:?}: {size}, {bound:?}");
                     assert!(size <= contraction, "{direction:?}: {size}, {contraction}");
                 }
             }
@@ -901,10 +822,9 @@ mod tests {
         let (mut drag, mut force) = (system(), system());
         drag.equations.drag.tail += more;
         force.equations.force.tail += more;
-        for (wider, factor, of_reciprocal) in [
-            (&drag, reciprocal, 1.0),
-            (&force, squared, 2.0 * reciprocal),
-        ] {
+        for (wider, factor, of_reciprocal) in
+            [(&drag, reciprocal, 1.0), (&force, squared, 2.0 * reciprocal)]
+        {
             let by = wider.defect().value() - own.defect().value();
             assert!((by / (0.001 * size * factor) - 1.0).abs() < 1e-9, "{by}");
             let by = wider.column_of_reciprocal().value() - own.column_of_reciprocal().value();
@@ -925,10 +845,7 @@ mod tests {
         // A harmonic beyond the block is off by itself.
         let mut shaken = certificate.clone();
         shaken.cosines[41] += Integer::from(1) << (shaken.bits - 20);
-        let defect = System::of(shaken.problem())
-            .expect("a system")
-            .defect()
-            .value();
+        let defect = System::of(shaken.problem()).expect("a system").defect().value();
         assert!((defect * f64::from(1 << 20) - 1.0).abs() < 0.2, "{defect}");
     }
 
@@ -939,39 +856,19 @@ mod tests {
     }
 
     fn second_derivative_is_bounded(certificate: &DampedCertificate) {
-        let (h, within) = (
-            Bound::power_of_two(-20),
-            WORKING.fraction(&ratio(1, 1 << 20)),
-        );
+        let (h, within) = (Bound::power_of_two(-20), WORKING.fraction(&ratio(1, 1 << 20)));
         let system = System::of(certificate.problem()).expect("a system");
         let ball = system.equations.problem.motion.clone().widened(h);
         let slope = |expression: &Expr| expression.differentiate(coordinate()).expect("a slope");
         let norm = |expression: &Expr| {
-            system
-                .equations
-                .problem
-                .along(expression, &ball)
-                .expect("a value")
-                .norm()
+            system.equations.problem.along(expression, &ball).expect("a value").norm()
         };
         let (g, f) = (&certificate.damping, &certificate.force);
         // Of two directions, none, one or both of them the motion's: each has terms of its own.
         let bounds = [
             [Bound::ZERO, Bound::ZERO, norm(f), Bound::ZERO, Bound::ZERO],
-            [
-                norm(g),
-                Bound::ZERO,
-                Bound::ZERO,
-                norm(&slope(f)),
-                Bound::ZERO,
-            ],
-            [
-                Bound::ZERO,
-                norm(&slope(g)),
-                Bound::ZERO,
-                Bound::ZERO,
-                norm(&slope(&slope(f))),
-            ],
+            [norm(g), Bound::ZERO, Bound::ZERO, norm(&slope(f)), Bound::ZERO],
+            [Bound::ZERO, norm(&slope(g)), Bound::ZERO, Bound::ZERO, norm(&slope(&slope(f)))],
         ]
         .map(|norms| system.curvature(norms, h).value());
         let directions = directions(&system, certificate.highest + 6);

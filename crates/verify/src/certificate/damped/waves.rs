@@ -51,13 +51,9 @@ pub(super) fn in_waves(
         {
             let argument = children[0].expand()?;
             let rate = argument.differentiate(time)?.expand()?;
-            let times = rate
-                .as_number()
-                .map(|rate| rate / frequency)
-                .filter(Rational::is_integer);
-            let times = times
-                .and_then(|times| times.to_integer().to_i32())
-                .ok_or_else(|| other(node))?;
+            let times = rate.as_number().map(|rate| rate / frequency).filter(Rational::is_integer);
+            let times =
+                times.and_then(|times| times.to_integer().to_i32()).ok_or_else(|| other(node))?;
             let [cosine, sine] = multiple(own, times).ok_or_else(|| other(node))?;
             // cos(k Omega t + b) and sin of the same, b all the rest.
             let rest = argument.substitute(time, &Expr::zero())?;

@@ -130,18 +130,14 @@ impl Contact {
         const FIRST: u32 = 5;
         const SMALLEST: u32 = 12;
         // Middles and halves of the pieces, in units of 2^-halvings.
-        let mut pieces: Vec<(u32, u64)> = (0..1 << (FIRST - 1))
-            .map(|piece| (FIRST, 2 * piece + 1))
-            .collect();
+        let mut pieces: Vec<(u32, u64)> =
+            (0..1 << (FIRST - 1)).map(|piece| (FIRST, 2 * piece + 1)).collect();
         let mut integral = Ball::zero();
         while let Some((halvings, middle)) = pieces.pop() {
             match self.piece(qm, halvings, middle) {
                 Some(part) => integral = sum(&integral, &part),
                 None if halvings < SMALLEST => {
-                    pieces.extend([
-                        (halvings + 1, 2 * middle - 1),
-                        (halvings + 1, 2 * middle + 1),
-                    ]);
+                    pieces.extend([(halvings + 1, 2 * middle - 1), (halvings + 1, 2 * middle + 1)]);
                 }
                 None => return Err(NotEnclosed::Digits),
             }
@@ -155,10 +151,7 @@ impl Contact {
     fn piece(&self, qm: &Ball, halvings: u32, middle: u64) -> Option<Ball> {
         let half = WORKING.dyadic(&Integer::from(1), halvings as usize);
         let centre = WORKING.scaled(&half, i64::try_from(middle).ok()?);
-        let whole = Ball {
-            radius: WORKING.magnitude(&half),
-            ..centre.clone()
-        };
+        let whole = Ball { radius: WORKING.magnitude(&half), ..centre.clone() };
         // int_{-1}^1 c_k u^k du is 2 c_k/(k + 1), or nothing.
         let last = self.integrand(qm, &whole, &half)?.pop()?;
         let left = WORKING.magnitude(&WORKING.scaled(&last, 2));
@@ -166,14 +159,10 @@ impl Contact {
             return None;
         }
         let mut integral = Ball::zero();
-        for (k, coefficient) in (0..)
-            .zip(self.integrand(qm, &centre, &half)?.iter().take(ORDER))
-            .step_by(2)
+        for (k, coefficient) in
+            (0..).zip(self.integrand(qm, &centre, &half)?.iter().take(ORDER)).step_by(2)
         {
-            integral = sum(
-                &integral,
-                &WORKING.divided(&WORKING.scaled(coefficient, 2), k + 1),
-            );
+            integral = sum(&integral, &WORKING.divided(&WORKING.scaled(coefficient, 2), k + 1));
         }
         integral.radius += left;
         Some(product(&integral, &half))
@@ -187,10 +176,7 @@ impl Contact {
             WORKING.scaled(&product(w, half), -2),
             WORKING.scaled(&product(half, half), -1),
         ];
-        let q: Vec<Ball> = shape
-            .iter()
-            .map(|coefficient| product(qm, coefficient))
-            .collect();
+        let q: Vec<Ball> = shape.iter().map(|coefficient| product(qm, coefficient)).collect();
         let (square, deepest) = (multiplied(&q, &q), product(qm, qm));
         let half = |series: Vec<Ball>| -> Vec<Ball> {
             series.iter().map(|ball| WORKING.divided(ball, 2)).collect()
@@ -224,10 +210,7 @@ impl Contact {
 
 /// The middle alone, of what is only a guess.
 fn without_radius(ball: Ball) -> Ball {
-    Ball {
-        radius: Bound::ZERO,
-        ..ball
-    }
+    Ball { radius: Bound::ZERO, ..ball }
 }
 
 /// Whether every number of the ball is positive.
@@ -252,9 +235,7 @@ fn added(left: Vec<Ball>, right: &[Ball]) -> Vec<Ball> {
     let count = left.len().max(right.len());
     let zero = Ball::zero();
     let term = |series: &[Ball], k: usize| series.get(k).unwrap_or(&zero).clone();
-    (0..count)
-        .map(|k| sum(&term(&left, k), &term(right, k)))
-        .collect()
+    (0..count).map(|k| sum(&term(&left, k), &term(right, k))).collect()
 }
 
 /// The product up to the power [`ORDER`].
@@ -292,9 +273,7 @@ fn even_function(y: &[Ball], p: u32, largest: Bound) -> Option<Vec<Ball>> {
     for k in (1..count).rev() {
         let factor = (2 * k + p) * (2 * k + p - 1);
         let next = multiplied(&series, &square);
-        let next = next
-            .iter()
-            .map(|ball| WORKING.scaled(&WORKING.divided(ball, factor), -1));
+        let next = next.iter().map(|ball| WORKING.scaled(&WORKING.divided(ball, factor), -1));
         series = shifted(next.collect(), &one);
     }
     series.resize(ORDER + 1, Ball::zero());
@@ -311,10 +290,7 @@ fn inverse_root(series: &[Ball]) -> Option<Vec<Ball>> {
         let mut total = Ball::zero();
         for k in 1..=n.min(series.len() - 1) {
             let factor = i64::try_from(k).ok()? - 2 * i64::try_from(n).ok()?;
-            total = sum(
-                &total,
-                &WORKING.scaled(&product(&series[k], &terms[n - k]), factor),
-            );
+            total = sum(&total, &WORKING.scaled(&product(&series[k], &terms[n - k]), factor));
         }
         let total = WORKING.divided(&total, u32::try_from(2 * n).ok()?);
         terms.push(WORKING.quotient(&total, first)?);
@@ -370,39 +346,20 @@ mod tests {
         let one = multiplied(&multiplied(&root, &root), &series);
         assert_eq!(one.len(), ORDER + 1);
         for (k, coefficient) in one.iter().enumerate() {
-            assert!(
-                holds(
-                    coefficient,
-                    &Rational::from_integer(i64::from(k == 0).into())
-                ),
-                "{k}"
-            );
+            assert!(holds(coefficient, &Rational::from_integer(i64::from(k == 0).into())), "{k}");
         }
-        let wide = Ball {
-            radius: Bound::exactly(0.25),
-            ..ball(9, 4)
-        };
+        let wide = Ball { radius: Bound::exactly(0.25), ..ball(9, 4) };
         let root = inverse_root(&[wide.clone(), ball(1, 3)]).expect("a root");
         for number in [2.0_f64, 2.25, 2.5] {
             // The coefficients of (c + u/3)^(-1/2).
-            let exact = [
-                number.powf(-0.5),
-                -number.powf(-1.5) / 6.0,
-                number.powf(-2.5) / 24.0,
-            ];
+            let exact = [number.powf(-0.5), -number.powf(-1.5) / 6.0, number.powf(-2.5) / 24.0];
             for (ball, exact) in root.iter().zip(exact) {
                 assert!(
                     (to_f64(&WORKING.middle(ball)) - exact).abs() <= ball.radius.value() + 1e-15
                 );
             }
         }
-        assert!(
-            inverse_root(&[Ball {
-                radius: Bound::exactly(3.0),
-                ..wide
-            }])
-            .is_none()
-        );
+        assert!(inverse_root(&[Ball { radius: Bound::exactly(3.0), ..wide }]).is_none());
     }
 
     /// What is left out of the series of a function is in the radii: fewer terms have wider ones,
@@ -413,11 +370,8 @@ mod tests {
         // |1/3 + u/2| <= 1 for |u| <= 1, and 4 bounds it as well.
         for largest in [1.0, 4.0] {
             let cosine = even_function(&y, 0, Bound::exactly(largest)).expect("a series");
-            let exact = [
-                (1.0_f64 / 3.0).cos(),
-                -(1.0_f64 / 3.0).sin() / 2.0,
-                -(1.0_f64 / 3.0).cos() / 8.0,
-            ];
+            let exact =
+                [(1.0_f64 / 3.0).cos(), -(1.0_f64 / 3.0).sin() / 2.0, -(1.0_f64 / 3.0).cos() / 8.0];
             for (ball, exact) in cosine.iter().zip(exact) {
                 assert!((WORKING.nearest(ball) - exact).abs() < 1e-15);
             }

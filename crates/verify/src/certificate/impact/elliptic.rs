@@ -25,14 +25,8 @@ pub(super) fn carlson(x: &Ball, y: &Ball, z: &Ball) -> Option<Ball> {
     let mut numbers = [x.clone(), y.clone(), z.clone()];
     for _ in 0..WORKING.bits.div_ceil(2) {
         let [a, b, c] = [root(&numbers[0])?, root(&numbers[1])?, root(&numbers[2])?];
-        let products = [
-            WORKING.product(&a, &b),
-            WORKING.product(&b, &c),
-            WORKING.product(&c, &a),
-        ];
-        let shift = products
-            .iter()
-            .fold(Ball::zero(), |sum, term| WORKING.sum(&sum, term));
+        let products = [WORKING.product(&a, &b), WORKING.product(&b, &c), WORKING.product(&c, &a)];
+        let shift = products.iter().fold(Ball::zero(), |sum, term| WORKING.sum(&sum, term));
         numbers = numbers.map(|number| WORKING.divided(&WORKING.sum(&number, &shift), 4));
     }
     let [x, mut y, z] = numbers;

@@ -107,10 +107,11 @@ pub fn enclose_impact(
     if !amplitude.is_positive() || !is_positive(&WORKING.difference(&pi, &release)) {
         return Err(NotEnclosed::Release);
     }
-    let horizontal = is_positive(&WORKING.difference(
-        &pi,
-        &WORKING.fraction(&(barrier.abs() * Rational::from_integer(2.into()))),
-    ));
+    let horizontal =
+        is_positive(&WORKING.difference(
+            &pi,
+            &WORKING.fraction(&(barrier.abs() * Rational::from_integer(2.into()))),
+        ));
     if barrier.abs() >= *amplitude || !horizontal {
         return Err(NotEnclosed::Barrier);
     }
@@ -119,12 +120,8 @@ pub fn enclose_impact(
     let speed_squared = WORKING.scaled(&WORKING.difference(&waves[1], &cosine), 2);
     let speed = WORKING.root(&speed_squared, 2).ok_or(NotEnclosed::Digits)?;
     let time_to_contact = flight(amplitude, barrier).ok_or(NotEnclosed::Digits)?;
-    let contact = Contact {
-        barrier: place,
-        stiffness: WORKING.fraction(stiffness),
-        speed_squared,
-        waves,
-    };
+    let contact =
+        Contact { barrier: place, stiffness: WORKING.fraction(stiffness), speed_squared, waves };
     let qm = contact.root_of_depth()?;
     let duration = contact.duration(&qm)?;
     let period = WORKING.sum(&WORKING.scaled(&time_to_contact, 2), &duration);
@@ -142,9 +139,7 @@ fn flight(amplitude: &Rational, place: &Rational) -> Option<Ball> {
     let half = Rational::new(1.into(), 2.into());
     let waves = |angle: &Rational| sine_and_cosine(&WORKING.fraction(&(angle * &half)));
     let ([modulus, cosine], [sine, cosine_there]) = (waves(amplitude)?, waves(place)?);
-    let (one, squared) = (WORKING.integer(1), |ball: &Ball| {
-        WORKING.product(ball, ball)
-    });
+    let (one, squared) = (WORKING.integer(1), |ball: &Ball| WORKING.product(ball, ball));
     let quarter = elliptic::carlson(&Ball::zero(), &squared(&cosine), &one)?;
     let sine = WORKING.quotient(&sine, &modulus)?;
     let rest = WORKING.difference(&one, &squared(&sine));

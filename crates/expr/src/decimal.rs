@@ -215,7 +215,11 @@ pub fn decimal_of_long_fraction(value: &Rational) -> Option<String> {
     // m/10^k, where 2^a 5^b with the larger of a and b for k is the denominator.
     let mut rest = value.denom().clone();
     let mut decimals: i32 = 0;
-    for factor in [2, 5].map(Integer::from) {
+    for factor in [5, 2].map(Integer::from) {
+        // Beyond the fives no more than 25 twos: m has a five for each of them.
+        if rest.bits() > decimals.unsigned_abs() as u64 + 26 && factor == Integer::from(2) {
+            return None;
+        }
         let mut count = 0;
         while has_factor(&rest, &factor) {
             rest /= &factor;

@@ -468,9 +468,9 @@ impl System {
         Ok(system)
     }
 
-    /// The same equations with times that no step crosses: where the right sides turn faster than
-    /// can be seen from afar, as at both ends of a short pulse. In any order; what is no finite
-    /// number is left out.
+    /// Returns these equations with times that no step crosses: where the right sides turn faster
+    /// than can be seen from afar, as at both ends of a short pulse. The times come in any order;
+    /// those that are not finite are left out.
     #[must_use]
     pub fn with_critical_times(self, times: &[f64]) -> Self {
         let mut critical: Vec<f64> =

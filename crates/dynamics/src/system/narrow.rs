@@ -1,5 +1,5 @@
-//! What turns faster than the motion: a narrow well in place, a steep function of the velocity, a
-//! pulse that moves with the motion.
+//! Arguments that turn faster than the motion: a narrow well in place, a steep function of the
+//! velocity, a pulse that moves with the motion.
 //!
 //! ```text
 //! exp(u), tanh(u), 1/u, ...     u(t*) = 0 or u'(t*) = 0:   width  w = D/|u'|, sqrt(2 D/|u''|),   D: the change of u that matters
@@ -202,8 +202,8 @@ pub(super) fn end_of_step(kind: Kind, series: &[f64], length: f64) -> Option<f64
 /// The fractions of a step at which an argument is looked at first.
 pub(super) const COARSE: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// The same in parts of a step, from the values of the argument at [`COARSE`] and, if these differ
-/// much, anywhere.
+/// Returns the end of a step in parts of that step, from the values of the argument at [`COARSE`]
+/// and, if these differ much, anywhere.
 pub(super) fn end_by_values(
     kind: Kind,
     coarse: [f64; 5],
@@ -267,8 +267,8 @@ pub(super) fn end_by_values(
     }
 }
 
-/// Where an argument turns near a place, and its value there, by parabolas through closer and
-/// closer points.
+/// Returns the place near another one at which an argument turns, and its value there, by
+/// parabolas through closer and closer points.
 fn turned(place: f64, cell: f64, value: &impl Fn(f64) -> f64) -> (f64, f64) {
     const TIMES: usize = 4;
     let (mut place, mut apart) = (place.clamp(0.0, 1.0), cell / 8.0);

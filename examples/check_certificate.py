@@ -749,7 +749,7 @@ def check_formula(z, kind, bits, copies, r, omega, amplitude, start):
     """Every claim about the formula; r is the radius, omega or amplitude a ball."""
     formula = z["formula"]
     needed = {"law", "c", "phase_error"} | ({"amplitude_error"} if kind == DRIVEN else {"omega", "frequency_error", "drift"})
-    keys(formula, needed | ({"s"} if kind != MOTION else set()), {"values"}, "formula")
+    keys(formula, needed | ({"s"} if kind != MOTION else set()), {"values", "letters"}, "formula")
     for key in ("law", "values"):                # words, of which nothing is checked here
         demand(isinstance(formula.get(key, ""), str) and len(formula.get(key, "")) <= SIZES["file"], f"a text in {key}")
     c, s = integers(formula["c"], "formula.c"), integers(formula.get("s", []), "formula.s")

@@ -17,7 +17,7 @@ use lindstedt::{
 use num_traits::Signed as _;
 
 use super::answer::{Answer, no_such};
-use super::derive::{self, Names, Question, Solved};
+use super::derive::{self, Question, Solved};
 use super::files::width;
 use super::progress::{PROGRESS, with_progress};
 use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, read_at_most, tolerance};
@@ -90,8 +90,8 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ));
     }
     derive::with_motion(&arguments.question, &[("a certificate", true)])?;
-    let Solved { oscillator, values, solution, .. } =
-        derive::solved(&arguments.question, Names::Changed)?;
+    let Solved { oscillator, values, solution, letters } = derive::solved(&arguments.question)?;
+    let _letters = letters.in_force();
     let values = values.unwrap_or_default();
     // A proof of a driven motion is of the steady one alone, whose formula is that of slow
     // equations.

@@ -11,7 +11,7 @@ use lindstedt::verify::comparison::{self, Comparison};
 use lindstedt::{Oscillator, verify};
 
 use super::answer::{Answer, no_such};
-use super::derive::{Names, Numbered, formula, named, notes_on_letters, oscillator, with_values};
+use super::derive::{Numbered, formula, named, notes_on_letters, oscillator, with_values};
 use super::problem::problem;
 use super::{Common, Failure, Format, Outcome, Work, files, json_text, tolerance};
 
@@ -51,13 +51,11 @@ impl Work for Arguments {
 fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Compare)?;
-    let (oscillator, renamed) =
-        named(&oscillator(&formula, arguments.about.as_deref())?, Names::Kept)?;
+    let oscillator = named(&oscillator(&formula, arguments.about.as_deref())?)?;
     let letters = oscillator.letters();
     let _letters = letters.in_force();
     let coordinate = oscillator.coordinate;
-    let Numbered { oscillator, values, notes } =
-        with_values(oscillator, &renamed, &arguments.at, &problem)?;
+    let Numbered { oscillator, values, notes } = with_values(oscillator, &arguments.at, &problem)?;
     let values = values.unwrap_or_default();
     let small = arguments.small.as_deref().or(formula.small);
     if small.is_some() {

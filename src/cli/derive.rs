@@ -141,21 +141,12 @@ pub(super) struct Solved {
     pub letters: Letters,
 }
 
-/// How the names of an equation are kept from those of its answer.
-#[derive(Clone, Copy)]
-pub(super) enum Names {
-    /// The equation keeps its names, the answer takes others.
-    Kept,
-    /// The equation is written with other names.
-    Changed,
-}
-
 /// The answer to a question, with the oscillator and the values that are left once those that the
 /// equation needs stand in it.
-pub(super) fn solved(arguments: &Question, names: Names) -> Result<Solved, Failure> {
+pub(super) fn solved(arguments: &Question) -> Result<Solved, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Derive)?;
-    let (oscillator, renamed) = named(&oscillator(&formula, arguments.about.as_deref())?, names)?;
+    let oscillator = named(&oscillator(&formula, arguments.about.as_deref())?)?;
     let letters = oscillator.letters();
     let _letters = letters.in_force();
     let options = options(arguments, &formula, &oscillator)?;
@@ -167,7 +158,7 @@ pub(super) fn solved(arguments: &Question, names: Names) -> Result<Solved, Failu
     }
     let coordinate = oscillator.coordinate;
     let Numbered { oscillator, values, mut notes } =
-        with_values(oscillator, &renamed, &arguments.at, &problem)?;
+        with_values(oscillator, &arguments.at, &problem)?;
     // A name that is no function may be why the equation is refused.
     let misleading = notes.iter().filter(|note| matches!(note, Note::Misleading { .. }));
     let misleading: Vec<String> = misleading.map(Note::to_string).collect();
@@ -253,8 +244,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ("--format svg", arguments.common.format() == Format::Svg),
     ];
     with_motion(&arguments.question, &of_motion)?;
-    let Solved { oscillator, values, solution, letters } =
-        solved(&arguments.question, Names::Kept)?;
+    let Solved { oscillator, values, solution, letters } = solved(&arguments.question)?;
     let _letters = letters.in_force();
     let tolerance = tolerance(&arguments.common);
     let judged =
@@ -409,16 +399,9 @@ pub(super) fn oscillator(formula: &Formula, about: Option<&str>) -> Result<Oscil
 }
 
 /// The oscillator with the names of its equation that are those of something in an answer kept
-/// apart, or with other names for them, and what was renamed.
-pub(super) fn named(
-    oscillator: &Oscillator,
-    names: Names,
-) -> Result<(Oscillator, Vec<(Symbol, Symbol)>), Failure> {
-    let named = match names {
-        Names::Kept => oscillator.with_own_names_apart().map(|oscillator| (oscillator, vec![])),
-        Names::Changed => oscillator.with_names_of_answers_free(),
-    };
-    named.map_err(|error| Failure::advised(&error, error.help()))
+/// apart.
+pub(super) fn named(oscillator: &Oscillator) -> Result<Oscillator, Failure> {
+    oscillator.with_own_names_apart().map_err(|error| Failure::advised(&error, error.help()))
 }
 
 /// Notes on the letters that an answer takes in the place of usual ones, of those that it has; one
@@ -460,64 +443,39 @@ pub(super) struct Numbered {
     pub notes: Vec<Note>,
 }
 
-/// The oscillator with the values of the command line and of the file, under the names that its
-/// parameters have after renaming.
+/// The oscillator with the values of the command line and of the file.
 pub(super) fn with_values(
     oscillator: Oscillator,
-    renamed: &[(Symbol, Symbol)],
     at: &[String],
     problem: &Problem,
 ) -> Result<Numbered, Failure> {
     let values = exact_values(at, problem.values_of_motion())?;
-    let values = values.map(|values| with_new_names(values, renamed, &oscillator)).transpose()?;
-    let notes = notes_on_names(&oscillator, values.as_ref(), renamed);
+    let values = values.map(|values| as_meant(&values, &oscillator)).transpose()?;
+    let notes = notes_on_names(&oscillator, values.as_ref());
     let (oscillator, values) = with_known_equilibrium(oscillator, values)?;
     Ok(Numbered { oscillator, values, notes })
 }
 
-/// Notes on the names of parameters: those that are written otherwise, and those without a value
-/// that look like something else.
-fn notes_on_names(
-    oscillator: &Oscillator,
-    values: Option<&Values>,
-    renamed: &[(Symbol, Symbol)],
-) -> Vec<Note> {
-    let renamed = renamed.iter().map(|&(typed, written)| Note::Renamed { typed, written });
+/// Notes on the names of parameters without a value that look like something else.
+fn notes_on_names(oscillator: &Oscillator, values: Option<&Values>) -> Vec<Note> {
     let misleading = oscillator.misleading_parameters().into_iter();
     let without_value =
         |(name, _): &(Symbol, String)| values.is_none_or(|values| values.get(*name).is_none());
-    let misleading =
-        misleading.filter(without_value).map(|(name, instead)| Note::Misleading { name, instead });
-    renamed.chain(misleading).collect()
+    misleading
+        .filter(without_value)
+        .map(|(name, instead)| Note::Misleading { name, instead })
+        .collect()
 }
 
-/// The values under the names that they are meant for, those of renamed parameters under their new
-/// ones. Where nothing drives the motion a value of `A` is that of the amplitude.
-fn with_new_names(
-    values: Values,
-    renamed: &[(Symbol, Symbol)],
-    oscillator: &Oscillator,
-) -> Result<Values, Failure> {
-    let driven = oscillator.force.contains(Symbol::new("t"));
-    let mut renamed_values = Values::default();
+/// The values under the names that they are meant for.
+fn as_meant(values: &Values, oscillator: &Oscillator) -> Result<Values, Failure> {
+    let mut meant = Values::default();
     for (name, value) in values.iter() {
-        renamed_values
+        meant
             .insert(oscillator.meant(name), value.clone())
             .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
     }
-    for (typed, written) in renamed {
-        if typed.name() == "A" && !driven || renamed_values.get(*written).is_some() {
-            continue;
-        }
-        let (value, mut others) = renamed_values.split(&[*typed]);
-        if let Some(value) = value.into_values().next() {
-            others
-                .insert(*written, value)
-                .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
-        }
-        renamed_values = others;
-    }
-    Ok(renamed_values)
+    Ok(meant)
 }
 
 /// Where the equilibrium in symbols is not that of the numbers given, the equation with those

@@ -20,7 +20,7 @@ use crate::exact::bound::Bound;
 use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::{Integer, Rational};
 use crate::expr::Expr;
-use crate::solution::{Solution, constant_in_words};
+use crate::solution::{Note, Solution, constant_in_words};
 use crate::spelling::printable_in_line;
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -76,23 +76,23 @@ impl AnyCertificate<'_> {
         }
     }
 
-    /// What is proved to be periodic, in a letter.
-    fn motion(&self, letter: Symbol) -> String {
+    /// What is proved to be periodic, with the letters of the coordinate and of the frequency.
+    fn motion(&self, letter: Symbol, omega: &str) -> String {
         match self {
             Self::Motion(certificate) => format!(
-                "periodic from {letter}(0) = {}, {letter}'(0) = 0: {letter}(t) = X(omega*t)",
+                "periodic from {letter}(0) = {}, {letter}'(0) = 0: {letter}(t) = X({omega}*t)",
                 certificate.start
             ),
             Self::Damped(certificate) => match &certificate.drive {
-                None => format!("a limit cycle: {letter}(t) = X(omega*t)"),
+                None => format!("a limit cycle: {letter}(t) = X({omega}*t)"),
                 Some(drive) if drive.periods == 1 => {
                     format!(
-                        "periodic with the drive, of the frequency {}: {letter}(t) = X(Omega*t)",
+                        "periodic with the drive, of the frequency {}: {letter}(t) = X({omega}*t)",
                         drive.frequency
                     )
                 }
                 Some(drive) => format!(
-                    "periodic with {periods} periods of the drive, of the frequency {}: {letter}(t) = X(Omega*t/{periods})",
+                    "periodic with {periods} periods of the drive, of the frequency {}: {letter}(t) = X({omega}*t/{periods})",
                     drive.frequency,
                     periods = drive.periods
                 ),
@@ -101,14 +101,16 @@ impl AnyCertificate<'_> {
     }
 
     /// The object of the proof: exactly one of these is within r of the numbers of the certificate.
-    fn unknowns(&self) -> &'static str {
+    fn unknowns(&self, omega: &str) -> String {
         match self {
-            Self::Motion(_) => "pair (1/omega^2, X), X of cosines,",
+            Self::Motion(_) => format!("pair (1/{omega}^2, X), X of cosines,"),
             Self::Damped(certificate) => match (certificate.drive.is_some(), certificate.odd) {
-                (true, false) => "motion X",
-                (true, true) => "motion X of odd harmonics",
-                (false, false) => "pair (1/omega, X), the first harmonic a cosine,",
-                (false, true) => "pair (1/omega, X), X of odd harmonics and the first a cosine,",
+                (true, false) => "motion X".to_owned(),
+                (true, true) => "motion X of odd harmonics".to_owned(),
+                (false, false) => format!("pair (1/{omega}, X), the first harmonic a cosine,"),
+                (false, true) => {
+                    format!("pair (1/{omega}, X), X of odd harmonics and the first a cosine,")
+                }
             },
         }
     }
@@ -169,6 +171,19 @@ pub struct CertificateReport<'a> {
 }
 
 impl CertificateReport<'_> {
+    /// The letter of the frequency: that of the formula, of a driven motion that of the drive,
+    /// `Omega` where it is not known or a number.
+    fn omega(&self) -> String {
+        if self.certificate.harmonic().is_none() {
+            let letters = self.certificate.formula().map(|formula| formula.letters);
+            return letters.unwrap_or_default().frequency.to_string();
+        }
+        let slow = self.question.and_then(|(solution, _)| solution.modulation.as_ref());
+        let resonance = slow.and_then(|slow| slow.resonance.as_ref());
+        let named = resonance.filter(|resonance| !resonance.driving_frequency.symbols().is_empty());
+        named.map_or_else(|| "Omega".to_owned(), |named| named.driving_frequency.to_string())
+    }
+
     /// Whether the formula is proved to be within the tolerance; `None` where no formula is judged.
     pub fn verdict(&self) -> Option<Verdict> {
         let errors = self.certified.formula.as_ref()?;
@@ -195,6 +210,7 @@ impl CertificateReport<'_> {
 /// ```
 pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     let certificate = report.certificate;
+    let letters = certificate.formula().map(|formula| formula.letters).unwrap_or_default();
     let mut sections = match report.question {
         Some((solution, _)) => vec![
             vec![Block::Question(&solution.equation)],
@@ -209,13 +225,16 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
                     law.flat_map(|law| law_blocks(solution, law)).collect()
                 }
             },
+            notes_on_letters(solution),
         ],
         None => {
             let left = certificate.left_side();
             vec![vec![Block::Line(Cow::Owned(Line::equation(left, Expr::zero())))]]
         }
     };
+    sections.retain(|blocks| !blocks.is_empty());
     let letter = report.question.map_or(coordinate(), |(solution, _)| solution.coordinate());
+    let omega = report.omega();
     let values = report.question.map(|(_, at)| {
         let values: Vec<String> =
             at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
@@ -224,7 +243,7 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     let mut blocks = vec![Block::Heading("Proved".to_owned())];
     let at = values.filter(|values| !values.is_empty()).map(|values| ("at", values));
     let mut facts: Vec<(&str, String)> = at.into_iter().collect();
-    facts.push(("motion", certificate.motion(letter)));
+    facts.push(("motion", certificate.motion(letter, &omega)));
     match (&report.certified.amplitude, certificate.harmonic()) {
         (Some(amplitude), Some(harmonic)) => {
             let of =
@@ -232,7 +251,7 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
             facts.push(("amplitude", of + &enclosed(amplitude)));
             facts.push(("stability", "not proved".to_owned()));
         }
-        _ => facts.push(("omega", enclosed(&report.certified.frequency))),
+        _ => facts.push((letters.frequency.name(), enclosed(&report.certified.frequency))),
     }
     if let Some(exponent) = &report.certified.exponent {
         let of = match report.certified.formula {
@@ -253,14 +272,14 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     sections.push(blocks);
     sections.extend(report.validity.map(|validity| {
         let heading = Block::Heading("Proved for a range of amplitudes".to_owned());
-        vec![heading, Block::Facts(of_range(validity, report.tolerance))]
+        vec![heading, Block::Facts(of_range(validity, report))]
     }));
     let proof = report.certified.proof;
     let upper = |bound: crate::exact::Bound| rounded_up(bound.value(), 4);
     sections.push(vec![
         Block::Heading(format!(
             "The proof: exactly one {} within r of the certificate's",
-            certificate.unknowns()
+            certificate.unknowns(&omega)
         )),
         Block::Facts(
             [
@@ -279,7 +298,16 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
     Document { sections }
 }
 
-fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> {
+/// Notes on letters that are not the usual ones.
+fn notes_on_letters<'a>(solution: &Solution) -> Vec<Block<'a>> {
+    let notes = solution.validity.iter();
+    let notes = notes.filter(|note| matches!(note, Note::OtherLetter { .. }));
+    notes.map(|note| Block::Note(note.to_string())).collect()
+}
+
+fn of_range(validity: &Validity, report: &CertificateReport) -> Vec<(&'static str, String)> {
+    let letters = report.certificate.formula().map(|formula| formula.letters).unwrap_or_default();
+    let (omega, letter) = (letters.frequency, letters.amplitude);
     // The proof is of this place exactly: six digits, or the fraction.
     let amplitude = |value: &Rational| match rounded_fraction(value, 6) == *value {
         true => significant_fraction(value, 6),
@@ -291,25 +319,27 @@ fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> 
         true => inside.map(|end| significant_fraction(end, 6)),
         false => [&validity.from, &validity.to].map(ToString::to_string),
     };
-    let within = percent(tolerance);
+    let within = percent(report.tolerance);
     let beyond = match &validity.beyond {
         Beyond::Asked => None,
         Beyond::Further(place) => {
-            Some(format!("omega is off by more at A = {}, proved", amplitude(place)))
+            Some(format!("{omega} is off by more at {letter} = {}, proved", amplitude(place)))
         }
         Beyond::Open(place) => Some(format!(
-            "at A = {} omega is neither proved to be within nor beyond",
+            "at {letter} = {} {omega} is neither proved to be within nor beyond",
             amplitude(place)
         )),
-        Beyond::Unproved(place, reason) => Some(format!("at A = {}: {reason}", amplitude(place))),
+        Beyond::Unproved(place, reason) => {
+            Some(format!("at {letter} = {}: {reason}", amplitude(place)))
+        }
         Beyond::Stopped => Some("stopped before the end".to_owned()),
     };
-    let proved = format!("omega within {within} % for every A from {} to {}", from, to);
+    let proved = format!("{omega} within {within} % for every {letter} from {from} to {to}");
     let proved = match validity.intervals {
-        0 => "omega is not proved to be within the tolerance at the first amplitude".to_owned(),
+        0 => format!("{omega} is not proved to be within the tolerance at the first amplitude"),
         _ => proved,
     };
-    let intervals = format!("{} intervals of A, a proof each", validity.intervals);
+    let intervals = format!("{} intervals of {letter}, a proof each", validity.intervals);
     [("range", proved)]
         .into_iter()
         .chain(beyond.map(|words| ("beyond", words)))
@@ -319,6 +349,7 @@ fn of_range(validity: &Validity, tolerance: f64) -> Vec<(&'static str, String)> 
 
 fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str, String)> {
     let letter = report.question.map_or(coordinate(), |(solution, _)| solution.coordinate());
+    let omega = report.omega();
     let formula = report.certificate.formula().filter(|_| report.question.is_none());
     let formula = formula.map(|formula| numbers_of(formula, report)).unwrap_or_default();
     let copies = match report.certified.copies {
@@ -331,7 +362,7 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
         )),
     };
     let within = percent(report.tolerance);
-    let what = if errors.amplitude.is_some() { "amplitude" } else { "omega" };
+    let what = if errors.amplitude.is_some() { "amplitude" } else { &omega };
     let verdict = match report.verdict() {
         Some(Verdict::Pass) => format!("pass ({what} within {within} %, proved)"),
         _ if errors.relative.lower > report.tolerance => {
@@ -341,6 +372,10 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
     };
     let verdict = ("verdict", verdict);
     let deviation = rounded_up(errors.deviation.upper, 4);
+    let error_of_frequency = match omega.as_str() {
+        "omega" => "error of the formula's omega",
+        _ => "error of the formula's frequency",
+    };
     let facts = match errors.amplitude {
         Some(amplitude) => vec![
             ("error of the formula's amplitude", between(amplitude, "")),
@@ -349,7 +384,7 @@ fn of_formula(errors: &Errors, report: &CertificateReport) -> Vec<(&'static str,
             verdict,
         ],
         None => vec![
-            ("error of the formula's omega", between(errors.frequency, "")),
+            (error_of_frequency, between(errors.frequency, "")),
             ("relative error", between_percent(errors.relative)),
             ("largest deviation at one phase", between(errors.deviation, "")),
             (
@@ -384,7 +419,11 @@ fn numbers_of(formula: &JudgedFormula, report: &CertificateReport) -> Vec<(&'sta
     let omega = report.certified.formula.filter(|errors| errors.amplitude.is_none());
     let omega = omega.map(|_| {
         let omega = significant_fraction(&rounded_fraction(&number(&formula.frequency), 12), 12);
-        ("omega of the formula", omega)
+        let name = match formula.letters.frequency.name() {
+            "omega" => "omega of the formula",
+            _ => "frequency of the formula",
+        };
+        (name, omega)
     });
     let displacement = displacement([&formula.coefficients, &formula.sines], number);
     law.into_iter().chain(omega).chain([("X of the formula", displacement)]).collect()

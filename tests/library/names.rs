@@ -3,7 +3,9 @@
 
 use std::collections::BTreeMap;
 
+use lindstedt::certificate;
 use lindstedt::export::{json, latex, text};
+use lindstedt::expr::Expr;
 use lindstedt::method::numbers::evaluate;
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::Method;
@@ -487,21 +489,103 @@ fn letters_stand_in_every_format() {
     assert_eq!((read.law, read.displacement), (solution.law, solution.displacement));
 }
 
-/// Parameters called as the amplitude or the frequency of an answer are refused by the derivation,
-/// and taken under other names.
+/// The values under the names that they are meant for.
+fn meant(oscillator: &Oscillator, at: &str) -> lindstedt::Values {
+    let typed: lindstedt::Values = at.parse().expect("values");
+    let mut values = lindstedt::Values::default();
+    for (name, value) in typed.iter() {
+        values.insert(oscillator.meant(name), value.clone()).expect("a value");
+    }
+    values
+}
+
+/// A certificate of an equation with parameters or a coordinate called as something in its answer
+/// proves what that of the same equation with other names proves, of a law in the letters of the
+/// former, which its document says.
 #[test]
-fn parameters_with_names_of_answers_are_written_otherwise() {
-    let typed = Oscillator::parse("x'' + omega^2*x + a*x^3 = 0").expect("an equation");
-    assert!(solve(&typed, &Options::default()).is_err());
-    let (free, renamed) = typed.with_names_of_answers_free().expect("other names");
-    assert_eq!(renamed, [("a".into(), "a1".into()), ("omega".into(), "omega0".into())]);
-    let law = |oscillator: &Oscillator| {
-        let solution = solve(oscillator, &Options::default()).expect("a law");
-        solution.law.frequency_squared().expect("a polynomial").to_string()
-    };
-    let plain = Oscillator::parse("x'' + omega0^2*x + a1*x^3 = 0").expect("an equation");
-    assert_eq!(law(&free), law(&plain));
-    let driven = Oscillator::parse("x'' + x = A*cos(omega*t)").expect("an equation");
-    let (_, renamed) = driven.with_names_of_answers_free().expect("other names");
-    assert_eq!(renamed, [("A".into(), "A1".into()), ("omega".into(), "Omega".into())]);
+fn certificates_keep_the_letters_of_the_equation() {
+    let pairs = [
+        (
+            ("x'' + omega^2*x + A*x^3 = 0", "omega = 2, A = 1/10, C = 1"),
+            ("x'' + k^2*x + b*x^3 = 0", "k = 2, b = 1/10, A = 1"),
+            "Omega^2 = omega^2",
+        ),
+        (("A'' + sin(A) = 0", "C = 1"), ("x'' + sin(x) = 0", "A = 1"), "omega^2 = 1 - C^2/8"),
+        (
+            ("omega'' + omega + A*omega^2 = 0", "A = 1/10, C = 1/2"),
+            ("x'' + x + b*x^2 = 0", "b = 1/10, A = 1/2"),
+            "Omega^2 = 1 - 5*A^2*C^2/6",
+        ),
+    ];
+    for ((own, at), (plain, plain_at), law) in pairs {
+        let oscillator = Oscillator::parse(own).and_then(|typed| typed.with_own_names_apart());
+        let oscillator = oscillator.expect(own);
+        let solution = solve(&oscillator, &Options::default()).expect(own);
+        let (certificate, certified) =
+            certificate::certify(&oscillator, &solution, &meant(&oscillator, at)).expect(own);
+        let other = Oscillator::parse(plain).expect(plain);
+        let solution = solve(&other, &Options::default()).expect(plain);
+        let (expected, proved) =
+            certificate::certify(&other, &solution, &plain_at.parse().expect("values"))
+                .expect(plain);
+        assert_eq!(certified, proved, "{own}");
+        let mut formula = certificate.formula.clone().expect("a formula");
+        assert!(formula.law.starts_with(law), "{}", formula.law);
+        let expected_formula = expected.formula.clone().expect("a formula");
+        (formula.law, formula.letters, formula.values) = (
+            expected_formula.law.clone(),
+            expected_formula.letters,
+            expected_formula.values.clone(),
+        );
+        assert_eq!(formula, expected_formula, "{own}");
+        // As a document, and read from it.
+        let document = json::certificate(&certificate);
+        assert!(document.formula.as_ref().is_some_and(|formula| formula.letters.is_some()));
+        assert_eq!(document.read().as_ref(), Ok(&certificate), "{own}");
+        assert!(certificate::check(&certificate).expect("a proof").law_is_held, "{own}");
+        // An amplitude of the law that is not that of the motion is found under its own letter.
+        let mut forged = certificate;
+        let formula = forged.formula.as_mut().expect("a formula");
+        formula.law = formula.law.replace('C', "(C/2)");
+        let twice = |(name, value): (Symbol, &Expr)| match name.name() {
+            "C" => (name, value + value),
+            _ => (name, value.clone()),
+        };
+        let (names, doubled): (Vec<Symbol>, Vec<Expr>) = formula.values.iter().map(twice).unzip();
+        formula.values = lindstedt::Values::default();
+        for (name, value) in names.into_iter().zip(doubled) {
+            formula.values.insert(name, value).expect("a value");
+        }
+        let refused = certificate::check(&forged).expect_err("another amplitude");
+        assert!(refused.to_string().contains("amplitude"), "{refused}");
+    }
+}
+
+/// The letters of limit cycles and driven motions likewise.
+#[test]
+fn certificates_of_cycles_and_driven_motions_keep_the_letters() {
+    let cycle = "x'' - a*(1 - x^2)*x' + omega^2*x = 0";
+    let oscillator = Oscillator::parse(cycle).and_then(|typed| typed.with_own_names_apart());
+    let oscillator = oscillator.expect(cycle);
+    let solution = solve(&oscillator, &Options::default()).expect(cycle);
+    let at = meant(&oscillator, "a = 1/10, omega = 1");
+    let (certificate, _) = certificate::certify_cycle(&oscillator, &solution, &at).expect(cycle);
+    let document = json::damped_certificate(&certificate);
+    assert_eq!(document.read().as_ref(), Ok(&certificate));
+    let formula = document.formula.expect("a formula");
+    assert!(formula.law.starts_with("Omega"), "{}", formula.law);
+    assert!(certificate::check_damped(&certificate).expect("a proof").law_is_held);
+
+    let driven = "A'' + A'/10 + A + A^3/10 - 3*cos(omega*t)/10 = 0";
+    let oscillator = Oscillator::parse(driven).and_then(|typed| typed.with_own_names_apart());
+    let oscillator = oscillator.expect(driven);
+    let at = meant(&oscillator, "omega = 6/5");
+    let options = lindstedt::method::with_resonance_at(&oscillator, &Options::default(), &at);
+    let solution = solve(&oscillator, &options.expect(driven)).expect(driven);
+    let (certificate, certified) =
+        certificate::certify_driven(&oscillator, &solution, &at).expect(driven);
+    let formula = certificate.formula.as_ref().expect("a formula");
+    assert!(formula.law.starts_with("A = ") && formula.law.contains("omega*t"), "{}", formula.law);
+    assert!(certified.law_is_held);
+    assert_eq!(json::damped_certificate(&certificate).read().as_ref(), Ok(&certificate));
 }

@@ -439,50 +439,6 @@ impl Oscillator {
         Ok(oscillator)
     }
 
-    /// Returns the equation with other names for the parameters that bear the name of something in
-    /// an answer, the amplitudes `A` and `a` or the frequency `omega`, and for each of them the
-    /// name that was typed and the one that is written.
-    ///
-    /// The `omega` of a drive becomes `Omega`, that of a linear force `omega0`, all others get an
-    /// index.
-    ///
-    /// # Errors
-    /// An expression beyond all limits.
-    ///
-    /// ```
-    /// # use lindstedt_oscillator as lindstedt;
-    /// use lindstedt::Oscillator;
-    ///
-    /// let (oscillator, renamed) = Oscillator::parse("x'' + omega^2*x + A*x^3 = 0")?.with_names_of_answers_free()?;
-    /// assert_eq!(oscillator.equation().to_string(), "x'' + omega0^2*x + A1*x^3 = 0");
-    /// assert_eq!(renamed, [("A".into(), "A1".into()), ("omega".into(), "omega0".into())]);
-    /// # Ok::<(), lindstedt::oscillator::OscillatorError>(())
-    /// ```
-    pub fn with_names_of_answers_free(
-        &self,
-    ) -> Result<(Self, Vec<(Symbol, Symbol)>), OscillatorError> {
-        let mut taken = self.names();
-        let driven = self.force.contains(Symbol::new("t"));
-        let slope = self.force.differentiate(self.coordinate)?;
-        let linear = at_rest(&slope, self.coordinate).unwrap_or_else(|_| Expr::zero());
-        let mut renamed = Vec::new();
-        for name in self.parameters.iter().filter(|name| NAMES_OF_ANSWERS.contains(&name.name())) {
-            let wanted = match (name.name(), driven) {
-                ("omega", true) => "Omega".to_owned(),
-                ("omega", false) if linear.contains(*name) => "omega0".to_owned(),
-                _ => format!("{name}1"),
-            };
-            let written = fresh(&wanted, &taken);
-            taken.push(written);
-            renamed.push((*name, written));
-        }
-        let values = renamed.iter().map(|(typed, written)| (*typed, Expr::from(*written)));
-        let mut oscillator = self.with_values(&values.collect())?;
-        oscillator.parameters.extend(renamed.iter().map(|(_, written)| *written));
-        oscillator.parameters.sort_unstable();
-        Ok((oscillator, renamed))
-    }
-
     /// Returns the equation with the names that an answer uses for its amplitudes and its
     /// frequency, `A`, `a` and `omega`, kept [apart](Symbol::apart) from those of the answer: the
     /// answer then writes other [`Letters`].

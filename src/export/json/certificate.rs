@@ -12,7 +12,9 @@ use serde::{Deserialize, Serialize};
 use super::number::expression;
 use super::schema::check_kind;
 use super::{JsonError, Kind, unexpected};
-use crate::certificate::{Certificate, HIGHEST_HARMONIC, JudgedFormula, MOST_BITS, coordinate};
+use crate::certificate::{
+    Certificate, HIGHEST_HARMONIC, JudgedFormula, LettersOfLaw, MOST_BITS, coordinate,
+};
 use crate::decimal::{exact_decimal, neighbours, significant_fraction};
 use crate::exact::{Integer, Rational};
 use crate::expr::Expr;
@@ -100,6 +102,10 @@ pub struct FormulaDocument {
     /// behind commas, which has to give `omega` at `values` to its last digits. What is of another
     /// form is words: nothing is checked against them.
     pub law: String,
+    /// The letters of the answer in the law, where the equation has the usual ones, `A` or `omega`,
+    /// for something of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub letters: Option<LettersDocument>,
     /// The values of the letters in the law, such as `A = 3/2, k = pi/5`; A is x(0) less a place of
     /// rest.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -114,6 +120,18 @@ pub struct FormulaDocument {
     pub frequency_error: [String; 2],
     /// max |X~'| |omega - omega~|: |x(t) - x~(t)| <= phase_error + drift |t| for all t.
     pub drift: [String; 2],
+}
+
+/// The letters of an answer in its law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "LettersOfLaw"))]
+pub struct LettersDocument {
+    /// That of the amplitude, whose value is x(0) less a place of rest.
+    pub amplitude: String,
+    /// That of the frequency, on the left side of the law.
+    pub frequency: String,
 }
 
 /// The document of kind `certificate`.
@@ -184,10 +202,31 @@ pub(super) fn read_values(text: &str) -> Result<Values, JsonError> {
         .map_or_else(|| unexpected("values", "names with numbers, such as `A = 3/2, k = pi/5`"), Ok)
 }
 
+/// The letters of a law as text, where they are not the usual ones.
+pub(super) fn letters(letters: LettersOfLaw) -> Option<LettersDocument> {
+    let document = LettersDocument {
+        amplitude: letters.amplitude.name().to_owned(),
+        frequency: letters.frequency.name().to_owned(),
+    };
+    (letters != LettersOfLaw::default()).then_some(document)
+}
+
+/// The letters of a law that are said; the usual ones if none are.
+pub(super) fn read_letters(document: Option<&LettersDocument>) -> Result<LettersOfLaw, JsonError> {
+    let Some(LettersDocument { amplitude, frequency }) = document else {
+        return Ok(LettersOfLaw::default());
+    };
+    LettersOfLaw::of_names(amplitude, frequency).map_or_else(
+        || unexpected("letters", "letters that an answer takes, such as C and Omega"),
+        Ok,
+    )
+}
+
 /// The document of a formula that is judged.
 fn formula(formula: &JudgedFormula) -> FormulaDocument {
     FormulaDocument {
         law: formula.law.clone(),
+        letters: letters(formula.letters),
         values: values(&formula.values),
         omega: formula.frequency.to_string(),
         c: texts(&formula.coefficients),
@@ -280,6 +319,7 @@ impl FormulaDocument {
     fn read(&self) -> Result<JudgedFormula, JsonError> {
         Ok(JudgedFormula {
             law: self.law.clone(),
+            letters: read_letters(self.letters.as_ref())?,
             values: read_values(&self.values)?,
             frequency: integer(&self.omega, "omega")?,
             coefficients: integers(&self.c, "formula.c")?,

@@ -9,8 +9,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::certificate::{
-    ForceDocument, check_sizes, claim, claims, decimal, force, fraction, integer, integers, matrix,
-    range, read_values, texts, values,
+    ForceDocument, LettersDocument, check_sizes, claim, claims, decimal, force, fraction, integer,
+    integers, letters, matrix, range, read_letters, read_values, texts, values,
 };
 use super::schema::check_kind;
 use super::{JsonError, Kind, unexpected};
@@ -116,6 +116,10 @@ pub struct DampedFormulaDocument {
     /// drive `c` and `s`, at `values` to the last digits. What is of another form is words: nothing
     /// is checked against them.
     pub law: String,
+    /// The letters of the answer in the law, where the equation has the usual ones, `A` or `omega`,
+    /// for something of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub letters: Option<LettersDocument>,
     /// The values of the letters in the law.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub values: String,
@@ -192,6 +196,7 @@ pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateD
 fn formula(formula: &JudgedFormula, is_driven: bool) -> DampedFormulaDocument {
     DampedFormulaDocument {
         law: formula.law.clone(),
+        letters: letters(formula.letters),
         values: values(&formula.values),
         omega: (!is_driven).then(|| formula.frequency.to_string()),
         c: texts(&formula.coefficients),
@@ -218,6 +223,7 @@ impl DampedFormulaDocument {
         };
         Ok(JudgedFormula {
             law: self.law.clone(),
+            letters: read_letters(self.letters.as_ref())?,
             values: read_values(&self.values)?,
             frequency: integer(self.omega.as_deref().unwrap_or("0"), "omega")?,
             coefficients: integers(&self.c, "formula.c")?,

@@ -19,6 +19,24 @@ pub const FIRST_HARMONIC: Symbol = Symbol("a");
 /// The frequency.
 pub const FREQUENCY: Symbol = Symbol("omega");
 
+/// What the amplitude at the start is called where `A` is taken: the first of these that is free,
+/// else `A_`, `A__` and so on; the others likewise.
+const AMPLITUDES: [&str; 3] = ["C", "X", "A_0"];
+const FIRST_HARMONICS: [&str; 3] = ["r", "rho", "a_1"];
+/// The first of them belongs to a drive.
+const FREQUENCIES: [&str; 3] = ["Omega", "nu", "w"];
+
+/// Returns whether an answer to some equation has this name for that which is usually called so.
+pub fn may_stand_for(name: &str, usual: Symbol) -> bool {
+    let others: &[&str] = match usual {
+        AMPLITUDE => &AMPLITUDES,
+        FIRST_HARMONIC => &FIRST_HARMONICS,
+        FREQUENCY => &FREQUENCIES,
+        _ => &[],
+    };
+    others.contains(&name) || name.trim_end_matches('_') == usual.name()
+}
+
 /// The letters of an answer, as they are printed.
 ///
 /// ```
@@ -85,10 +103,10 @@ impl Letters {
             taken.push(letter);
             letter
         };
-        let frequencies: &[&str] = if driven { &["nu", "w"] } else { &["Omega", "nu", "w"] };
+        let frequencies = if driven { &FREQUENCIES[1..] } else { &FREQUENCIES[..] };
         Self {
-            amplitude: free(AMPLITUDE, &["C", "X", "A_0"]),
-            first_harmonic: free(FIRST_HARMONIC, &["r", "rho", "a_1"]),
+            amplitude: free(AMPLITUDE, &AMPLITUDES),
+            first_harmonic: free(FIRST_HARMONIC, &FIRST_HARMONICS),
             frequency: free(FREQUENCY, frequencies),
         }
     }

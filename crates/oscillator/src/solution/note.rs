@@ -21,14 +21,6 @@ pub enum Note {
     FirstStep(FirstStep),
     /// A one-term motion whose equation is met at one instant.
     Collocated(Instant),
-    /// A parameter that is written with another name than the one typed, which the answer uses for
-    /// something else.
-    Renamed {
-        /// The name in the equation as it was typed.
-        typed: Symbol,
-        /// The name in the answer.
-        written: Symbol,
-    },
     /// A letter that the answer writes otherwise than usual, since the equation has the usual one
     /// for something of its own.
     OtherLetter {
@@ -497,13 +489,6 @@ impl fmt::Display for Note {
         match self {
             Self::FirstStep(step) => step.fmt(formatter),
             Self::Collocated(instant) => instant.fmt(formatter),
-            Self::Renamed { typed, written } => {
-                let meaning = if typed.name() == "omega" { "frequency" } else { "amplitude" };
-                write!(
-                    formatter,
-                    "the parameter {typed} of the equation is written {written}: {typed} is the {meaning} in the answer"
-                )
-            }
             Self::OtherLetter {
                 usual,
                 written,

@@ -12,7 +12,7 @@ use nalgebra::DMatrix;
 use num_traits::{ToPrimitive as _, Zero as _};
 
 use super::force::along;
-use super::formula::JudgedFormula;
+use super::formula::{JudgedFormula, LettersOfLaw};
 use super::fourier_series::WORKING;
 use super::radii_polynomial::{Correction, NotProved};
 use super::theorem::{correction, prove};
@@ -216,6 +216,7 @@ fn certified_motion(
     at: &Values,
     with_formula: bool,
 ) -> Result<(Certificate, Certified), NotCertified> {
+    let _letters = oscillator.letters().in_force();
     let question = Question::of(oscillator, solution, at)?;
     let judged = match with_formula {
         true => Some(judged(solution, at, BITS)?),
@@ -349,7 +350,7 @@ pub(super) fn judged(
     formula.frequency = units(motion.frequency(), bits);
     // Where the law, as text, can be evaluated, that is the formula; a double of it may have lost
     // digits.
-    match law::frequency(&formula.law, &formula.values) {
+    match law::frequency(&formula) {
         Some(exact) if is_near(&exact, motion.frequency()) => {
             formula.frequency = Balls { bits }.converted(&exact, WORKING).middle;
         }
@@ -372,6 +373,7 @@ pub(super) fn unclaimed([cosines, sines]: [&[f64]; 2], bits: usize) -> JudgedFor
     let nothing = || [Rational::zero(), Rational::zero()];
     JudgedFormula {
         law: String::new(),
+        letters: LettersOfLaw::in_force(),
         values: Values::default(),
         frequency: Integer::zero(),
         coefficients: in_units(cosines),

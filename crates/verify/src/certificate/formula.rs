@@ -24,6 +24,8 @@ use crate::exact::ball::{Ball, Balls};
 use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
 use crate::exact::{Integer, Rational};
+use crate::symbol::Symbol;
+use crate::symbol::letters::{AMPLITUDE, FREQUENCY, may_stand_for};
 use crate::values::Values;
 
 /// A number with everything that it may be.
@@ -71,6 +73,37 @@ pub struct Range {
     pub upper: f64,
 }
 
+/// How the amplitude and the frequency are written in a law, beside the letters of the equation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LettersOfLaw {
+    /// The amplitude at the start, `A` where the equation has no such name.
+    pub amplitude: Symbol,
+    /// The frequency, `omega` likewise.
+    pub frequency: Symbol,
+}
+
+impl LettersOfLaw {
+    /// The letters of these names; `None` if an answer never takes them.
+    pub fn of_names(amplitude: &str, frequency: &str) -> Option<Self> {
+        let taken = [(amplitude, AMPLITUDE), (frequency, FREQUENCY)];
+        let belongs = taken.iter().all(|(name, usual)| may_stand_for(name, *usual));
+        belongs
+            .then(|| Self { amplitude: Symbol::new(amplitude), frequency: Symbol::new(frequency) })
+    }
+
+    /// The letters that are in force on this thread.
+    pub(super) fn in_force() -> Self {
+        let written = |usual: Symbol| Symbol::new(usual.written());
+        Self { amplitude: written(AMPLITUDE), frequency: written(FREQUENCY) }
+    }
+}
+
+impl Default for LettersOfLaw {
+    fn default() -> Self {
+        Self { amplitude: AMPLITUDE, frequency: FREQUENCY }
+    }
+}
+
 /// A formula with numbers, and what is claimed of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedFormula {
@@ -78,6 +111,8 @@ pub struct JudgedFormula {
     /// t, with definitions of letters behind commas. A text of another form is words, of which
     /// nothing is proved.
     pub law: String,
+    /// The letters of the answer in the law.
+    pub letters: LettersOfLaw,
     /// The values of the letters in the law.
     pub values: Values,
     /// The angular frequency, an integer times `2^-bits` of the certificate.

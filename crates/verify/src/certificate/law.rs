@@ -16,6 +16,7 @@ use crate::expr::{Expr, parse_expression};
 use crate::solution::law::Shown;
 use crate::solution::{Definition, Solution};
 use crate::symbol::Symbol;
+use crate::symbol::letters::FREQUENCY;
 use crate::values::Values;
 
 /// A longer text is words.
@@ -30,15 +31,16 @@ pub(super) fn of_frequency(solution: &Solution, at: &Values) -> (String, Values)
     // Rounded coefficients are printed with six digits: here all of them are needed.
     let exactly = match solution.law.in_one_line() {
         _ if !solution.numerical || solution.slow().is_some() => None,
-        Shown::Squared(law) => Some(("omega^2", Expr::from(law))),
-        Shown::Frequency(law) => Some(("omega", Expr::from(law))),
-        Shown::Closed(form) if form.squared => Some(("omega^2", form.value.clone())),
-        Shown::Closed(form) => Some(("omega", form.value.clone())),
+        Shown::Squared(law) => Some(("^2", Expr::from(law))),
+        Shown::Frequency(law) => Some(("", Expr::from(law))),
+        Shown::Closed(form) if form.squared => Some(("^2", form.value.clone())),
+        Shown::Closed(form) => Some(("", form.value.clone())),
         _ => None,
     };
     let law = match exactly {
-        Some((name, value)) => {
-            with_definitions(solution, name, &value, |definition| definition.meaning.to_string())
+        Some((power, value)) => {
+            let name = format!("{FREQUENCY}{power}");
+            with_definitions(solution, &name, &value, |definition| definition.meaning.to_string())
         }
         None => solution.formula(),
     };
@@ -59,17 +61,19 @@ pub(super) fn with_definitions(
     std::iter::once(format!("{name} = {value}")).chain(definitions).collect()
 }
 
-/// Selects the values whose letters stand in a law; none for words.
+/// Selects the values whose letters stand in a law, under the names that they have there; none for
+/// words.
 pub(super) fn values_in(law: &str, at: &Values) -> Values {
     let letters = read(law).map(|(_, value)| value.symbols()).unwrap_or_default();
-    at.split(&letters.into_iter().collect::<Vec<Symbol>>()).0.into_iter().fold(
-        Values::default(),
-        |mut values, (name, value)| {
+    let mut values = Values::default();
+    for (name, value) in at.iter() {
+        let name = Symbol::new(name.written());
+        if letters.contains(&name) {
             // A value is one.
-            let _ = values.insert(name, value);
-            values
-        },
-    )
+            let _ = values.insert(name, value.clone());
+        }
+    }
+    values
 }
 
 /// The left side of a law, and its right side with the definitions put in.
@@ -119,13 +123,14 @@ pub(super) fn with_values(law: &str, values: &Values) -> Option<(String, Expr)> 
     Some((name, value.substitute_all(&values).ok()?))
 }
 
-/// Evaluates omega by its law; `None` for words, and if the law has no positive value.
-pub(super) fn frequency(law: &str, values: &Values) -> Option<Ball> {
-    let (name, value) = with_values(law, values)?;
+/// Evaluates the frequency, by its letter, by the law of a formula; `None` for words, and if the
+/// law has no positive value.
+pub(super) fn frequency(formula: &JudgedFormula) -> Option<Ball> {
+    let (name, value) = with_values(&formula.law, &formula.values)?;
     let value = number(&value)?;
-    match name.as_str() {
-        "omega" => Some(value),
-        "omega^2" => WORKING.root(&value, 2),
+    match name.strip_prefix(formula.letters.frequency.name())? {
+        "" => Some(value),
+        "^2" => WORKING.root(&value, 2),
         _ => None,
     }
 }
@@ -152,7 +157,7 @@ pub(super) fn number(expression: &Expr) -> Option<Ball> {
 /// # Errors
 /// A law that gives another one.
 pub(super) fn hold(formula: &JudgedFormula, bits: usize) -> Result<bool, &'static str> {
-    let exact = frequency(&formula.law, &formula.values).filter(|_| bits >= FEWEST_BITS);
+    let exact = frequency(formula).filter(|_| bits >= FEWEST_BITS);
     let Some(exact) = exact else { return Ok(false) };
     match is_rounded(&exact, &formula.frequency_ball(bits), bits) {
         true => Ok(true),

@@ -36,7 +36,7 @@ pub use candidate::{NotCertified, certify, certify_motion};
 pub use damped::{
     DampedCertificate, Drive, certify_cycle, certify_cycle_motion, certify_driven, check_damped,
 };
-pub use formula::{Enclosure, Errors, JudgedFormula, Range};
+pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, Range};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
 pub use radii_polynomial::{NotProved, Proof};
 pub use validity::{Beyond, Validity, validity};
@@ -46,7 +46,6 @@ use crate::exact::ball::{Ball, Balls};
 use crate::exact::bound::Bound;
 use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, ExprError};
-use crate::solution::AmplitudeConvention;
 use crate::symbol::Symbol;
 use fourier_series::{FourierSeries, WORKING};
 
@@ -270,7 +269,7 @@ impl Certificate {
     /// Checks that the amplitude among the values of the law is that of the motion, about a place
     /// of rest.
     fn amplitude_of_law(&self, formula: &JudgedFormula) -> Result<(), &'static str> {
-        let letter = AmplitudeConvention::Initial.symbol();
+        let letter = formula.letters.amplitude;
         let amplitude = formula.values.iter().find(|(name, _)| *name == letter);
         let Some((_, amplitude)) = amplitude else {
             return Ok(());

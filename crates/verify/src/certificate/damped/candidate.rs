@@ -63,6 +63,7 @@ fn certified_cycle(
     at: &Values,
     with_formula: bool,
 ) -> Result<(DampedCertificate, Certified), NotCertified> {
+    let _letters = oscillator.letters().in_force();
     if at.get(solution.amplitude.symbol()).is_some() {
         return Err(NotCertified::OffCycle);
     }
@@ -130,6 +131,7 @@ pub fn certify_driven(
     solution: &Solution,
     at: &Values,
 ) -> Result<(DampedCertificate, Certified), NotCertified> {
+    let _letters = oscillator.letters().in_force();
     let resonance = solution.modulation.as_ref().and_then(|slow| slow.resonance.as_ref());
     let resonance = resonance.ok_or(NotCertified::NoSteadyMotion)?;
     let (values, _) = at.split(&oscillator.parameters);

@@ -746,10 +746,10 @@ fn output_of_help() -> String {
 }
 
 #[test]
-fn the_examples_are_the_ones_the_readme_names() {
-    let readme = include_str!("../../README.md");
+fn the_examples_are_the_ones_the_pages_name() {
+    let page = include_str!("../../docs/damper.md");
     let named: Vec<&str> =
-        readme.split_whitespace().filter(|word| word.starts_with("examples/simulate/")).collect();
+        page.split_whitespace().filter(|word| word.starts_with("examples/simulate/")).collect();
     assert!(!named.is_empty());
     for name in named {
         assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join(name).exists(), "{name}");

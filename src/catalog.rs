@@ -268,14 +268,14 @@ pub const CATALOG: &[Entry] = &[
     },
 ];
 
-/// The entry of this name.
+/// The entry of this name, in capital letters or small ones.
 ///
 /// ```
 /// let pendulum = lindstedt::catalog::find("pendulum").expect("an entry");
 /// assert_eq!(pendulum.equation, "x'' + sin(x) = 0");
 /// ```
 pub fn find(name: &str) -> Option<&'static Entry> {
-    CATALOG.iter().find(|entry| entry.name == name)
+    CATALOG.iter().find(|entry| entry.name.eq_ignore_ascii_case(name))
 }
 
 /// Every method at its default order on an entry: `Ok` where it applies, the refusal where it does

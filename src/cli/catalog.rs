@@ -1,6 +1,7 @@
 //! `lindstedt catalog`.
 
 use clap::Args;
+use lindstedt::catalog::{CATALOG, find, nearest};
 use lindstedt::export::{catalog, html, json};
 
 use super::answer::{no_such, page};
@@ -10,6 +11,9 @@ use super::{Common, Failure, Format, Outcome, Work, json_text, whole};
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
 pub struct Arguments {
+    /// One of them, with its source, its published law and what each method says to it; without it
+    /// a line for each
+    name: Option<String>,
     #[command(flatten)]
     pub common: Common,
 }
@@ -31,11 +35,22 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.common.tolerance.is_some() {
         return Err(Failure::Usage("--tolerance: the catalogue has no verdict".to_owned()));
     }
+    let entries = match &arguments.name {
+        None => CATALOG,
+        Some(name) => std::slice::from_ref(find(name).ok_or_else(|| {
+            let near = nearest(name, CATALOG.iter().map(|entry| entry.name));
+            let help = near.map_or_else(
+                || "`lindstedt catalog` lists the names".to_owned(),
+                |near| format!("did you mean `{near}`?"),
+            );
+            Failure::Usage(format!("the catalogue has no `{name}`\n  help: {help}"))
+        })?),
+    };
     let text = match arguments.common.format() {
-        Format::Text => catalog::text(),
-        Format::Latex => catalog::latex(),
-        Format::Html => page(None, None, |page| html::lines(&catalog::text(), page)),
-        Format::Json => json_text(&json::catalog())?,
+        Format::Text => catalog::text(entries),
+        Format::Latex => catalog::latex(entries),
+        Format::Html => page(None, None, |page| html::lines(&catalog::text(entries), page)),
+        Format::Json => json_text(&json::catalog(entries))?,
         format => no_such(format)?,
     };
     Ok(Outcome { result: whole(text), picture: None, note: None, verdict: None, partial: false })

@@ -21,14 +21,14 @@ pub struct Arguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
     /// A value, exact (1.5, 3/2, pi/3): where the methods are compared; repeatable
-    #[arg(long, value_name = "NAME=VALUE")]
+    #[arg(long, value_name = "NAME=VALUE,...")]
     at: Vec<String>,
     /// The small parameter; A for the amplitude
     #[arg(long, value_name = "NAME")]
     small: Option<String>,
     /// The equilibrium to swing about, x=1 say: a stable one, without this the nearest to zero, or
     /// an unstable one between two wells for motions over both
-    #[arg(long, value_name = "NAME=VALUE")]
+    #[arg(long, value_name = "NAME=VALUE,...")]
     about: Option<String>,
     #[command(flatten)]
     pub common: Common,

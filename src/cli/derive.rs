@@ -9,7 +9,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lindstedt::Values;
 use lindstedt::catalog::nearest;
 use lindstedt::export::{code, html, json, latex, text};
-use lindstedt::expr::{Letters, parse_expression};
+use lindstedt::expr::{Expr, Letters, parse_expression};
 use lindstedt::method::table::{Choice, Entry, that_take};
 use lindstedt::method::{self, Options, Refusal, Unsuited};
 use lindstedt::problem::{Formula, Order, Problem, ProblemError, Reader};
@@ -48,7 +48,7 @@ pub struct Question {
     small: Option<String>,
     /// The equilibrium to swing about, x=1 say: a stable one, without this the nearest to zero, or
     /// an unstable one between two wells for motions over both
-    #[arg(long, value_name = "NAME=VALUE")]
+    #[arg(long, value_name = "NAME=VALUE,...")]
     about: Option<String>,
     /// Degree of the Taylor polynomial that homotopy perturbation puts for the force
     #[arg(long, value_name = "DEGREE", value_parser = super::count, allow_hyphen_values = true)]
@@ -72,7 +72,7 @@ pub struct Question {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// A value, exact (1.5, 3/2, pi/3): asks for numbers and a verdict; repeatable
-    #[arg(long, value_name = "NAME=VALUE")]
+    #[arg(long, value_name = "NAME=VALUE,...")]
     at: Vec<String>,
 }
 
@@ -618,6 +618,40 @@ fn methods_like(typed: &str) -> String {
     }
 }
 
+/// The values of the command line, `A=1` or several of them, `A=1,eps=0.1`.
+pub(super) fn given_values(at: &[String]) -> Result<Vec<(Symbol, Expr)>, Failure> {
+    let mut values = vec![];
+    for text in at {
+        for part in separate_values(text) {
+            let usage = |message: String| Failure::Usage(format!("--at {part}: {message}"));
+            let Some((name, value)) = part.split_once('=') else {
+                return Err(usage("expected NAME=VALUE, such as A=1.5".to_owned()));
+            };
+            let value = parse_expression(value).map_err(|error| usage(error.to_string()))?;
+            values.push((Symbol::new(name.trim()), value));
+        }
+    }
+    Ok(values)
+}
+
+/// The parts of `A=1,eps=0.1`. A comma or a space before another name and its equals sign separates
+/// two values; the comma of `max(1, 2)` does not.
+fn separate_values(text: &str) -> Vec<&str> {
+    let mut ends: Vec<usize> = vec![];
+    for (equals, _) in text.match_indices('=').skip(1) {
+        let before = text[..equals].trim_end();
+        let name = |letter: char| letter.is_alphanumeric() || letter == '_';
+        let named = before.trim_end_matches(name);
+        if named.len() < before.len() && named.ends_with([',', ';', ' ']) {
+            ends.push(named.len());
+        }
+    }
+    let begins = std::iter::once(0).chain(ends.iter().copied());
+    let ends = ends.iter().copied().chain([text.len()]);
+    let parts = begins.zip(ends).map(|(begin, end)| &text[begin..end]);
+    parts.map(|part| part.trim_matches([',', ';', ' '])).collect()
+}
+
 /// The values of the command line, which win over those of the file; `None` where there are none at
 /// all.
 pub(super) fn exact_values(
@@ -625,23 +659,7 @@ pub(super) fn exact_values(
     file: Result<Values, ProblemError>,
 ) -> Result<Option<Values>, Failure> {
     let mut values = Values::default();
-    for text in at {
-        let Some((name, value)) = text.split_once('=') else {
-            return Err(Failure::Usage(format!("--at {text}: expected NAME=VALUE, such as A=1.5")));
-        };
-        // `A=1,eps=1` and `A=1 eps=1`: the equals sign of the second value stands in the text of
-        // the first.
-        if value.contains('=') {
-            let parts = text.split([',', ' ', ';']).map(str::trim).filter(|part| !part.is_empty());
-            let separate: Vec<String> = parts.map(|part| format!("--at {part}")).collect();
-            return Err(Failure::Usage(format!(
-                "--at {text}: one value at a time\n  help: {}",
-                separate.join(" ")
-            )));
-        }
-        let value = parse_expression(value)
-            .map_err(|error| Failure::Usage(format!("--at {text}: {error}")))?;
-        let name = Symbol::new(name.trim());
+    for (name, value) in given_values(at)? {
         values.insert(name, value).map_err(|error| Failure::Usage(format!("--at: {error}")))?;
     }
     let file = file.map_err(|error| Failure::refused(&error, error.help()))?;

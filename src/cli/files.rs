@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::{Builder, NamedTempFile};
 
-use super::{Common, Failure, Writer};
+use super::{Common, Failure, Format, Writer};
 
 /// Whether a path stands for standard output, or standard input where something is read.
 pub(super) fn is_standard(path: &Path) -> bool {
@@ -48,6 +48,16 @@ pub(super) fn check(common: &Common, input: Option<&Path>) -> Result<(), Failure
         }
     }
     let text = common.output.clone().unwrap_or_else(|| PathBuf::from("-"));
+    let ending = text.extension().and_then(|ending| ending.to_str());
+    if common.format.is_none()
+        && let Some((ending, instead)) =
+            ending.and_then(|ending| Some((ending, Format::instead_of(ending)?)))
+    {
+        return Err(Failure::Usage(format!(
+            "--output {}: .{ending} files are not written\n  help: {instead}; --format text writes text there",
+            text.display()
+        )));
+    }
     let named: Vec<(&str, &Path)> = std::iter::once(("--output", text.as_path()))
         .chain(common.plot.as_deref().map(|picture| ("--plot", picture)))
         .collect();

@@ -13,6 +13,7 @@ use lindstedt::report::{self, ImpactCertificateReport};
 use lindstedt::verify::Verdict;
 
 use super::answer::{Answer, no_such};
+use super::derive::given_values;
 use super::files::width;
 use super::problem::problem;
 use super::{Common, Failure, Format, Outcome, Work, json_text, tolerance};
@@ -26,7 +27,7 @@ pub struct Arguments {
     pub problem: Option<String>,
     /// A value, exact (1.5, 3/2, pi/3): A of the release, xc of the barrier, its gamma, parameters;
     /// repeatable
-    #[arg(long, value_name = "NAME=VALUE")]
+    #[arg(long, value_name = "NAME=VALUE,...")]
     at: Vec<String>,
     /// How the swing of the derived phases is derived, by a method of `lindstedt derive`; without
     /// it the first that passes
@@ -202,13 +203,8 @@ fn asked(arguments: &Arguments) -> Result<Problem, Failure> {
         None => Problem::default(),
         Some(text) => problem(text)?,
     };
-    for text in &arguments.at {
-        let usage = |message: String| Failure::Usage(format!("--at {text}: {message}"));
-        let (name, value) = text
-            .split_once('=')
-            .ok_or_else(|| usage("expected NAME=VALUE, such as A=1.5".to_owned()))?;
-        let value = parse_expression(value).map_err(|error| usage(error.to_string()))?;
-        asked.set_value(name.trim(), &value.to_string());
+    for (name, value) in given_values(&arguments.at)? {
+        asked.set_value(name.name(), &value.to_string());
     }
     let words = [
         (&arguments.method, &mut asked.method),

@@ -24,7 +24,7 @@ pub struct Arguments {
     /// equations (1) to (8) beside what follows
     pub file: Option<PathBuf>,
     /// A value of a parameter (1.5, 3/2, pi/3): with all of them the modes get numbers; repeatable
-    #[arg(long, value_name = "NAME=VALUE")]
+    #[arg(long, value_name = "NAME=VALUE,...")]
     at: Vec<String>,
     #[command(flatten)]
     pub common: Common,

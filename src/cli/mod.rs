@@ -210,7 +210,7 @@ struct Common {
     #[arg(long, value_parser = format_parser([]))]
     format: Option<Format>,
     /// Write the result to this file instead of standard output; - for standard output
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Draw the answer beside the truth to this SVG file (- for standard output)
     #[arg(long, value_name = "FILE.svg")]
@@ -220,7 +220,7 @@ struct Common {
     #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Print results only, no notes and no progress
-    #[arg(long)]
+    #[arg(short, long)]
     quiet: bool,
     /// Give up after so many seconds
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
@@ -269,6 +269,18 @@ impl Format {
             name @ ("json" | "html" | "svg" | "csv") => {
                 Self::all().find(|format| format.name() == name)?
             }
+            _ => return None,
+        })
+    }
+
+    /// How a file is made whose name ends so, of a kind that is not written here.
+    fn instead_of(ending: &str) -> Option<&'static str> {
+        Some(match ending.to_ascii_lowercase().as_str() {
+            "pdf" => "write .html and print it, or .tex",
+            "png" | "jpg" | "jpeg" => "write .svg, which converts to it",
+            "xls" | "xlsx" | "ods" => "write .csv",
+            "doc" | "docx" => "write .html or .tex",
+            "nb" | "ipynb" => "write .py or .json",
             _ => return None,
         })
     }

@@ -38,7 +38,7 @@ pub struct Arguments {
     #[arg(long, value_name = "N", value_parser = super::count, allow_hyphen_values = true)]
     periods: Option<u32>,
     /// The value of another parameter, exact (1.5, 3/2, pi/3); repeatable
-    #[arg(long, value_name = "NAME=VALUE")]
+    #[arg(long, value_name = "NAME=VALUE,...")]
     at: Vec<String>,
     #[command(flatten)]
     pub common: Common,

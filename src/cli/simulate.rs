@@ -36,7 +36,7 @@ pub struct Arguments {
     #[arg(long, value_name = "T", value_parser = super::positive, allow_hyphen_values = true)]
     until: Option<f64>,
     /// A value of one of its parameters (1.5, 3/2, pi/3); repeatable
-    #[arg(long, value_name = "NAME=VALUE")]
+    #[arg(long, value_name = "NAME=VALUE,...")]
     at: Vec<String>,
     /// Look at an equation or a mechanism of one's own once in this time (Poincaré's section):
     /// 2*pi/Omega

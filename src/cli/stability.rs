@@ -37,7 +37,7 @@ pub struct Arguments {
     small: Vec<String>,
     /// A value, exact (1.5, 3/2, pi/3): asks for numbers and verdicts, and is how far a picture or
     /// a table goes; repeatable
-    #[arg(long, value_name = "NAME=VALUE")]
+    #[arg(long, value_name = "NAME=VALUE,...")]
     at: Vec<String>,
     #[command(flatten)]
     pub common: Common,

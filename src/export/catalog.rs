@@ -2,24 +2,40 @@
 //! `export::json`.
 
 use super::latex;
-use crate::catalog::{CATALOG, Entry, methods};
+use crate::catalog::{Entry, methods};
 
-/// Every entry: its equation, its source, what is published, and which methods apply.
+/// One entry with its equation, its source, what is published, and which methods apply; of several
+/// a line each with name, equation and title.
 ///
 /// ```
-/// assert!(lindstedt::export::catalog::text().starts_with("pendulum: "));
+/// use lindstedt::catalog::CATALOG;
+/// use lindstedt::export::catalog::text;
+///
+/// assert!(text(CATALOG).lines().any(|line| line.starts_with("duffing ")));
+/// assert!(text(&CATALOG[..1]).contains("published: "));
 /// ```
-pub fn text() -> String {
-    CATALOG.iter().map(entry_as_text).collect::<Vec<_>>().join("\n")
+pub fn text(entries: &[Entry]) -> String {
+    if let [entry] = entries {
+        return entry_as_text(entry);
+    }
+    let width = |text: fn(&Entry) -> &str| {
+        entries.iter().map(|entry| text(entry).chars().count()).max().unwrap_or(0)
+    };
+    let (name, equation) = (width(|entry| entry.name), width(|entry| entry.equation));
+    let line = |entry: &Entry| {
+        format!("{:name$}  {:equation$}  {}\n", entry.name, entry.equation, entry.title)
+    };
+    entries.iter().map(line).collect()
 }
 
-/// Every entry as an item of a list: its equation and what is published.
+/// Each entry as an item of a list: its equation and what is published.
 ///
 /// ```
-/// assert!(lindstedt::export::catalog::latex().contains(r"\item[duffing]"));
+/// use lindstedt::catalog::CATALOG;
+/// assert!(lindstedt::export::catalog::latex(CATALOG).contains(r"\item[duffing]"));
 /// ```
-pub fn latex() -> String {
-    let items: Vec<String> = CATALOG.iter().map(item).collect();
+pub fn latex(entries: &[Entry]) -> String {
+    let items: Vec<String> = entries.iter().map(item).collect();
     format!("\\begin{{description}}\n{}\n\\end{{description}}\n", items.join("\n"))
 }
 

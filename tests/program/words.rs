@@ -59,7 +59,9 @@ fn mistakes_on_the_command_line_are_helped() {
             "did you mean `homotopy-perturbation` or `homotopy-analysis`?",
         ),
         (&["derive", "duffing", "--method", "max_min"], 2, "did you mean `max-min`?"),
-        (&["derive", "duffing", "--at", "A=1,eps=1"], 2, "help: --at A=1 --at eps=1"),
+        (&["derive", "duffing", "--at", "A=1,eps"], 2, "--at A=1,eps"),
+        (&["derive", "duffing", "-o", "law.pdf"], 2, "write .html and print it, or .tex"),
+        (&["catalog", "dufing"], 2, "did you mean `duffing`?"),
         (&["derive", "duffing", "--taylor", "-3"], 2, "expected a whole number, 1 or more"),
         (&["compare", "duffing", "--tolerance", "-1"], 2, "expected a positive number"),
         (&["derive", "dufing"], 1, "did you mean `duffing`?"),
@@ -69,6 +71,33 @@ fn mistakes_on_the_command_line_are_helped() {
         assert!(message.contains(expected), "{arguments:?}: {message}");
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {message}");
         assert!(output.stdout.is_empty(), "{arguments:?}");
+    }
+}
+
+/// Short forms mean what the long ones do.
+#[test]
+fn short_forms_mean_the_long_ones() {
+    for (short, long) in [
+        (
+            &["derive", "duffing", "--at", "A=1,eps=0.1"][..],
+            &["derive", "duffing", "--at", "A=1", "--at", "eps=0.1"][..],
+        ),
+        (
+            &["derive", "x'' + k*x = 0", "--at", "k=max(1,2), A=1"],
+            &["derive", "x'' + k*x = 0", "--at", "k=max(1,2)", "--at", "A=1"],
+        ),
+        (
+            &["derive", "DUFFING", "--method", "HPM"],
+            &["derive", "duffing", "--method", "homotopy-perturbation"],
+        ),
+        (
+            &["impact", "--at", "A=1.2,xc=-0.1", "-q"],
+            &["impact", "--at", "A=1.2", "--at", "xc=-0.1", "--quiet"],
+        ),
+    ] {
+        let outputs = [short, long].map(|arguments| run(arguments, None));
+        assert_eq!(outputs[0].status.code(), Some(0), "{short:?}");
+        assert_eq!(outputs[0], outputs[1], "{short:?}");
     }
 }
 

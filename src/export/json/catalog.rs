@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
-use crate::catalog::{self, CATALOG};
+use crate::catalog;
 
 /// The classical oscillators that the program knows by name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -53,16 +53,16 @@ pub struct Applicability {
     pub reason: Option<String>,
 }
 
-/// The document of kind `catalog`.
+/// The document of kind `catalog` with these entries.
 ///
 /// ```
-/// let document = lindstedt::export::json::catalog();
+/// let document = lindstedt::export::json::catalog(lindstedt::catalog::CATALOG);
 /// assert!(document.entries.iter().any(|entry| entry.name == "pendulum"));
 /// ```
-pub fn catalog() -> CatalogDocument {
+pub fn catalog(entries: &[catalog::Entry]) -> CatalogDocument {
     CatalogDocument {
         schema: Kind::Catalog.schema().to_owned(),
-        entries: CATALOG.iter().map(entry).collect(),
+        entries: entries.iter().map(entry).collect(),
     }
 }
 

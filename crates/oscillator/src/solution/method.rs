@@ -132,8 +132,35 @@ impl Method {
         self.words().2
     }
 
-    /// The method of this name.
+    /// The abbreviation in use in the literature, where there is one.
+    pub fn abbreviation(self) -> Option<&'static str> {
+        Some(match self {
+            Self::LindstedtPoincare => "lp",
+            Self::HomotopyPerturbation => "hpm",
+            Self::HomotopyAnalysis => "ham",
+            Self::ParameterExpansion => "pem",
+            Self::HarmonicBalance => "hb",
+            Self::EnergyBalance => "ebm",
+            Self::AmplitudeFrequency => "aff",
+            Self::VariationalIteration => "vim",
+            Self::Averaging => "kbm",
+            Self::MultipleScales => "mms",
+            _ => return None,
+        })
+    }
+
+    /// The method of this name or abbreviation, in capital letters or small ones.
+    ///
+    /// ```
+    /// # use lindstedt_oscillator as lindstedt;
+    /// use lindstedt::solution::Method;
+    /// assert_eq!(Method::from_name("HPM"), Some(Method::HomotopyPerturbation));
+    /// assert_eq!(Method::from_name("Pade"), Some(Method::Pade));
+    /// ```
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|method| method.name() == name)
+        let is = |known: &str| known.eq_ignore_ascii_case(name);
+        Self::ALL
+            .into_iter()
+            .find(|method| is(method.name()) || method.abbreviation().is_some_and(is))
     }
 }

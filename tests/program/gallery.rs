@@ -484,6 +484,7 @@ fn help_says_what_there_is() {
         insta::assert_snapshot!("help-catalog", output(&["catalog", "--help"]));
         insta::assert_snapshot!("help-schema", output(&["schema", "--help"]));
         insta::assert_snapshot!("catalog", output(&["catalog"]));
+        insta::assert_snapshot!("catalog-double-well", output(&["catalog", "double-well"]));
         let duffing = ["derive", "duffing", "--steps"];
         insta::assert_snapshot!("steps", output(&duffing));
         insta::assert_snapshot!(

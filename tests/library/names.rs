@@ -538,8 +538,11 @@ fn certificates_keep_the_letters_of_the_equation() {
             expected_formula.values.clone(),
         );
         assert_eq!(formula, expected_formula, "{own}");
-        // As a document, and read from it.
-        let document = json::certificate(&certificate);
+        // As a document, written where the letters of the answer are in force, and read from it.
+        let document = {
+            let _letters = oscillator.letters().in_force();
+            json::certificate(&certificate)
+        };
         assert!(document.formula.as_ref().is_some_and(|formula| formula.letters.is_some()));
         assert_eq!(document.read().as_ref(), Ok(&certificate), "{own}");
         assert!(certificate::check(&certificate).expect("a proof").law_is_held, "{own}");

@@ -187,10 +187,11 @@ fn short(value: &Rational, side: usize) -> String {
     exact_decimal(value).unwrap_or_else(|| significant_fraction(&neighbours(value, 3)[side], 3))
 }
 
-/// The values of letters as text.
+/// The values of letters as text, under the names that they have in the law: the letters in force
+/// are in it already.
 pub(super) fn values(values: &Values) -> String {
     let equations: Vec<String> =
-        values.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+        values.iter().map(|(name, value)| format!("{} = {value}", name.name())).collect();
     equations.join(", ")
 }
 

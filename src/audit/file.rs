@@ -19,9 +19,9 @@ use super::printed::Printed;
 use super::{Claims, MOST_COMBINATIONS, identity, options};
 use crate::decimal::decimal;
 use crate::exact::Rational;
-use crate::expr::{Expr, excerpt};
+use crate::expr::Expr;
 use crate::method::Options;
-use crate::problem::{LARGEST_FILE, Order, ProblemError, in_words};
+use crate::problem::{LARGEST_FILE, Order, ProblemError, at_place, in_words, too_large};
 use crate::spelling::nearest;
 use crate::symbol::Symbol;
 
@@ -31,37 +31,6 @@ use values::{
     convention, equal_to_zero, equation, expression, method, number, parsed, rounding, rule,
     symbol, table, tolerance, verdict,
 };
-
-/// Why a file has no claims that can be computed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ClaimsError {
-    /// Not TOML, or a key or value that does not belong there.
-    #[error(transparent)]
-    File(#[from] ProblemError),
-    /// A claim that says nothing that could be computed; the text shows the line.
-    #[error("{message}")]
-    Claim {
-        /// The message with the line and a caret.
-        message: String,
-        /// What to write instead, where it is known.
-        help: Option<String>,
-    },
-    /// A file without a claim.
-    #[error("there is no claim: give each as [[claim]] with an id, a quantity and what is printed")]
-    NoClaim,
-}
-
-impl ClaimsError {
-    /// What to write instead, where it is known.
-    pub fn help(&self) -> Option<String> {
-        match self {
-            Self::File(error) => error.help(),
-            Self::Claim { help, .. } => help.clone(),
-            Self::NoClaim => None,
-        }
-    }
-}
 
 /// What is wrong, and where.
 struct Mistake {
@@ -81,24 +50,21 @@ fn helped<T>(span: Range<usize>, what: impl Into<String>, help: impl Into<String
 }
 
 impl FromStr for Claims {
-    type Err = ClaimsError;
+    type Err = ProblemError;
 
-    fn from_str(text: &str) -> Result<Self, ClaimsError> {
+    fn from_str(text: &str) -> Result<Self, ProblemError> {
         if text.len() > LARGEST_FILE {
-            return Err(ProblemError::TooLarge.into());
+            return Err(too_large());
         }
         let text = text.trim_start_matches('\u{feff}');
         let document: Document = toml::from_str(text).map_err(|error| in_words(text, &error))?;
-        read(document)
-            .map_err(|found| {
-                let line = text[..found.span.start].matches('\n').count() + 1;
-                let [shown, carets] = excerpt(text, &found.span);
-                ClaimsError::Claim {
-                    message: format!("line {line}: {}\n  {shown}\n  {carets}", found.what),
-                    help: found.help,
-                }
-            })?
-            .ok_or(ClaimsError::NoClaim)
+        let claims = read(document)
+            .map_err(|Mistake { span, what, help }| at_place(text, &span, &what).with_help(help))?;
+        claims.ok_or_else(|| {
+            ProblemError::new(
+                "there is no claim: give each as [[claim]] with an id, a quantity and what is printed",
+            )
+        })
     }
 }
 

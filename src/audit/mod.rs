@@ -24,7 +24,7 @@
 //! let audit = audit(claims);
 //! assert_eq!(audit.findings[0].verdict, Verdict::UnderAssumption);
 //! assert_eq!(audit.findings[0].assumption(), "digits cut off");
-//! # Ok::<(), lindstedt::audit::ClaimsError>(())
+//! # Ok::<(), lindstedt::problem::ProblemError>(())
 //! ```
 
 mod claim;
@@ -40,8 +40,6 @@ mod unknown;
 use std::collections::{BTreeMap, BTreeSet};
 
 pub use claim::{Claim, Entry, Quantity, Question, Stated, Supposition, Trend, Unknown, Verdict};
-#[cfg(feature = "toml")]
-pub use file::ClaimsError;
 pub use printed::{Printed, Relation, Rounding};
 pub use quantity::{Computed, Lack, NAMES};
 pub use unknown::Demand;

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use lindstedt::audit::{Claims, ClaimsError, audit};
+use lindstedt::audit::{Claims, audit};
 use lindstedt::export::json;
+use lindstedt::problem::ProblemError;
 use lindstedt::report;
 use lindstedt::verify::Verdict;
 
@@ -90,7 +91,7 @@ fn outcome(claims: &str, name: &str, own: &Own, common: &Common) -> Result<Outco
     if common.plot.is_some() {
         return Err(Failure::Usage("--plot: an audit draws no picture".to_owned()));
     }
-    let claims: Claims = claims.parse().map_err(|error: ClaimsError| {
+    let claims: Claims = claims.parse().map_err(|error: ProblemError| {
         Failure::refused(&format!("{name}: {error}"), error.help())
     })?;
     let audit = audit(claims);

@@ -11,7 +11,7 @@ use lindstedt::catalog::nearest;
 use lindstedt::export::{code, html, json, latex, text};
 use lindstedt::expr::{Expr, Letters, parse_expression};
 use lindstedt::method::table::{Choice, Entry, that_take};
-use lindstedt::method::{self, Options, Refusal, Unsuited};
+use lindstedt::method::{self, Options, Reason, Refusal};
 use lindstedt::problem::{Formula, Order, Problem, ProblemError, Reader};
 use lindstedt::report;
 use lindstedt::solution::{
@@ -343,11 +343,9 @@ fn solve_at(
         Ok(solution) => return Ok((oscillator, values, solution)),
         Err(refusal) => refusal,
     };
-    let names: Vec<Symbol> = match &refusal {
-        Refusal::LimitCycle { equation, .. } => equation.symbols().into_iter().collect(),
-        Refusal::Unsuited { reason: Unsuited::SeveralVariables, .. } => {
-            oscillator.parameters.clone()
-        }
+    let names: Vec<Symbol> = match &refusal.reason {
+        Reason::LimitCycle { equation, .. } => equation.symbols().into_iter().collect(),
+        Reason::SeveralVariables => oscillator.parameters.clone(),
         _ => vec![],
     };
     match values {

@@ -10,7 +10,7 @@ use lindstedt::impact::{
     BASELINE_DURATIONS, Integrator, Model, Parameter, Settings, Simulation, Start, baseline,
     known_until, simulate,
 };
-use lindstedt::problem::{Problem, Simulate, SimulateError};
+use lindstedt::problem::{Problem, ProblemError, Simulate};
 use lindstedt::verify::Verdict;
 use lindstedt::{Interrupt, system};
 
@@ -216,7 +216,7 @@ fn own(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     )
 }
 
-fn refused(error: SimulateError) -> Failure {
+fn refused(error: ProblemError) -> Failure {
     let help = error.help();
     Failure::refused(&error, help)
 }

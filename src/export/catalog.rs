@@ -52,7 +52,7 @@ fn entry_as_text(entry: &Entry) -> String {
             applying.push(method.name());
             continue;
         };
-        let reason = refusal.reason(method);
+        let reason = refusal.without_title(method);
         match refused.iter_mut().find(|known| known.0 == reason) {
             Some(known) => known.1.push(method.name()),
             None => refused.push((reason, vec![method.name()])),

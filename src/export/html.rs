@@ -330,9 +330,9 @@ fn methods(rows: &[MethodRow], tolerance: f64) -> Table {
 
 /// Methods that do not apply, those for the same reason together.
 fn refusals(refused: &[Refused]) -> Vec<(String, String)> {
-    let named = refused
-        .iter()
-        .map(|refused| (refused.method.title().to_owned(), refused.reason.reason(refused.method)));
+    let named = refused.iter().map(|refused| {
+        (refused.method.title().to_owned(), refused.reason.without_title(refused.method))
+    });
     let grouped = text::comparison::grouped(named);
     grouped.into_iter().map(|(names, reason)| (names.join(", "), reason)).collect()
 }

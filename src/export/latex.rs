@@ -171,7 +171,7 @@ pub fn materials(study: &MaterialStudy) -> String {
 ///
 /// let claims: Claims = "[[claim]]\nid = \"one\"\nquantity = \"value\"\nformula = \"1 + 1\"\nprinted = \"2\"".parse()?;
 /// assert!(lindstedt::export::latex::audit(&audit(claims)).contains(r"\begin{tabular}"));
-/// # Ok::<(), lindstedt::audit::ClaimsError>(())
+/// # Ok::<(), lindstedt::problem::ProblemError>(())
 /// ```
 pub fn audit(audit: &Audit) -> String {
     document(&report::audit(audit))

@@ -148,7 +148,7 @@ pub fn optimization(study: &Study, width: usize) -> String {
 ///
 /// let claims: Claims = "[[claim]]\nid = \"one\"\nquantity = \"value\"\nformula = \"1 + 1\"\nprinted = \"2\"".parse()?;
 /// assert!(lindstedt::export::text::audit(&audit(claims), 80).contains("1 reproduced"));
-/// # Ok::<(), lindstedt::audit::ClaimsError>(())
+/// # Ok::<(), lindstedt::problem::ProblemError>(())
 /// ```
 pub fn audit(audit: &Audit, width: usize) -> String {
     document(&report::audit(audit), width)

@@ -9,86 +9,9 @@
 //! Where gamma is given it wins: the moduli have no say, and there are units where mass, length and
 //! gravity are all given.
 
-use thiserror::Error;
-
-use super::Problem;
+use super::{Problem, ProblemError, refused};
 use crate::impact::hertz::Design;
 use crate::impact::{Elastic, Modulus, Units};
-
-/// Sections that describe no pendulum and bodies that meet.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum DesignError {
-    /// A quantity by two keys.
-    #[error("`{key}` and `{other}` say the same: give one of them")]
-    Twice {
-        /// The key by its own name.
-        key: &'static str,
-        /// The key in `[design]`.
-        other: &'static str,
-    },
-    /// A quantity that must be positive.
-    #[error("`{key}` must be a positive number, not {value}")]
-    NotPositive {
-        /// The key.
-        key: &'static str,
-        /// What it says.
-        value: f64,
-    },
-    /// A number that is no Poisson's ratio.
-    #[error("`{key}` must lie above -1 and be at most 1/2, not {value}: it is 0.3 for steel")]
-    Poisson {
-        /// The key.
-        key: &'static str,
-        /// What it says.
-        value: f64,
-    },
-    /// Half of what an equivalent modulus needs.
-    #[error(
-        "`{key}` needs `{missing}` beside it: the modulus of both bodies is 1/E = (1 - nu1^2)/E1 + (1 - nu2^2)/E2; without \
-         any of them it is that of the barrier alone"
-    )]
-    Needs {
-        /// The key that is given.
-        key: &'static str,
-        /// The key that is not.
-        missing: &'static str,
-    },
-    /// A key beside an equation or a force.
-    #[error(
-        "`{key}` says nothing here: SI units are those of the pendulum with the contact of Hertz, leave it out or leave out \
-         `equation` and `force`"
-    )]
-    NotHertz {
-        /// The key.
-        key: &'static str,
-    },
-    /// A part of the units beside a gamma.
-    #[error(
-        "`{key}` says nothing beside a gamma that is given: SI units need mass, length and gravity as well, give {missing}, or \
-         leave it out"
-    )]
-    Incomplete {
-        /// The key.
-        key: &'static str,
-        /// What is not given.
-        missing: String,
-    },
-    /// A modulus beside a gamma.
-    #[error("`{key}` changes nothing where gamma is given: leave one of them out")]
-    BesideGamma {
-        /// The key.
-        key: &'static str,
-    },
-    /// A yield limit beside a gamma, and no radius.
-    #[error(
-        "`{key}` is held against the peak pressure, which beside a gamma that is given needs the radius: give [sphere] radius"
-    )]
-    NoPressure {
-        /// The key.
-        key: &'static str,
-    },
-}
 
 /// The keys of units, by their own names: those of the pendulum, the radius, those of the moduli,
 /// those of yield limits.
@@ -104,7 +27,7 @@ impl Problem {
     /// # Errors
     /// A quantity given twice, or one by its own name that is not positive; half an equivalent
     /// modulus.
-    pub(super) fn design(&self) -> Result<Design, DesignError> {
+    pub(super) fn design(&self) -> Result<Design, ProblemError> {
         let usual = Design::from(self.design);
         let (pendulum, sphere) = (&self.pendulum, &self.sphere);
         Ok(Design {
@@ -134,17 +57,19 @@ impl Problem {
         keys: [&'static str; 2],
         own: Option<f64>,
         usual: f64,
-    ) -> Result<f64, DesignError> {
+    ) -> Result<f64, ProblemError> {
         let [key, other] = keys;
         match own {
-            Some(_) if self.gives(other) => Err(DesignError::Twice { key, other }),
+            Some(_) if self.gives(other) => {
+                refused(format!("`{key}` and `{other}` say the same: give one of them"))
+            }
             Some(value) => positive(key, value),
             None => Ok(usual),
         }
     }
 
     /// The modulus of the contact.
-    fn modulus(&self) -> Result<Modulus, DesignError> {
+    fn modulus(&self) -> Result<Modulus, ProblemError> {
         let keys = ["[barrier] modulus", "[design] modulus"];
         let alone = self.one_of(keys, self.barrier.modulus, self.design.modulus)?;
         let key = keys[usize::from(self.barrier.modulus.is_none())];
@@ -158,19 +83,18 @@ impl Problem {
         [modulus_key, poisson_key]: [&'static str; 2],
         alone: f64,
         poisson_of_barrier: Option<f64>,
-    ) -> Result<Modulus, DesignError> {
-        let poisson = |key, value: Option<f64>| match value {
-            Some(value) if !(value > -1.0 && value <= 0.5) => {
-                Err(DesignError::Poisson { key, value })
-            }
+    ) -> Result<Modulus, ProblemError> {
+        let poisson = |key: &str, value: Option<f64>| match value {
+            Some(value) if !(value > -1.0 && value <= 0.5) => refused(format!(
+                "`{key}` must lie above -1 and be at most 1/2, not {value}: it is 0.3 for steel"
+            )),
             other => Ok(other),
         };
         let of_barrier = poisson(poisson_key, poisson_of_barrier)?;
         let of_sphere = poisson("[sphere] poisson", self.sphere.poisson)?;
-        let needs = |key, missing| Err(DesignError::Needs { key, missing });
         let barrier = |poisson| {
             let modulus = positive(modulus_key, alone)?;
-            Ok(Elastic { modulus, poisson })
+            Ok::<_, ProblemError>(Elastic { modulus, poisson })
         };
         match (of_barrier, self.sphere.modulus, of_sphere) {
             (None, None, None) => Ok(Modulus::BarrierAlone(alone)),
@@ -197,7 +121,7 @@ impl Problem {
         &self,
         is_hertz: bool,
         gamma_follows: bool,
-    ) -> Result<Option<Units>, DesignError> {
+    ) -> Result<Option<Units>, ProblemError> {
         let design = self.design()?;
         let first = |keys: &[&'static str]| keys.iter().copied().find(|key| self.gives(key));
         let silent = |groups: &[&[&'static str]]| first(&groups.concat());
@@ -219,7 +143,10 @@ impl Problem {
                 false => silent(&[&PENDULUM, &RADIUS, &MODULI, &YIELD]),
             };
             return match unused {
-                Some(key) => Err(DesignError::NotHertz { key }),
+                Some(key) => refused(format!(
+                    "`{key}` says nothing here: SI units are those of the pendulum with the contact of Hertz, leave it out or leave \
+                     out `equation` and `force`"
+                )),
                 None => Ok(None),
             };
         }
@@ -227,7 +154,9 @@ impl Problem {
             return Ok(Some(units));
         }
         if let Some(key) = first(&MODULI) {
-            return Err(DesignError::BesideGamma { key });
+            return refused(format!(
+                "`{key}` changes nothing where gamma is given: leave one of them out"
+            ));
         }
         let given =
             |name: &str, own: &str| self.gives(own) || self.gives(&format!("[design] {name}"));
@@ -236,13 +165,19 @@ impl Problem {
             needed.filter(|(name, own)| !given(name, own)).map(|(name, _)| name).collect();
         if !missing.is_empty() {
             return match silent(&[&PENDULUM, &RADIUS, &YIELD]) {
-                Some(key) => Err(DesignError::Incomplete { key, missing: missing.join(" and ") }),
+                Some(key) => refused(format!(
+                    "`{key}` says nothing beside a gamma that is given: SI units need mass, length and gravity as well, give {}, or \
+                     leave it out",
+                    missing.join(" and ")
+                )),
                 None => Ok(None),
             };
         }
         let radius = given("radius", RADIUS[0]).then_some(design.radius);
         if let (None, Some(key)) = (radius, first(&YIELD)) {
-            return Err(DesignError::NoPressure { key });
+            return refused(format!(
+                "`{key}` is held against the peak pressure, which beside a gamma that is given needs the radius: give [sphere] radius"
+            ));
         }
         positive("[design] mass", design.mass)?;
         positive("[design] length", design.length)?;
@@ -279,18 +214,30 @@ impl Problem {
     }
 }
 
-pub(super) fn positive(key: &'static str, value: f64) -> Result<f64, DesignError> {
+/// The number under a key.
+///
+/// # Errors
+/// A number that is not positive.
+pub(super) fn positive(key: &str, value: f64) -> Result<f64, ProblemError> {
     match value.is_finite() && value > 0.0 {
         true => Ok(value),
-        false => Err(DesignError::NotPositive { key, value }),
+        false => refused(format!("`{key}` must be a positive number, not {value}")),
     }
+}
+
+/// Refuses half of what an equivalent modulus needs.
+pub(super) fn needs<T>(key: &str, missing: &str) -> Result<T, ProblemError> {
+    refused(format!(
+        "`{key}` needs `{missing}` beside it: the modulus of both bodies is 1/E = (1 - nu1^2)/E1 + (1 - nu2^2)/E2; without any of \
+         them it is that of the barrier alone"
+    ))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn design(text: &str) -> Result<Design, DesignError> {
+    fn design(text: &str) -> Result<Design, ProblemError> {
         text.parse::<Problem>().unwrap().design()
     }
 
@@ -329,14 +276,13 @@ mod tests {
         assert_eq!((found.radius, found.modulus, found.length), (None, None, 0.25));
         let found = units(&format!("{all}[sphere]\nradius = 0.01\nyield = 1e9")).unwrap().unwrap();
         assert_eq!((found.radius, found.sphere_yield), (Some(0.01), Some(1e9)));
-        assert!(matches!(units("[pendulum]\nmass = 1"), Err(DesignError::Incomplete { .. })));
-        assert!(matches!(
-            units(&format!("{all}[barrier]\nyield = 1e9")),
-            Err(DesignError::NoPressure { .. })
-        ));
-        assert!(matches!(
-            units(&format!("{all}[barrier]\nmodulus = 1e9")),
-            Err(DesignError::BesideGamma { .. })
-        ));
+        for (text, words) in [
+            ("[pendulum]\nmass = 1", "give length and gravity"),
+            (&format!("{all}[barrier]\nyield = 1e9"), "needs the radius"),
+            (&format!("{all}[barrier]\nmodulus = 1e9"), "changes nothing where gamma is given"),
+        ] {
+            let error = units(text).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        }
     }
 }

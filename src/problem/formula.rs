@@ -1,9 +1,7 @@
 //! What `derive`, `compare` and `response` read of a problem file: an equation, and how and where
 //! to solve it.
 
-use thiserror::Error;
-
-use super::{MechanismFileError, Order, Problem, ProblemError, Reader, UnreadKey};
+use super::{Order, Problem, ProblemError, Reader, refused};
 use crate::expr::parse_expression;
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -26,32 +24,6 @@ pub struct Formula<'a> {
     pub amplitude: Option<&'a str>,
 }
 
-/// Why a file gives no formula.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum FormulaError {
-    /// A key that belongs to another command.
-    #[error(transparent)]
-    Unread(#[from] UnreadKey),
-    /// A mechanism whose equation cannot be taken.
-    #[error(transparent)]
-    Mechanism(#[from] MechanismFileError),
-    /// No equation.
-    #[error("the file has no `equation`")]
-    NoEquation,
-}
-
-impl FormulaError {
-    /// What to write instead, where it is known.
-    pub fn help(&self) -> Option<String> {
-        match self {
-            Self::NoEquation => Some("equation = \"x'' + sin(x) = 0\"".to_owned()),
-            Self::Mechanism(error) => error.help(),
-            Self::Unread(_) => None,
-        }
-    }
-}
-
 impl Problem {
     /// The equation of the file and its choices, for one of the commands that derive formulas.
     ///
@@ -65,11 +37,15 @@ impl Problem {
     /// assert_eq!(file.formula(Reader::Derive)?.small, Some("eps"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn formula(&self, reader: Reader) -> Result<Formula<'_>, FormulaError> {
+    pub fn formula(&self, reader: Reader) -> Result<Formula<'_>, ProblemError> {
         self.check_keys(reader)?;
         self.check_derived_equation()?;
+        let Some(equation) = self.equation.as_deref() else {
+            let help = "equation = \"x'' + sin(x) = 0\"".to_owned();
+            return Err(ProblemError::new("the file has no `equation`").with_help(help));
+        };
         Ok(Formula {
-            equation: self.equation.as_deref().ok_or(FormulaError::NoEquation)?,
+            equation,
             about: self.about.as_deref(),
             small: self.small.as_deref(),
             method: self.method.as_deref(),
@@ -99,11 +75,16 @@ impl Problem {
                 toml::Value::Integer(number) => number.to_string(),
                 // The shortest decimal that reads back to the same float is what was typed.
                 toml::Value::Float(number) if number.is_finite() => number.to_string(),
-                _ => return Err(ProblemError::Value(name.clone())),
+                _ => {
+                    return refused(format!(
+                        "the value of `{name}` in [values] should be a number, or text such as \"pi/3\""
+                    ));
+                }
             };
-            let error =
-                |error| ProblemError::Expression { name: name.clone(), error: Box::new(error) };
-            values.insert(Symbol::new(name), parse_expression(&text).map_err(error)?)?;
+            let value = parse_expression(&text).map_err(|error| {
+                ProblemError::new(format!("the value of `{name}` in [values]: {error}"))
+            })?;
+            values.insert(Symbol::new(name), value)?;
         }
         Ok(values)
     }

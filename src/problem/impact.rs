@@ -1,168 +1,18 @@
 //! What `impact` reads of a problem file: an undamped swing and its barrier, released from rest.
 
-use thiserror::Error;
-
-use super::{Barrier, BarrierSide, Order, Problem, ProblemError, Reader, UnreadKey};
-use crate::expr::{Expr, ParseError, parse_expression};
-use crate::impact::contact::{ContactLaw, UnknownContactLaw};
+use super::{Barrier, BarrierSide, Order, Problem, ProblemError, Reader, refused};
+use crate::expr::{Expr, parse_expression};
+use crate::impact::contact::ContactLaw;
 use crate::impact::hertz::{Design, NotPositive};
 use crate::impact::{
-    CollisionError, ContactDamping, ContactLoss, ContactScales, DampingError, Rule, Setup, Side,
-    SpeedUnit, UnknownRule,
+    CollisionError, ContactDamping, ContactLoss, ContactScales, Rule, Setup, Side, SpeedUnit,
+    UnknownRule,
 };
-use crate::oscillator::{Oscillator, OscillatorError};
+use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Method};
 use crate::spelling::nearest;
 use crate::symbol::Symbol;
 use crate::values::Values;
-
-/// Why a file describes no impact in closed form.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum ImpactFileError {
-    /// A key that belongs to another command.
-    #[error(transparent)]
-    Unread(#[from] UnreadKey),
-    /// The design, or the rule.
-    #[error(transparent)]
-    Problem(#[from] ProblemError),
-    /// The swing.
-    #[error(transparent)]
-    Swing(#[from] OscillatorError),
-    /// The amplitude.
-    #[error(transparent)]
-    Collision(#[from] CollisionError),
-    /// Something that damps.
-    #[error(
-        "the flights in closed form are those of the undamped equation (9): leave out zeta and alpha, or use `lindstedt simulate`"
-    )]
-    Damped,
-    /// Two losses of the contact.
-    #[error("[contact] has both {0} and {1}: either says what the contact loses, give one of them")]
-    TwoLosses(&'static str, &'static str),
-    /// A speed at which nothing is stated.
-    #[error(
-        "[contact] at_speed changes nothing without restitution: give that too, or leave it out"
-    )]
-    SpeedAlone,
-    /// A damping that makes no number of equation (7).
-    #[error(transparent)]
-    DampingBeyond(#[from] DampingError),
-    /// A restitution that is none.
-    #[error(
-        "[contact] restitution must lie above 0 and be at most 1, not {0}: 1 is a contact without loss"
-    )]
-    Restitution(f64),
-    /// A damping that is none.
-    #[error(
-        "[contact] {key} must be a number and not negative, not {value}: 0 is a contact without loss"
-    )]
-    Damping {
-        /// The key.
-        key: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// A damping in units that an equation or a force of one's own does not have.
-    #[error(
-        "[contact] {0} belongs to the pendulum at the barrier of Hertz: with an `equation` or a `force` give `restitution`"
-    )]
-    DampingOfItsOwn(&'static str),
-    /// A law or a line for a contact that loses energy.
-    #[error(
-        "[contact] {key} is that of a contact without loss: beside {loss} the law is that of Hunt and Crossley, leave one of them out"
-    )]
-    LawBesideLoss {
-        /// The key of the law.
-        key: &'static str,
-        /// The key of the loss.
-        loss: &'static str,
-    },
-    /// A law that is none.
-    #[error("[contact] law: {0}, or all for a table of them")]
-    Law(#[from] UnknownContactLaw),
-    /// A design without a length or gravity.
-    #[error("[design]: {0}")]
-    Design(#[from] NotPositive),
-    /// A moving pivot.
-    #[error(
-        "the three phases in closed form are those of the free motion, equation (9): leave out [excitation], or use \
-         `lindstedt simulate`"
-    )]
-    Driven,
-    /// A start that is not from rest.
-    #[error("the three phases begin at rest: leave out `speed`, or use `lindstedt simulate`")]
-    Start,
-    /// A method that is none.
-    #[error("unknown method `{name}`{}", near.map_or(String::new(), |near| format!(": did you mean `{near}`?")))]
-    Method {
-        /// As written.
-        name: String,
-        /// The name that may be meant.
-        near: Option<&'static str>,
-    },
-    /// A convention that is none.
-    #[error("unknown amplitude `{0}`: choose initial or first-harmonic")]
-    Convention(String),
-    /// An equilibrium that is none.
-    #[error(
-        "about = \"{text}\": expected \"{coordinate} = VALUE\", an equilibrium of the coordinate {coordinate}"
-    )]
-    About {
-        /// As written.
-        text: String,
-        /// The coordinate.
-        coordinate: Symbol,
-    },
-    /// A force that cannot be read.
-    #[error("[contact] force = \"{text}\": {error}")]
-    Force {
-        /// As written.
-        text: String,
-        /// Why.
-        error: Box<ParseError>,
-    },
-    /// A stiffness beside a force that does not contain it.
-    #[error("gamma says nothing beside the force `{0}`: write it into the force, or leave it out")]
-    UnusedStiffness(String),
-    /// A left barrier in the way.
-    #[error(
-        "released from rest at x = -amplitude the pendulum starts behind the left barrier: move it below -amplitude"
-    )]
-    LeftBarrier,
-    /// No barrier.
-    #[error(
-        "an impact needs a barrier: leave out `barrier = false`, or follow the free swing by `lindstedt simulate`"
-    )]
-    NoBarrier,
-    /// A number given twice.
-    #[error("`{name}` in [values] and `{key}` say the same: give one of them")]
-    Twice {
-        /// The name in `[values]`.
-        name: &'static str,
-        /// The other key.
-        key: &'static str,
-    },
-    /// Two keys for the release.
-    #[error(
-        "`amplitude` says nothing beside `start`, where the swing is released: give one of them"
-    )]
-    AmplitudeBesideStart,
-    /// An equilibrium without an equation.
-    #[error("`about` chooses an equilibrium of `equation`: the pendulum has one, leave it out")]
-    AboutNothing,
-    /// An equation without the numbers of its impact.
-    #[error(
-        "an equation of your own needs a release A, a barrier {barrier} and its stiffness gamma, or a `force`: give {missing}, such \
-         as --at A=1 --at {barrier}=0.3 --at gamma=1e6"
-    )]
-    Missing {
-        /// The letter of the barrier.
-        barrier: String,
-        /// What is missing.
-        missing: String,
-    },
-}
 
 /// The impact of a problem file, in SI units where the file has them.
 ///
@@ -177,7 +27,7 @@ pub enum ImpactFileError {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 impl TryFrom<&Problem> for Setup {
-    type Error = ImpactFileError;
+    type Error = ProblemError;
 
     /// ```
     /// use lindstedt::impact::{Setup, solve};
@@ -188,19 +38,26 @@ impl TryFrom<&Problem> for Setup {
     /// assert!((impact.truth.penetration - 0.00544677).abs() < 1e-8);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    fn try_from(problem: &Problem) -> Result<Self, ImpactFileError> {
+    fn try_from(problem: &Problem) -> Result<Self, ProblemError> {
         problem.check_keys(Reader::Impact)?;
         let (damping, contact) = (&problem.damping, &problem.contact);
         let damps =
             [damping.zeta, damping.alpha].into_iter().chain(damping.viscous).chain(damping.torque);
         if damps.into_iter().any(|number| number != 0.0) {
-            return Err(ImpactFileError::Damped);
+            return refused(
+                "the flights in closed form are those of the undamped equation (9): leave out zeta and alpha, or use `lindstedt simulate`",
+            );
         }
         if problem.excitation.beta != 0.0 {
-            return Err(ImpactFileError::Driven);
+            return refused(
+                "the three phases in closed form are those of the free motion, equation (9): leave out [excitation], or use \
+                 `lindstedt simulate`",
+            );
         }
         if problem.pendulum.speed.is_some_and(|speed| speed != 0.0) {
-            return Err(ImpactFileError::Start);
+            return refused(
+                "the three phases begin at rest: leave out `speed`, or use `lindstedt simulate`",
+            );
         }
         let swing = swing(problem)?;
         let force = force(problem)?;
@@ -227,12 +84,14 @@ impl TryFrom<&Problem> for Setup {
             && gives_stiffness
             && !force.contains(Symbol::new("gamma"))
         {
-            return Err(ImpactFileError::UnusedStiffness(force.to_string()));
+            return refused(format!(
+                "gamma says nothing beside the force `{force}`: write it into the force, or leave it out"
+            ));
         }
         let is_hertz = swing.is_none() && force.is_none();
         let has_stiffness = |force: &Expr| force.contains(Symbol::new("gamma"));
         let gamma_follows = !gives_stiffness && force.as_ref().is_none_or(has_stiffness);
-        let units = problem.units(is_hertz, gamma_follows).map_err(ProblemError::from)?;
+        let units = problem.units(is_hertz, gamma_follows)?;
         let is_all = |name: &Option<String>| name.as_deref() == Some(EVERY_LAW);
         Ok(Self {
             swing,
@@ -248,7 +107,7 @@ impl TryFrom<&Problem> for Setup {
             order: problem.order.and_then(Order::power),
             degrees: problem.order.and_then(Order::degrees),
             amplitude_convention: convention(problem)?,
-            rule: linearisation(problem).map_err(ProblemError::from)?,
+            rule: linearisation(problem)?,
             contact_law: match contact.law.as_deref() {
                 None | Some(EVERY_LAW) => ContactLaw::default(),
                 Some(name) => name.parse()?,
@@ -280,7 +139,7 @@ impl Numbers {
         problem: &Problem,
         swing: Option<&Oscillator>,
         has_force: bool,
-    ) -> Result<Self, ImpactFileError> {
+    ) -> Result<Self, ProblemError> {
         let parameters = swing.map_or(&[][..], |swing| &swing.parameters);
         let coordinate = swing.map_or("x", |swing| swing.coordinate.name());
         let letters = [
@@ -299,23 +158,28 @@ impl Numbers {
             // The command line wins over the file.
             let wins = problem.overriding.contains(written);
             if found.is_some() && problem.gives(key) && !wins {
-                return Err(ImpactFileError::Twice { name: letter, key });
+                return refused(format!(
+                    "`{letter}` in [values] and `{key}` say the same: give one of them"
+                ));
             }
         }
         let starts = problem.pendulum.start.is_some();
         let gives = |index: usize| found[index].is_some() || problem.gives(letters[index].2);
         if starts && gives(0) {
-            return Err(ImpactFileError::AmplitudeBesideStart);
+            return refused(
+                "`amplitude` says nothing beside `start`, where the swing is released: give one of them",
+            );
         }
         if swing.is_some() {
             let given = [gives(0) || starts, gives(1), gives(2) || has_force];
             let missing = letters.iter().zip(given).filter(|(_, given)| !given);
             let missing: Vec<&str> = missing.map(|((name, ..), _)| name.as_str()).collect();
             if !missing.is_empty() {
-                return Err(ImpactFileError::Missing {
-                    barrier: letters[1].0.clone(),
-                    missing: missing.join(" and "),
-                });
+                let (barrier, missing) = (&letters[1].0, missing.join(" and "));
+                return refused(format!(
+                    "an equation of your own needs a release A, a barrier {barrier} and its stiffness gamma, or a `force`: give \
+                     {missing}, such as --at A=1 --at {barrier}=0.3 --at gamma=1e6"
+                ));
             }
         }
         let [amplitude, barrier, stiffness] = found;
@@ -325,23 +189,29 @@ impl Numbers {
 
 /// The place of the barrier on this side; one on the other is never touched again, where it stands
 /// beyond the release.
-fn barrier(barrier: Barrier, side: Side, release: f64) -> Result<f64, ImpactFileError> {
+fn barrier(barrier: Barrier, side: Side, release: f64) -> Result<f64, ProblemError> {
     match (barrier, side) {
-        (Barrier::Absent(_), _) => Err(ImpactFileError::NoBarrier),
+        (Barrier::Absent(_), _) => refused(
+            "an impact needs a barrier: leave out `barrier = false`, or follow the free swing by `lindstedt simulate`",
+        ),
         (Barrier::One(position), _) => Ok(position),
         (Barrier::Both([left, right]), Side::Right) if left < release => Ok(right),
         (Barrier::Both([left, right]), Side::Left) if right > release => Ok(left),
-        (Barrier::Both(_), _) => Err(ImpactFileError::LeftBarrier),
+        (Barrier::Both(_), _) => refused(
+            "released from rest at x = -amplitude the pendulum starts behind the left barrier: move it below -amplitude",
+        ),
     }
 }
 
 /// The swing, about the equilibrium asked for.
-fn swing(problem: &Problem) -> Result<Option<Oscillator>, ImpactFileError> {
-    problem.check_derived_equation().map_err(ProblemError::from)?;
+fn swing(problem: &Problem) -> Result<Option<Oscillator>, ProblemError> {
+    problem.check_derived_equation()?;
     let Some(equation) = &problem.equation else {
         return match problem.about {
             None => Ok(None),
-            Some(_) => Err(ImpactFileError::AboutNothing),
+            Some(_) => refused(
+                "`about` chooses an equilibrium of `equation`: the pendulum has one, leave it out",
+            ),
         };
     };
     let swing = Oscillator::parse(equation)?;
@@ -354,37 +224,40 @@ fn swing(problem: &Problem) -> Result<Option<Oscillator>, ImpactFileError> {
     let known = |place: &Expr| place.symbols().iter().all(|name| swing.parameters.contains(name));
     match place.filter(known) {
         Some(place) => Ok(Some(swing.about(place))),
-        None => Err(ImpactFileError::About { text: text.clone(), coordinate }),
+        None => refused(format!(
+            "about = \"{text}\": expected \"{coordinate} = VALUE\", an equilibrium of the coordinate {coordinate}"
+        )),
     }
 }
 
 /// The whole force of the barrier.
-fn force(problem: &Problem) -> Result<Option<Expr>, ImpactFileError> {
+fn force(problem: &Problem) -> Result<Option<Expr>, ProblemError> {
     let Some(text) = &problem.contact.force else {
         return Ok(None);
     };
-    let force = parse_expression(text);
-    let force = force
-        .map_err(|error| ImpactFileError::Force { text: text.clone(), error: Box::new(error) })?;
-    Ok(Some(force))
+    let refusal = |error| ProblemError::new(format!("[contact] force = \"{text}\": {error}"));
+    parse_expression(text).map(Some).map_err(refusal)
 }
 
-fn method(problem: &Problem) -> Result<Option<Method>, ImpactFileError> {
+fn method(problem: &Problem) -> Result<Option<Method>, ProblemError> {
     let Some(name) = &problem.method else {
         return Ok(None);
     };
-    let unknown = || ImpactFileError::Method {
-        name: name.clone(),
-        near: nearest(name, Method::ALL.iter().map(|method| method.name())),
+    let unknown = || {
+        let near = nearest(name, Method::ALL.iter().map(|method| method.name()));
+        let near = near.map_or(String::new(), |near| format!(": did you mean `{near}`?"));
+        ProblemError::new(format!("unknown method `{name}`{near}"))
     };
     Method::from_name(name).map(Some).ok_or_else(unknown)
 }
 
-fn convention(problem: &Problem) -> Result<Option<AmplitudeConvention>, ImpactFileError> {
+fn convention(problem: &Problem) -> Result<Option<AmplitudeConvention>, ProblemError> {
     let Some(name) = &problem.amplitude else {
         return Ok(None);
     };
-    let unknown = || ImpactFileError::Convention(name.clone());
+    let unknown = || {
+        ProblemError::new(format!("unknown amplitude `{name}`: choose initial or first-harmonic"))
+    };
     AmplitudeConvention::from_name(name).map(Some).ok_or_else(unknown)
 }
 
@@ -400,7 +273,7 @@ fn linearisation(problem: &Problem) -> Result<Rule, UnknownRule> {
 }
 
 /// What the contact loses.
-fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, ImpactFileError> {
+fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, ProblemError> {
     let contact = &problem.contact;
     let losses = [
         ("mu", contact.mu),
@@ -412,35 +285,52 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Impact
     let given: Vec<(&'static str, f64)> =
         losses.into_iter().filter_map(|(key, value)| value.map(|value| (key, value))).collect();
     if contact.at_speed.is_some() && contact.restitution.is_none() {
-        return Err(ImpactFileError::SpeedAlone);
+        return refused(
+            "[contact] at_speed changes nothing without restitution: give that too, or leave it out",
+        );
     }
     let (key, value) = match given[..] {
         [] => return Ok(None),
         [one] => one,
-        [(one, _), (other, _), ..] => return Err(ImpactFileError::TwoLosses(one, other)),
+        [(one, _), (other, _), ..] => {
+            return refused(format!(
+                "[contact] has both {one} and {other}: either says what the contact loses, give one of them"
+            ));
+        }
     };
     let of_restitution = key == "restitution";
     if of_restitution && !(value > 0.0 && value <= 1.0) {
-        return Err(ImpactFileError::Restitution(value));
+        return refused(format!(
+            "[contact] restitution must lie above 0 and be at most 1, not {value}: 1 is a contact without loss"
+        ));
     }
+    let no_damping = || {
+        refused(format!(
+            "[contact] {key} must be a number and not negative, not {value}: 0 is a contact without loss"
+        ))
+    };
     if !(value.is_finite() && value >= 0.0) {
-        return Err(ImpactFileError::Damping { key, value });
+        return no_damping();
     }
     // A contact without loss.
     if value == if of_restitution { 1.0 } else { 0.0 } {
         return Ok(None);
     }
     if !of_restitution && (problem.equation.is_some() || contact.force.is_some()) {
-        return Err(ImpactFileError::DampingOfItsOwn(key));
+        return refused(format!(
+            "[contact] {key} belongs to the pendulum at the barrier of Hertz: with an `equation` or a `force` give `restitution`"
+        ));
     }
     let laws = [("law", &contact.law), ("linearisation", &contact.linearisation)];
     if let Some((law, _)) = laws.into_iter().find(|(_, name)| name.is_some()) {
-        return Err(ImpactFileError::LawBesideLoss { key: law, loss: key });
+        return refused(format!(
+            "[contact] {law} is that of a contact without loss: beside {key} the law is that of Hunt and Crossley, leave one of them out"
+        ));
     }
     if of_restitution && contact.at_speed.is_none() {
         return Ok(Some(ContactLoss::Restitution(value)));
     }
-    let Design { mass, length, gravity, .. } = problem.design().map_err(ProblemError::from)?;
+    let Design { mass, length, gravity, .. } = problem.design()?;
     let needed: &[(&'static str, f64)] = match key {
         "lambda" => &[("length", length), ("gravity", gravity)],
         "damping" => &[("mass", mass), ("length", length), ("gravity", gravity)],
@@ -467,6 +357,6 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Impact
     };
     match damping.in_form(ContactDamping::MuOverGamma(0.0), &scales)?.value() {
         ratio if ratio.is_finite() => Ok(Some(ContactLoss::Damping(ratio))),
-        _ => Err(ImpactFileError::Damping { key, value }),
+        _ => no_damping(),
     }
 }

@@ -3,9 +3,7 @@
 
 use std::fmt;
 
-use thiserror::Error;
-
-use super::Problem;
+use super::{Problem, ProblemError, refused};
 
 /// The commands that read problem files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -174,36 +172,6 @@ pub(super) fn given(file: &toml::Table) -> Vec<String> {
     keys
 }
 
-/// A file that a command cannot take at its word.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum UnreadKey {
-    /// A key that would be ignored.
-    #[error("`{key}` says nothing to `{reader}`: leave it out, or use {others}")]
-    Key {
-        /// The key, with its section.
-        key: String,
-        /// The command.
-        reader: Reader,
-        /// Those that read it.
-        others: String,
-    },
-    /// A key that the same command reads, but not beside what else the file has.
-    #[error(
-        "`{key}` says nothing beside the equation, the mechanism or the main mass of the file: leave it out"
-    )]
-    Beside {
-        /// The key, with its section.
-        key: String,
-    },
-    /// A pendulum and its barrier where an equation is wanted.
-    #[error(
-        "the file describes a pendulum and a barrier and has no `equation` for `{0}`: use `lindstedt impact` or \
-         `lindstedt simulate`"
-    )]
-    NoEquation(Reader),
-}
-
 impl Problem {
     /// Whether the file gives this key: `order`, `[run] duration`.
     pub(super) fn gives(&self, key: &str) -> bool {
@@ -213,15 +181,18 @@ impl Problem {
     /// Refuses keys that this command would ignore.
     ///
     /// # Errors
-    /// [`UnreadKey`] names the first, and the commands that read it.
-    pub fn check_keys(&self, reader: Reader) -> Result<(), UnreadKey> {
+    /// [`ProblemError`] names the first, and the commands that read it.
+    pub fn check_keys(&self, reader: Reader) -> Result<(), ProblemError> {
         let described = self.given.iter().any(|key| key.starts_with('[') && key != "[values]");
         if matches!(reader, Derive | Compare | Stability | Response)
             && self.equation.is_none()
             && self.lagrangian.is_none()
             && described
         {
-            return Err(UnreadKey::NoEquation(reader));
+            return refused(format!(
+                "the file describes a pendulum and a barrier and has no `equation` for `{reader}`: use `lindstedt impact` or \
+                 `lindstedt simulate`"
+            ));
         }
         for (key, readers) in KEYS {
             if self.gives(key) && !readers.contains(&reader) {
@@ -233,13 +204,14 @@ impl Problem {
                         names.push(name);
                     }
                 }
-                if names.is_empty() {
-                    return Err(UnreadKey::Beside { key: key.to_owned() });
-                }
-                return Err(UnreadKey::Key {
-                    key: key.to_owned(),
-                    reader,
-                    others: names.join(" or "),
+                return refused(match names.is_empty() {
+                    true => format!(
+                        "`{key}` says nothing beside the equation, the mechanism or the main mass of the file: leave it out"
+                    ),
+                    false => format!(
+                        "`{key}` says nothing to {own}: leave it out, or use {}",
+                        names.join(" or ")
+                    ),
                 });
             }
         }

@@ -5,84 +5,21 @@
 //! rule of the other files: alone as in the paper, or with its Poisson's ratio under a rigid sphere
 //! or, where `[sphere]` has a modulus, that of both bodies.
 
-use thiserror::Error;
-
+use super::design::{needs, positive};
 use super::document::MaterialSection;
-use super::simulate::refuse_two_forms;
-use super::{DesignError, Problem, ProblemError, Reader, SimulateError, SphereSection, UnreadKey};
+use super::simulate::{refuse_two_forms, without};
+use super::{Problem, ProblemError, Reader, SphereSection, refused};
 use crate::impact::{
     ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Integrator, Material, MaterialQuestion,
     Modulus, Parameter, default_lambda,
 };
-
-/// Why a problem file is no study of materials.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum MaterialsFileError {
-    /// A key that belongs to another command.
-    #[error(transparent)]
-    Unread(#[from] UnreadKey),
-    /// The pendulum, what damps it, or the run.
-    #[error(transparent)]
-    Simulate(#[from] SimulateError),
-    /// The bodies.
-    #[error(transparent)]
-    Bodies(#[from] DesignError),
-    /// A swing without a barrier.
-    #[error("a study of materials needs a barrier: leave out `barrier = false`")]
-    NoBarrier,
-    /// An empty list.
-    #[error(
-        "`material = []` lists no material: give [[material]] with a name and a modulus, or leave it out"
-    )]
-    NoMaterial,
-    /// A material that is none.
-    #[error("material `{name}`: {error}")]
-    Material {
-        /// Its name.
-        name: String,
-        /// Why.
-        error: DesignError,
-    },
-    /// A material without a name.
-    #[error("a [[material]] has an empty name: give it one, for the tables go by it")]
-    NoName,
-    /// Two of one name.
-    #[error("two materials are called `{0}`: give one of them another name")]
-    SameName(String),
-    /// Two dampings of one material.
-    #[error("material `{name}`: `{key}` and `{other}` say the same: give one of them")]
-    TwoDampings {
-        /// Its name.
-        name: String,
-        /// The key.
-        key: &'static str,
-        /// The other one.
-        other: &'static str,
-    },
-    /// A speed at which nothing is stated.
-    #[error(
-        "material `{0}`: `at_speed` changes nothing without `restitution`: give that too, or leave it out"
-    )]
-    SpeedAlone(String),
-}
-
-impl MaterialsFileError {
-    /// What to write instead, where it is known.
-    pub fn help(&self) -> Option<String> {
-        match self {
-            Self::Simulate(error) => error.help(),
-            _ => None,
-        }
-    }
-}
 
 impl Problem {
     /// The study that this file asks for: of the paper's Table 2 and its own materials, or
     /// `only_own` of these alone.
     ///
     /// # Errors
-    /// [`MaterialsFileError`] names the key, or the material.
+    /// [`ProblemError`] names the key, or the material.
     ///
     /// ```
     /// use lindstedt::problem::Problem;
@@ -92,18 +29,16 @@ impl Problem {
     /// assert_eq!(file.materials(true)?.materials[0].name, "Rubber");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn materials(&self, only_own: bool) -> Result<MaterialQuestion, MaterialsFileError> {
+    pub fn materials(&self, only_own: bool) -> Result<MaterialQuestion, ProblemError> {
         self.check_keys(Reader::Materials)?;
         let gives = |parameter| self.gives_parameter(parameter);
         refuse_two_forms(gives)?;
         self.check_pairs(gives)?;
         let mut case = self.for_design().case()?;
         if case.left.is_none() && case.right.is_none() {
-            return Err(MaterialsFileError::NoBarrier);
+            return refused("a study of materials needs a barrier: leave out `barrier = false`");
         }
-        if self.material.is_empty() && self.gives("[[material]]") {
-            return Err(MaterialsFileError::NoMaterial);
-        }
+        self.check_materials()?;
         let mut settings = self.settings()?;
         let mut defaults = Vec::new();
         if !ContactDamping::FORMS.into_iter().any(gives) {
@@ -141,15 +76,25 @@ impl Problem {
         }
     }
 
+    /// Refuses an empty list.
+    pub(super) fn check_materials(&self) -> Result<(), ProblemError> {
+        match self.material.is_empty() && self.gives("[[material]]") {
+            true => refused(
+                "`material = []` lists no material: give [[material]] with a name and a modulus, or leave it out",
+            ),
+            false => Ok(()),
+        }
+    }
+
     /// The materials of the file, after those that are there already.
-    pub(super) fn own_materials(
-        &self,
-        materials: &mut Vec<Material>,
-    ) -> Result<(), MaterialsFileError> {
+    pub(super) fn own_materials(&self, materials: &mut Vec<Material>) -> Result<(), ProblemError> {
         for section in &self.material {
             let material = self.a_material(section)?;
             if materials.iter().any(|known| known.name == material.name) {
-                return Err(MaterialsFileError::SameName(material.name));
+                return refused(format!(
+                    "two materials are called `{}`: give one of them another name",
+                    material.name
+                ));
             }
             materials.push(material);
         }
@@ -157,33 +102,34 @@ impl Problem {
         if two_bodies && self.material.iter().all(|material| material.poisson.is_none()) {
             let key =
                 if self.sphere.modulus.is_some() { "[sphere] modulus" } else { "[sphere] poisson" };
-            let missing = "[[material]] poisson";
-            return Err(DesignError::Needs { key, missing }.into());
+            return needs(key, "[[material]] poisson");
         }
         Ok(())
     }
 
-    fn a_material(&self, section: &MaterialSection) -> Result<Material, MaterialsFileError> {
+    fn a_material(&self, section: &MaterialSection) -> Result<Material, ProblemError> {
         let name = section.name.trim().to_owned();
         if name.is_empty() {
-            return Err(MaterialsFileError::NoName);
+            return refused(
+                "a [[material]] has an empty name: give it one, for the tables go by it",
+            );
         }
         let keys = ["[[material]] modulus", "[[material]] poisson"];
-        let of_material = |error| MaterialsFileError::Material { name: name.clone(), error };
+        let of_material = |error| ProblemError::new(format!("material `{name}`: {error}"));
         let modulus = match section.poisson {
-            None => super::design::positive(keys[0], section.modulus).map(Modulus::BarrierAlone),
+            None => positive(keys[0], section.modulus).map(Modulus::BarrierAlone),
             Some(_) => self.modulus_of(keys, section.modulus, section.poisson),
         };
         let dampings = section.given_dampings();
         if let [one, other, ..] = dampings[..] {
-            return Err(MaterialsFileError::TwoDampings {
-                name,
-                key: one.form().name(),
-                other: other.form().name(),
-            });
+            return refused(format!(
+                "material `{name}`: `{}` and `{}` say the same: give one of them",
+                one.form().name(),
+                other.form().name()
+            ));
         }
         if section.at_speed.is_some() && section.restitution.is_none() {
-            return Err(MaterialsFileError::SpeedAlone(name));
+            return refused(format!("material `{name}`: {}", without("at_speed", &"restitution")));
         }
         Ok(Material {
             modulus: modulus.map_err(of_material)?,
@@ -200,14 +146,8 @@ impl Problem {
         &self,
         key: &'static str,
         limit: Option<f64>,
-    ) -> Result<Option<f64>, DesignError> {
-        limit.map(|limit| super::design::positive(key, limit)).transpose()
-    }
-}
-
-impl From<ProblemError> for MaterialsFileError {
-    fn from(error: ProblemError) -> Self {
-        Self::Simulate(error.into())
+    ) -> Result<Option<f64>, ProblemError> {
+        limit.map(|limit| positive(key, limit)).transpose()
     }
 }
 
@@ -216,7 +156,7 @@ mod tests {
     use super::*;
     use crate::impact::hertz::Design;
 
-    fn asked(text: &str) -> Result<MaterialQuestion, MaterialsFileError> {
+    fn asked(text: &str) -> Result<MaterialQuestion, ProblemError> {
         text.parse::<Problem>().unwrap().materials(false)
     }
 

@@ -3,86 +3,18 @@
 
 use std::collections::BTreeMap;
 
-use thiserror::Error;
-
 use super::document::LagrangianSection;
-use super::{Problem, ProblemError};
-use crate::expr::{Expr, ParseError, parse_equation, parse_expression};
-use crate::mechanics::{Dimension, MechanicsError, Mechanism, MechanismQuestion, UnitError};
+use super::{Problem, ProblemError, refused};
+use crate::expr::{Expr, parse_equation, parse_expression};
+use crate::mechanics::{Dimension, Mechanism, MechanismQuestion, UnitError};
 use crate::symbol::Symbol;
-
-/// Why a file is no mechanism.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum MechanismFileError {
-    /// A text that is no expression.
-    #[error("[lagrangian] {key}: {error}")]
-    Parse {
-        /// The key.
-        key: String,
-        /// What is wrong with it.
-        error: Box<ParseError>,
-    },
-    /// A key that must be there.
-    #[error("[lagrangian] has no `{0}`")]
-    Missing(&'static str),
-    /// No equations of motion.
-    #[error("[lagrangian]: {0}")]
-    Mechanics(#[from] MechanicsError),
-    /// A unit that is none, or a term of a wrong one.
-    #[error("[units]: {0}")]
-    Unit(#[from] UnitError),
-    /// Two equations of motion.
-    #[error(
-        "the file has an `equation` and a [lagrangian], which gives another: leave one of them out"
-    )]
-    Twice,
-    /// Units without a mechanism.
-    #[error("[units] belong to the energies of a [lagrangian], which the file does not have")]
-    OnlyUnits,
-    /// No section.
-    #[error("the file has no [lagrangian]: give coordinates, kinetic and potential")]
-    NoMechanism,
-    /// Several equations where one is wanted.
-    #[error(
-        "the file describes a mechanism of {0} coordinates, and one equation of motion is wanted: `lindstedt lagrange` derives its \
-         equations, `lindstedt simulate` follows them"
-    )]
-    Several(usize),
-    /// A coordinate that an equation of its own cannot have.
-    #[error("the coordinate `{name}`: {error}")]
-    Coordinate {
-        /// The coordinate.
-        name: String,
-        /// What an equation says of it.
-        error: Box<ParseError>,
-    },
-}
-
-impl MechanismFileError {
-    /// What to write instead, where it is known.
-    pub fn help(&self) -> Option<String> {
-        match self {
-            Self::Unit(error) => error.help(),
-            Self::Missing(_) | Self::NoMechanism => {
-                Some("coordinates = [\"x\"], kinetic = \"m*L^2*x'^2/2\", potential = \"m*g*L*(1 - cos(x))\"".to_owned())
-            }
-            Self::Coordinate { .. } => Some(
-                "to hand an equation on, name the coordinate by a letter (Greek ones by name, such as phi) and its parameters by other \
-                 names than A, a and omega; `lindstedt lagrange` takes any"
-                    .to_owned(),
-            ),
-            _ => None,
-        }
-    }
-}
 
 impl Problem {
     /// The mechanism of the file and the units of its letters, ready for
     /// [`study`](crate::mechanics::study).
     ///
     /// # Errors
-    /// [`MechanismFileError`] names the key; values as in [`Problem::exact_values`].
+    /// [`ProblemError`] names the key; values as in [`Problem::exact_values`].
     ///
     /// ```
     /// use lindstedt::problem::Problem;
@@ -91,8 +23,8 @@ impl Problem {
     /// assert_eq!(file.mechanism()?.mechanism.equations()?.to_string(), "x'' + k*x/m = 0");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn mechanism(&self) -> Result<MechanismQuestion, MechanismFileError> {
-        let section = self.lagrangian.as_ref().ok_or(MechanismFileError::NoMechanism)?;
+    pub fn mechanism(&self) -> Result<MechanismQuestion, ProblemError> {
+        let section = self.lagrangian.as_ref().ok_or_else(no_mechanism)?;
         let mechanism = section.mechanism()?;
         let units = match self.units.is_empty() {
             true => None,
@@ -101,7 +33,7 @@ impl Problem {
         Ok(MechanismQuestion { mechanism, units, values: BTreeMap::new() })
     }
 
-    fn mechanism_units(&self) -> Result<BTreeMap<Symbol, Dimension>, MechanismFileError> {
+    fn mechanism_units(&self) -> Result<BTreeMap<Symbol, Dimension>, ProblemError> {
         let unit = |(name, unit): (&String, &String)| match unit.parse() {
             Ok(unit) => Ok((Symbol::new(name), unit)),
             Err(UnitError::Parse { error, .. }) => {
@@ -127,16 +59,20 @@ impl Problem {
         if self.lagrangian.is_none() {
             return match self.units.is_empty() {
                 true => Ok(self),
-                false => Err(MechanismFileError::OnlyUnits.into()),
+                false => refused(
+                    "[units] belong to the energies of a [lagrangian], which the file does not have",
+                ),
             };
         }
         if self.equation.is_some() {
-            return Err(MechanismFileError::Twice.into());
+            return refused(
+                "the file has an `equation` and a [lagrangian], which gives another: leave one of them out",
+            );
         }
         let question = self.mechanism()?;
-        let equations = question.mechanism.equations().map_err(MechanismFileError::from)?;
+        let equations = question.mechanism.equations()?;
         if let Some(units) = &question.units {
-            question.mechanism.check_units(units).map_err(MechanismFileError::from)?;
+            question.mechanism.check_units(units)?;
         }
         // A mass that stands in all energies is a letter of the file whose value says nothing of
         // the motion.
@@ -152,34 +88,61 @@ impl Problem {
     ///
     /// # Errors
     /// A coordinate of several letters, or a parameter that bears the name of an answer.
-    pub(super) fn check_derived_equation(&self) -> Result<(), MechanismFileError> {
+    pub(super) fn check_derived_equation(&self) -> Result<(), ProblemError> {
         let (Some(section), Some(equation)) = (&self.lagrangian, &self.equation) else {
             let count = self.lagrangian.as_ref().map_or(1, |section| section.coordinates.len());
             return match count {
                 1 => Ok(()),
-                count => Err(MechanismFileError::Several(count)),
+                count => refused(format!(
+                    "the file describes a mechanism of {count} coordinates, and one equation of motion is wanted: `lindstedt lagrange` \
+                     derives its equations, `lindstedt simulate` follows them"
+                )),
             };
         };
         let own = section.coordinates.first().cloned().unwrap_or_default();
         match parse_equation(equation) {
             Ok(_) => Ok(()),
-            Err(error) => Err(MechanismFileError::Coordinate { name: own, error: Box::new(error) }),
+            Err(error) => {
+                let help = "to hand an equation on, name the coordinate by a letter (Greek ones by name, such as phi) and its \
+                            parameters by other names than A, a and omega; `lindstedt lagrange` takes any";
+                let error = ProblemError::new(format!("the coordinate `{own}`: {error}"));
+                Err(error.with_help(help.to_owned()))
+            }
         }
     }
 }
 
+impl From<UnitError> for ProblemError {
+    fn from(error: UnitError) -> Self {
+        Self::new(format!("[units]: {error}")).with_help(error.help())
+    }
+}
+
+/// The refusal of a file without a mechanism.
+pub(super) fn no_mechanism() -> ProblemError {
+    needs_energies("the file has no [lagrangian]: give coordinates, kinetic and potential")
+}
+
+fn missing(key: &str) -> ProblemError {
+    needs_energies(&format!("[lagrangian] has no `{key}`"))
+}
+
+fn needs_energies(message: &str) -> ProblemError {
+    let example =
+        "coordinates = [\"x\"], kinetic = \"m*L^2*x'^2/2\", potential = \"m*g*L*(1 - cos(x))\"";
+    ProblemError::new(message).with_help(example.to_owned())
+}
+
 impl LagrangianSection {
-    fn mechanism(&self) -> Result<Mechanism, MechanismFileError> {
+    fn mechanism(&self) -> Result<Mechanism, ProblemError> {
         let read = |key: &str, text: &str| {
-            parse_expression(text).map_err(|error| MechanismFileError::Parse {
-                key: key.to_owned(),
-                error: Box::new(error),
-            })
+            parse_expression(text)
+                .map_err(|error| ProblemError::new(format!("[lagrangian] {key}: {error}")))
         };
         if self.coordinates.is_empty() {
-            return Err(MechanismFileError::Missing("coordinates"));
+            return Err(missing("coordinates"));
         }
-        let kinetic = self.kinetic.as_ref().ok_or(MechanismFileError::Missing("kinetic"))?;
+        let kinetic = self.kinetic.as_ref().ok_or_else(|| missing("kinetic"))?;
         let or_zero = |key: &str, text: &Option<String>| {
             text.as_ref().map_or(Ok(Expr::zero()), |text| read(key, text))
         };
@@ -191,7 +154,7 @@ impl LagrangianSection {
             kinetic: read("kinetic", kinetic)?,
             potential: or_zero("potential", &self.potential)?,
             dissipation: or_zero("dissipation", &self.dissipation)?,
-            forces: self.forces.iter().map(force).collect::<Result<_, MechanismFileError>>()?,
+            forces: self.forces.iter().map(force).collect::<Result<_, ProblemError>>()?,
         })
     }
 }

@@ -24,16 +24,18 @@ pub(crate) fn in_words(text: &str, error: &toml::de::Error) -> ProblemError {
         None => what.replacen("unknown field ", "unknown key ", 1),
     };
     let readable = |span: &Range<usize>| text.get(span.clone()).is_some();
-    let message = match error.span().filter(readable) {
-        None => what,
-        Some(span) => {
-            let before = &text[..span.start];
-            let line = before.matches('\n').count() + 1;
-            let [shown, carets] = excerpt(text, &span);
-            format!("line {line}: {what}\n  {shown}\n  {carets}")
-        }
+    let error = match error.span().filter(readable) {
+        None => ProblemError::new(what),
+        Some(span) => at_place(text, &span, &what),
     };
-    ProblemError::Toml { message, help: did_you_mean(said) }
+    error.with_help(did_you_mean(said))
+}
+
+/// The refusal of a place in a text, which is shown with its line and a caret below.
+pub(crate) fn at_place(text: &str, span: &Range<usize>, what: &str) -> ProblemError {
+    let line = text[..span.start].matches('\n').count() + 1;
+    let [shown, carets] = excerpt(text, span);
+    ProblemError::new(format!("line {line}: {what}\n  {shown}\n  {carets}"))
 }
 
 /// "invalid type: string "big", expected f64" in words.

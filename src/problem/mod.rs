@@ -30,83 +30,89 @@ mod trajectory;
 
 use std::str::FromStr;
 
-use crate::expr::ParseError;
+use crate::impact::contact::UnknownContactLaw;
 use crate::impact::hertz::{Design, NotPositive};
-use crate::impact::{Parameter, SpeedUnit, UnknownRule};
+use crate::impact::{CaseError, CollisionError, DampingError, Parameter, SpeedUnit, UnknownRule};
+use crate::mechanics::MechanicsError;
+use crate::optimize::OptimizeError;
+use crate::oscillator::OscillatorError;
+use crate::trajectory::TrajectoryError;
 use crate::values::ValueError;
 
-pub use design::DesignError;
 pub use document::{
     Barrier, BarrierSection, BarrierSide, Contact, Damping, DesignSection, Excitation,
     GeneticSection, LagrangianSection, LimitsSection, MaterialSection, NoBarrier, Objectives,
     Order, Pendulum, PrimarySection, Problem, Range, Run, SphereSection,
 };
-pub use formula::{Formula, FormulaError};
-pub use impact::ImpactFileError;
-pub use keys::{KEYS, Reader, UnreadKey};
-pub use materials::MaterialsFileError;
-pub use mechanism::MechanismFileError;
-pub(crate) use mistakes::in_words;
-pub use optimize::OptimizeFileError;
-pub use primary::{PrimaryFileError, PrimaryProblem};
-pub use simulate::{Simulate, SimulateError};
-pub use trajectory::TrajectoryFileError;
+pub use formula::Formula;
+pub use keys::{KEYS, Reader};
+pub(crate) use mistakes::{at_place, in_words};
+pub use primary::PrimaryProblem;
+pub use simulate::Simulate;
 
 /// The largest file that is read, in bytes.
 pub const LARGEST_FILE: usize = 1 << 20;
 
-/// Why a file is no problem.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ProblemError {
-    /// Not TOML, or a key or value that does not belong there; the text shows the line.
-    #[error("{message}")]
-    Toml {
-        /// The message with the line and a caret.
-        message: String,
-        /// The nearest known key.
-        help: Option<String>,
-    },
-    /// Too long.
-    #[error("the text is longer than the {LARGEST_FILE} bytes that a problem may have")]
-    TooLarge,
-    /// A value of `[values]` is neither a number nor an expression.
-    #[error("the value of `{0}` in [values] should be a number, or text such as \"pi/3\"")]
-    Value(String),
-    /// A value that does not parse.
-    #[error("the value of `{name}` in [values]: {error}")]
-    Expression {
-        /// The name.
-        name: String,
-        /// What is wrong with it.
-        error: Box<ParseError>,
-    },
-    /// A value that is no number.
-    #[error(transparent)]
-    NoValue(#[from] ValueError),
-    /// A design that has no stiffness.
-    #[error("[design]: {0}")]
-    Design(#[from] NotPositive),
-    /// Bodies that are none.
-    #[error(transparent)]
-    Bodies(#[from] DesignError),
-    /// Energies that give no equation of motion.
-    #[error(transparent)]
-    Mechanism(#[from] MechanismFileError),
-    /// An unknown rule.
-    #[error("[contact]: {0}")]
-    Rule(#[from] UnknownRule),
+/// Why a file cannot be taken at its word: what is wrong with which key, and what to write instead.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct ProblemError {
+    message: String,
+    help: Option<String>,
 }
 
 impl ProblemError {
+    /// A refusal in these words.
+    pub(crate) fn new(message: impl ToString) -> Self {
+        Self { message: message.to_string(), help: None }
+    }
+
+    /// The same with a way forward.
+    #[must_use]
+    pub(crate) fn with_help(self, help: impl Into<Option<String>>) -> Self {
+        Self { help: help.into(), ..self }
+    }
+
     /// What to write instead, where it is known.
     pub fn help(&self) -> Option<String> {
-        match self {
-            Self::Toml { help, .. } => help.clone(),
-            Self::Mechanism(error) => error.help(),
-            _ => None,
-        }
+        self.help.clone()
     }
+}
+
+/// A refusal in these words.
+fn refused<T>(message: impl ToString) -> Result<T, ProblemError> {
+    Err(ProblemError::new(message))
+}
+
+/// Errors of the engine, which name the key themselves, and those that get its section.
+macro_rules! as_problem_errors {
+    ($($error:ty: $words:literal,)*) => {$(
+        impl From<$error> for ProblemError {
+            fn from(error: $error) -> Self {
+                Self::new(format!($words, error))
+            }
+        }
+    )*};
+}
+
+as_problem_errors! {
+    CaseError: "{}",
+    CollisionError: "{}",
+    DampingError: "{}",
+    MechanicsError: "[lagrangian]: {}",
+    NotPositive: "[design]: {}",
+    OptimizeError: "{}",
+    OscillatorError: "{}",
+    TrajectoryError: "{}",
+    UnknownContactLaw: "[contact] law: {}, or all for a table of them",
+    UnknownRule: "[contact]: {}",
+    ValueError: "{}",
+}
+
+/// The refusal of a text beyond [`LARGEST_FILE`].
+pub(crate) fn too_large() -> ProblemError {
+    let limit = format!("the {LARGEST_FILE} bytes that a problem may have");
+    ProblemError::new(format!("the text is longer than {limit}"))
 }
 
 impl FromStr for Problem {
@@ -114,7 +120,7 @@ impl FromStr for Problem {
 
     fn from_str(text: &str) -> Result<Self, ProblemError> {
         if text.len() > LARGEST_FILE {
-            return Err(ProblemError::TooLarge);
+            return Err(too_large());
         }
         let text = text.trim_start_matches('\u{feff}');
         let problem: Self =

@@ -5,132 +5,13 @@
 //! limits there unless `[limits]` has others; given in `[design]`, or by its own name, it is fixed.
 //! With `[[material]]` a material takes the place of the modulus.
 
-use thiserror::Error;
-
+use super::primary::at_rest;
 use super::simulate::refuse_two_forms;
-use super::{
-    DesignError, MaterialsFileError, Objectives, PrimaryFileError, Problem, ProblemError, Reader,
-    SimulateError, UnreadKey,
-};
+use super::{Objectives, Problem, ProblemError, Reader, refused};
 use crate::genetic::{Coding, Crossover, Mutation, Options, Penalty, StallTest};
 use crate::impact::{ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Parameter, default_lambda};
 use crate::optimize::{DEFAULT_BOX, Limit, Objective, OptimizeError, Question, Variable};
 use crate::spelling::nearest;
-
-/// Why a problem file is no search.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum OptimizeFileError {
-    /// A key that belongs to another command.
-    #[error(transparent)]
-    Unread(#[from] UnreadKey),
-    /// The pendulum, what damps it, or the run.
-    #[error(transparent)]
-    Simulate(#[from] SimulateError),
-    /// The bodies.
-    #[error(transparent)]
-    Bodies(#[from] DesignError),
-    /// The materials.
-    #[error(transparent)]
-    Materials(#[from] MaterialsFileError),
-    /// A swing without a barrier.
-    #[error("a search for the best damper needs a barrier: leave out `barrier = false`")]
-    NoBarrier,
-    /// An empty list.
-    #[error(
-        "`material = []` lists no material: give [[material]] with a name and a modulus, or leave it out"
-    )]
-    NoMaterial,
-    /// A quantity that varies and is fixed.
-    #[error(
-        "`{fixed}` and `[limits] {name}` say the same: leave out `{fixed}` to search, or the limits to hold it fixed"
-    )]
-    FixedAndVaried {
-        /// The key that fixes it.
-        fixed: String,
-        /// Its name in `[limits]`.
-        name: &'static str,
-    },
-    /// A modulus beside materials.
-    #[error(
-        "`{0}` changes nothing beside [[material]], which have their own moduli: leave one of them out"
-    )]
-    ModulusBesideMaterials(String),
-    /// A density that has nothing to work on.
-    #[error(
-        "`[limits] density` makes the mass follow the radius: let mass and radius both vary, or leave it out"
-    )]
-    Density,
-    /// Bodies that may yield at any pressure.
-    #[error(
-        "`[limits] elastic` needs a yield limit: give `yield` in [sphere], [barrier] or [[material]]"
-    )]
-    NoYield,
-    /// A yield limit that nobody reads.
-    #[error(
-        "`{0}` changes nothing without `elastic = true` in [limits]: give that too, or leave it out"
-    )]
-    YieldAlone(&'static str),
-    /// A yield limit of what has one of its own.
-    #[error(
-        "`[barrier] yield` changes nothing beside [[material]]: give each material its `yield`"
-    )]
-    YieldBesideMaterials,
-    /// A main mass that is not there.
-    #[error("the rest time of the main mass needs [primary]: its mass, stiffness and displacement")]
-    NoMainMass,
-    /// A main mass that nobody asks for.
-    #[error(
-        "[primary] changes nothing here: make \"primary_rest_time\" an objective in [genetic], or limit it by `max_primary_rest_time` in \
-         [limits]"
-    )]
-    MainMassAlone,
-    /// A main mass that is none.
-    #[error(transparent)]
-    Primary(#[from] PrimaryFileError),
-    /// A name that is none.
-    #[error("[genetic] {key} = \"{name}\" is unknown: choose one of {}", .known.join(", "))]
-    Unknown {
-        /// The key.
-        key: &'static str,
-        /// What it says.
-        name: String,
-        /// What it may say.
-        known: Vec<&'static str>,
-    },
-    /// A key that another one leaves nothing to say.
-    #[error("`[genetic] {key}` changes nothing without {other}: give that too, or leave it out")]
-    NoEffect {
-        /// The key.
-        key: &'static str,
-        /// What it needs.
-        other: &'static str,
-    },
-    /// What the search itself refuses.
-    #[error(transparent)]
-    Question(#[from] OptimizeError),
-}
-
-impl OptimizeFileError {
-    /// What to write instead, where it is known.
-    pub fn help(&self) -> Option<String> {
-        match self {
-            Self::Simulate(error) => error.help(),
-            Self::Materials(error) => error.help(),
-            Self::Primary(error) => error.help(),
-            Self::Unknown { name, known, .. } => {
-                nearest(name, known.iter().copied()).map(|name| format!("did you mean \"{name}\"?"))
-            }
-            _ => None,
-        }
-    }
-}
-
-impl From<ProblemError> for OptimizeFileError {
-    fn from(error: ProblemError) -> Self {
-        Self::Simulate(error.into())
-    }
-}
 
 /// The keys that fix a variable: in `[design]`, or by its own name.
 fn fixing(parameter: Parameter) -> [&'static str; 2] {
@@ -148,15 +29,18 @@ fn named<T: Clone>(
     given: Option<&String>,
     usual: T,
     known: &[(&'static str, T)],
-) -> Result<T, OptimizeFileError> {
+) -> Result<T, ProblemError> {
     let Some(name) = given else {
         return Ok(usual);
     };
     let found = known.iter().find(|(known, _)| known == name);
-    found.map(|(_, value)| value.clone()).ok_or_else(|| OptimizeFileError::Unknown {
-        key,
-        name: name.clone(),
-        known: known.iter().map(|(name, _)| *name).collect(),
+    found.map(|(_, value)| value.clone()).ok_or_else(|| {
+        let known: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+        let choice = known.join(", ");
+        ProblemError::new(format!(
+            "[genetic] {key} = \"{name}\" is unknown: choose one of {choice}"
+        ))
+        .with_help(nearest(name, known).map(|name| format!("did you mean \"{name}\"?")))
     })
 }
 
@@ -164,7 +48,7 @@ impl Problem {
     /// The search that this file asks for; an empty one is the paper's.
     ///
     /// # Errors
-    /// [`OptimizeFileError`] names the key. Whether the options make a search is seen by
+    /// [`ProblemError`] names the key. Whether the options make a search is seen by
     /// [`Question::check`].
     ///
     /// ```
@@ -176,7 +60,7 @@ impl Problem {
     /// assert_eq!((asked.variables[1].lower, asked.case.design.mass), (0.1, 0.05));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn optimize(&self) -> Result<Question, OptimizeFileError> {
+    pub fn optimize(&self) -> Result<Question, ProblemError> {
         self.check_keys(Reader::Optimize)?;
         let gives = |parameter| self.gives_parameter(parameter);
         refuse_two_forms(gives)?;
@@ -184,7 +68,9 @@ impl Problem {
         let mut question = Question { case: self.for_design().case()?, ..Question::default() };
         let case = &mut question.case;
         if case.left.is_none() && case.right.is_none() {
-            return Err(OptimizeFileError::NoBarrier);
+            return refused(
+                "a search for the best damper needs a barrier: leave out `barrier = false`",
+            );
         }
         question.defaults.clear();
         if !ContactDamping::FORMS.into_iter().any(gives) {
@@ -209,11 +95,9 @@ impl Problem {
     }
 
     /// What varies.
-    fn boundaries(&self, question: &mut Question) -> Result<(), OptimizeFileError> {
+    fn boundaries(&self, question: &mut Question) -> Result<(), ProblemError> {
         let limits = &self.limits;
-        if self.material.is_empty() && self.gives("[[material]]") {
-            return Err(OptimizeFileError::NoMaterial);
-        }
+        self.check_materials()?;
         self.own_materials(&mut question.materials)?;
         question.variables.clear();
         for (parameter, lower, upper) in DEFAULT_BOX {
@@ -226,16 +110,21 @@ impl Problem {
             let fixed = fixing(parameter).into_iter().find(|key| self.gives(key));
             let name = parameter.name();
             if parameter == Parameter::Modulus && !question.materials.is_empty() {
-                let key = fixed.map(str::to_owned).or(given.map(|_| "[limits] modulus".to_owned()));
+                let key = fixed.or(given.map(|_| "[limits] modulus"));
                 match key {
-                    Some(key) => return Err(OptimizeFileError::ModulusBesideMaterials(key)),
+                    Some(key) => {
+                        return refused(format!(
+                            "`{key}` changes nothing beside [[material]], which have their own moduli: leave one of them out"
+                        ));
+                    }
                     None => continue,
                 }
             }
             match (given, fixed) {
                 (Some(_), Some(fixed)) => {
-                    let fixed = fixed.to_owned();
-                    return Err(OptimizeFileError::FixedAndVaried { fixed, name });
+                    return refused(format!(
+                        "`{fixed}` and `[limits] {name}` say the same: leave out `{fixed}` to search, or the limits to hold it fixed"
+                    ));
                 }
                 (None, Some(_)) => {}
                 (given, None) => {
@@ -248,7 +137,7 @@ impl Problem {
     }
 
     /// What must be kept.
-    fn kept(&self, question: &mut Question) -> Result<(), OptimizeFileError> {
+    fn kept(&self, question: &mut Question) -> Result<(), ProblemError> {
         let limits = &self.limits;
         let of = [
             (Objective::RestTime, limits.max_rest_time),
@@ -266,14 +155,18 @@ impl Problem {
         let varies =
             |parameter| question.variables.iter().any(|variable| variable.parameter == parameter);
         if limits.density.is_some() && !(varies(Parameter::Mass) && varies(Parameter::Radius)) {
-            return Err(OptimizeFileError::Density);
+            return refused(
+                "`[limits] density` makes the mass follow the radius: let mass and radius both vary, or leave it out",
+            );
         }
         question.sphere_yield = self.yield_limit("[sphere] yield", self.sphere.yield_limit)?;
         question.barrier_yield = self.yield_limit("[barrier] yield", self.barrier.yield_limit)?;
         question.elastic = limits.elastic;
         let materials = &question.materials;
         if question.barrier_yield.is_some() && !materials.is_empty() {
-            return Err(OptimizeFileError::YieldBesideMaterials);
+            return refused(
+                "`[barrier] yield` changes nothing beside [[material]]: give each material its `yield`",
+            );
         }
         let stated = [
             ("[sphere] yield", question.sphere_yield.is_some()),
@@ -281,26 +174,37 @@ impl Problem {
             ("[[material]] yield", materials.iter().any(|material| material.yield_limit.is_some())),
         ];
         match (limits.elastic, stated.into_iter().find(|(_, stated)| *stated)) {
-            (true, None) => Err(OptimizeFileError::NoYield),
-            (false, Some((key, _))) => Err(OptimizeFileError::YieldAlone(key)),
+            (true, None) => refused(
+                "`[limits] elastic` needs a yield limit: give `yield` in [sphere], [barrier] or [[material]]",
+            ),
+            (false, Some((key, _))) => refused(format!(
+                "`{key}` changes nothing without `elastic = true` in [limits]: give that too, or leave it out"
+            )),
             _ => Ok(()),
         }
     }
 
     /// What carries the pendulum, where its rest counts.
-    fn carried(&self, question: &mut Question) -> Result<(), OptimizeFileError> {
+    fn carried(&self, question: &mut Question) -> Result<(), ProblemError> {
         let limited = question.limits.iter().map(|limit| limit.objective);
         let counts =
             question.objectives.iter().copied().chain(limited).any(Objective::is_of_main_mass);
         match (&self.primary, counts) {
             (None, false) => {}
-            (None, true) => return Err(OptimizeFileError::NoMainMass),
-            (Some(_), false) => return Err(OptimizeFileError::MainMassAlone),
+            (None, true) => {
+                return refused(
+                    "the rest time of the main mass needs [primary]: its mass, stiffness and displacement",
+                );
+            }
+            (Some(_), false) => {
+                return refused(
+                    "[primary] changes nothing here: make \"primary_rest_time\" an objective in [genetic], or limit it by \
+                     `max_primary_rest_time` in [limits]",
+                );
+            }
             (Some(section), true) => {
                 let main_mass = section.main_mass()?;
-                if self.gives("[run] integrator_tolerance") {
-                    return Err(PrimaryFileError::Tolerance.into());
-                }
+                self.refuse_tolerance_of_main_mass()?;
                 if self.hangs_at_rest() {
                     question.case.start = Some(0.0);
                     question.case.speed = 0.0;
@@ -309,7 +213,7 @@ impl Problem {
                     [question.case.start.unwrap_or(question.case.amplitude), question.case.speed];
                 let moving = [main_mass.displacement, main_mass.speed].into_iter().chain(pendulum);
                 if moving.into_iter().all(|value| value == 0.0) {
-                    return Err(PrimaryFileError::AtRest.into());
+                    return at_rest();
                 }
                 question.main_mass = Some(main_mass);
             }
@@ -318,7 +222,7 @@ impl Problem {
     }
 
     /// How it is searched.
-    fn search_options(&self, question: &mut Question) -> Result<(), OptimizeFileError> {
+    fn search_options(&self, question: &mut Question) -> Result<(), ProblemError> {
         let section = &self.genetic;
         let names = match &section.objective {
             None => vec![Objective::RestTime.name().to_owned()],
@@ -365,7 +269,7 @@ impl Problem {
     }
 
     /// How designs are written as genes, crossed and changed.
-    fn operators(&self, options: &mut Options) -> Result<(), OptimizeFileError> {
+    fn operators(&self, options: &mut Options) -> Result<(), ProblemError> {
         let section = &self.genetic;
         let bits = section.bits.unwrap_or(DEFAULT_BITS);
         let coding = [("real", Coding::Real), ("bits", Coding::Bits(bits))];
@@ -406,7 +310,7 @@ impl Problem {
     }
 
     /// What a design pays that breaks a constraint.
-    fn penalty(&self, question: &mut Question) -> Result<(), OptimizeFileError> {
+    fn penalty(&self, question: &mut Question) -> Result<(), ProblemError> {
         let section = &self.genetic;
         let constrained =
             question.density.is_some() || question.elastic || !question.limits.is_empty();
@@ -444,9 +348,11 @@ impl Problem {
         key: &'static str,
         there: bool,
         other: &'static str,
-    ) -> Result<(), OptimizeFileError> {
+    ) -> Result<(), ProblemError> {
         match self.gives(&format!("[genetic] {key}")) && !there {
-            true => Err(OptimizeFileError::NoEffect { key, other }),
+            true => refused(format!(
+                "`[genetic] {key}` changes nothing without {other}: give that too, or leave it out"
+            )),
             false => Ok(()),
         }
     }
@@ -486,7 +392,7 @@ const ONE_OBJECTIVE: [&str; 14] = [
 mod tests {
     use super::*;
 
-    fn asked(text: &str) -> Result<Question, OptimizeFileError> {
+    fn asked(text: &str) -> Result<Question, ProblemError> {
         text.parse::<Problem>().unwrap().optimize()
     }
 

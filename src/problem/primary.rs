@@ -1,10 +1,8 @@
 //! What `simulate` reads of a file with a main mass, `[primary]`.
 
-use thiserror::Error;
-
-use super::Problem;
 use super::document::{Pendulum, PrimarySection};
-use super::simulate::SimulateError;
+use super::simulate::without;
+use super::{Problem, ProblemError, refused};
 use crate::impact::hertz::Design;
 use crate::impact::primary::{MainMass, Primary, PrimaryCase, PrimaryParameter, PrimarySettings};
 use crate::impact::{Parameter, Start, Units};
@@ -18,72 +16,6 @@ pub struct PrimaryProblem {
     pub settings: PrimarySettings,
     /// What a number is in SI units.
     pub units: Units,
-}
-
-/// Why a file describes no main mass.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum PrimaryFileError {
-    /// The pendulum and its barrier.
-    #[error(transparent)]
-    Simulate(#[from] SimulateError),
-    /// A key that must be there.
-    #[error(
-        "[primary] needs `{0}`: the mass of the main mass in kg and the stiffness of its spring in N/m"
-    )]
-    Missing(&'static str),
-    /// A force without its frequency, or the other way round.
-    #[error(
-        "`[primary] {key}` changes nothing without `[primary] {other}`: give that too, or leave it out"
-    )]
-    Alone {
-        /// The key.
-        key: &'static str,
-        /// The other one.
-        other: &'static str,
-    },
-    /// The mass of the main mass in two forms.
-    #[error("`primary.mass` and `mass_ratio` say the same: sweep one of them")]
-    MassTwice,
-    /// A number that cannot be.
-    #[error("[primary] {key} must be {wanted}, not {value}")]
-    Number {
-        /// The key.
-        key: &'static str,
-        /// What it may be.
-        wanted: &'static str,
-        /// What it says.
-        value: f64,
-    },
-    /// A tolerance that would change nothing.
-    #[error(
-        "`[run] integrator_tolerance` changes nothing beside [primary], which is followed to rounding accuracy: leave it out"
-    )]
-    Tolerance,
-    /// Nothing moves.
-    #[error(
-        "nothing moves: give [primary] a displacement, a speed or a force, or [pendulum] a start"
-    )]
-    AtRest,
-    /// An excitation of the pivot.
-    #[error(
-        "[excitation] moves the pivot, which a main mass carries: give [primary] force and frequency instead"
-    )]
-    Driven,
-}
-
-impl PrimaryFileError {
-    /// What to write instead, where it is known.
-    pub fn help(&self) -> Option<String> {
-        match self {
-            Self::Simulate(error) => error.help(),
-            Self::Missing(_) => Some(
-                "[primary] mass = 0.5, stiffness = 72, damping = 0.05, displacement = 0.02"
-                    .to_owned(),
-            ),
-            _ => None,
-        }
-    }
 }
 
 /// How long both are followed where the file does not say, in units of 1/omega: until the main mass
@@ -101,7 +33,7 @@ impl Problem {
     /// gave the values of `varied` too. The pendulum hangs at rest unless the file says otherwise.
     ///
     /// # Errors
-    /// [`PrimaryFileError`] names the key.
+    /// [`ProblemError`] names the key.
     ///
     /// ```
     /// use lindstedt::problem::Problem;
@@ -116,12 +48,12 @@ impl Problem {
     pub fn primary_case(
         &self,
         varied: &[(PrimaryParameter, f64)],
-    ) -> Result<PrimaryProblem, PrimaryFileError> {
-        if self.gives("[run] integrator_tolerance") {
-            return Err(PrimaryFileError::Tolerance);
-        }
+    ) -> Result<PrimaryProblem, ProblemError> {
+        self.refuse_tolerance_of_main_mass()?;
         if self.given.iter().any(|key| key.starts_with("[excitation]")) {
-            return Err(PrimaryFileError::Driven);
+            return refused(
+                "[excitation] moves the pivot, which a main mass carries: give [primary] force and frequency instead",
+            );
         }
         // Without a word of the start it hangs at rest.
         let of_pendulum: Vec<(Parameter, f64)> = varied
@@ -144,14 +76,14 @@ impl Problem {
         for (parameter, value) in of_pendulum {
             case.set(parameter, value);
         }
-        let (model, Start { x, velocity }) = case.motion().map_err(SimulateError::from)?;
+        let (model, Start { x, velocity }) = case.motion()?;
         let units = in_si(&case.design);
         let main_mass = self.primary.unwrap_or_default().with(varied, &units)?.main_mass()?;
         let primary = main_mass.primary(&units);
         let [displacement, speed] = main_mass.start(&units);
         let start = [x, velocity, displacement, speed];
         if primary.force == 0.0 && start.iter().all(|value| *value == 0.0) {
-            return Err(PrimaryFileError::AtRest);
+            return at_rest();
         }
         let usual = PrimarySettings::default();
         let given = |key: &str| self.gives(&format!("[run] {key}"));
@@ -174,7 +106,24 @@ impl Problem {
     }
 }
 
+/// Refuses a main mass and a pendulum that both rest.
+pub(super) fn at_rest<T>() -> Result<T, ProblemError> {
+    refused(
+        "nothing moves: give [primary] a displacement, a speed or a force, or [pendulum] a start",
+    )
+}
+
 impl Problem {
+    /// Refuses a tolerance, which would change nothing.
+    pub(super) fn refuse_tolerance_of_main_mass(&self) -> Result<(), ProblemError> {
+        match self.gives("[run] integrator_tolerance") {
+            true => refused(
+                "`[run] integrator_tolerance` changes nothing beside [primary], which is followed to rounding accuracy: leave it out",
+            ),
+            false => Ok(()),
+        }
+    }
+
     /// Whether the pendulum of a main mass hangs at rest at first: the file has no word of its
     /// start.
     pub(super) fn hangs_at_rest(&self) -> bool {
@@ -196,6 +145,10 @@ fn in_si(design: &Design) -> Units {
     }
 }
 
+fn no_such_number<T>(key: &str, wanted: &str, value: f64) -> Result<T, ProblemError> {
+    refused(format!("[primary] {key} must be {wanted}, not {value}"))
+}
+
 impl PrimarySection {
     /// This section with other values of some of its keys.
     ///
@@ -205,7 +158,7 @@ impl PrimarySection {
         mut self,
         varied: &[(PrimaryParameter, f64)],
         units: &Units,
-    ) -> Result<Self, PrimaryFileError> {
+    ) -> Result<Self, ProblemError> {
         for (parameter, value) in varied {
             let key = match parameter {
                 PrimaryParameter::Mass | PrimaryParameter::MassRatio => &mut self.mass,
@@ -221,14 +174,12 @@ impl PrimarySection {
             if *parameter == PrimaryParameter::MassRatio {
                 let other = |(other, _): &(PrimaryParameter, f64)| *other == PrimaryParameter::Mass;
                 if varied.iter().any(other) {
-                    return Err(PrimaryFileError::MassTwice);
+                    return refused(
+                        "`primary.mass` and `mass_ratio` say the same: sweep one of them",
+                    );
                 }
                 if *value <= 0.0 {
-                    return Err(PrimaryFileError::Number {
-                        key: "mass_ratio",
-                        wanted: "a positive number",
-                        value: *value,
-                    });
+                    return no_such_number("mass_ratio", "a positive number", *value);
                 }
                 *key = Some(value * units.mass);
             }
@@ -240,13 +191,20 @@ impl PrimarySection {
     ///
     /// # Errors
     /// A key that is missing, alone, or no such number.
-    pub(super) fn main_mass(&self) -> Result<MainMass, PrimaryFileError> {
-        let mass = self.mass.ok_or(PrimaryFileError::Missing("mass"))?;
-        let stiffness = self.stiffness.ok_or(PrimaryFileError::Missing("stiffness"))?;
-        let alone = |key, other| Err(PrimaryFileError::Alone { key, other });
+    pub(super) fn main_mass(&self) -> Result<MainMass, ProblemError> {
+        let missing = |key: &str| {
+            let units = "the mass of the main mass in kg and the stiffness of its spring in N/m";
+            let example =
+                "[primary] mass = 0.5, stiffness = 72, damping = 0.05, displacement = 0.02";
+            ProblemError::new(format!("[primary] needs `{key}`: {units}"))
+                .with_help(example.to_owned())
+        };
+        let mass = self.mass.ok_or_else(|| missing("mass"))?;
+        let stiffness = self.stiffness.ok_or_else(|| missing("stiffness"))?;
+        let pair = ["[primary] force", "[primary] frequency"];
         match (self.force, self.frequency) {
-            (Some(_), None) => return alone("force", "frequency"),
-            (None, Some(_)) => return alone("frequency", "force"),
+            (Some(_), None) => return refused(without(pair[0], &pair[1])),
+            (None, Some(_)) => return refused(without(pair[1], &pair[0])),
             _ => {}
         }
         let least = [
@@ -266,7 +224,7 @@ impl PrimarySection {
                     least if least > 0.0 => "a positive number",
                     _ => "a number",
                 };
-                return Err(PrimaryFileError::Number { key, wanted, value });
+                return no_such_number(key, wanted, value);
             }
         }
         Ok(MainMass {

@@ -1,9 +1,7 @@
 //! What `simulate` reads of a problem file: a case of equation (7), and how closely to follow it.
 
-use thiserror::Error;
-
-use super::{Barrier, BarrierSide, Problem, ProblemError, Reader, UnreadKey};
-use crate::impact::{Case, CaseError, ContactDamping, Friction, Parameter, Settings, Side, Units};
+use super::{Barrier, BarrierSide, Problem, ProblemError, Reader, Run, refused};
+use crate::impact::{Case, ContactDamping, Friction, Parameter, Settings, Side, Units};
 
 /// What a problem file says of a motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,100 +20,11 @@ pub struct Simulate {
     pub units: Option<Units>,
 }
 
-/// Why a problem file is no motion.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum SimulateError {
-    /// The file itself.
-    #[error(transparent)]
-    Problem(#[from] ProblemError),
-    /// The numbers of the pendulum and its barrier.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// An equation of its own.
-    #[error(
-        "simulate follows the paper's equation (7): leave out `equation`, or use `lindstedt derive`"
-    )]
-    Equation,
-    /// A key that another one leaves nothing to say.
-    #[error("`{key}` changes nothing where `{other}` is given: leave one of them out")]
-    NoEffect {
-        /// The key.
-        key: Parameter,
-        /// The other one.
-        other: Parameter,
-    },
-    /// A number of a barrier that is not there.
-    #[error("`{0}` changes nothing where `[pendulum] barrier = false`: leave one of them out")]
-    NoBarrier(Parameter),
-    /// A side of which nothing is: neither the only barrier nor the release.
-    #[error("`[pendulum] side` changes nothing beside {0} and a start: leave it out")]
-    Side(&'static str),
-    /// A modulus that is not that of one body.
-    #[error(
-        "`modulus` is that of the barrier alone, and `{0}` makes it that of two bodies: leave out one of them"
-    )]
-    ModulusOfTwo(&'static str),
-    /// A number that zero leaves nothing to say.
-    #[error(
-        "`{key}` changes nothing where `{other}` is 0: give it another value, or leave `{key}` out"
-    )]
-    Zero {
-        /// The key.
-        key: Parameter,
-        /// The other one.
-        other: Parameter,
-    },
-    /// A key that says something only beside another one.
-    #[error("`{key}` changes nothing without `{other}`: give that too, or leave it out")]
-    Alone {
-        /// The key.
-        key: &'static str,
-        /// The other one.
-        other: Parameter,
-    },
-    /// A key that belongs to another command.
-    #[error(transparent)]
-    Unread(#[from] UnreadKey),
-    /// The same by two keys.
-    #[error("`{key}` and `{other}` say the same: give one of them, which is then held fixed")]
-    Twice {
-        /// The key.
-        key: Parameter,
-        /// The other one.
-        other: Parameter,
-    },
-    /// An unknown law of friction.
-    #[error("[damping] friction `{0}` is neither \"exact\" nor \"arctangent\"")]
-    Friction(String),
-    /// A tolerance that cannot be kept.
-    #[error(
-        "[run] integrator_tolerance must lie between 1e-15 and 0.01, not {0:e}: 1e-10 is a good choice"
-    )]
-    Tolerance(f64),
-    /// A limit that nothing or too much fits into: every step of a motion is kept.
-    #[error("[run] step_limit must be a whole number from 1 to {MOST_STEPS}, not {0}")]
-    StepLimit(u32),
-    /// A duration that is none.
-    #[error("[run] duration must be a positive number, not {0}")]
-    Duration(f64),
-}
-
-impl SimulateError {
-    /// What to write instead, where it is known.
-    pub fn help(&self) -> Option<String> {
-        match self {
-            Self::Problem(error) => error.help(),
-            _ => None,
-        }
-    }
-}
-
 /// The most steps a run may be given: some gigabytes of power series.
-pub const MOST_STEPS: u32 = 10_000_000;
+const MOST_STEPS: u32 = 10_000_000;
 
 impl TryFrom<&Problem> for Simulate {
-    type Error = SimulateError;
+    type Error = ProblemError;
 
     /// ```
     /// use lindstedt::impact::{Integrator, simulate};
@@ -128,7 +37,7 @@ impl TryFrom<&Problem> for Simulate {
     /// assert_eq!(motion.impacts.len(), 2);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    fn try_from(problem: &Problem) -> Result<Self, SimulateError> {
+    fn try_from(problem: &Problem) -> Result<Self, ProblemError> {
         let asked = problem.simulate(&[])?;
         // A case of its own must make a motion; where parameters are swept, their values are still
         // to come.
@@ -142,7 +51,7 @@ impl Problem {
     /// gave them too.
     ///
     /// # Errors
-    /// [`SimulateError`] names the section and the key. Whether the numbers make a motion is seen
+    /// [`ProblemError`] names the section and the key. Whether the numbers make a motion is seen
     /// by [`Case::motion`].
     ///
     /// ```
@@ -153,12 +62,14 @@ impl Problem {
     /// assert_eq!(asked.settings.duration, 10.0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn simulate(&self, swept: &[Parameter]) -> Result<Simulate, SimulateError> {
+    pub fn simulate(&self, swept: &[Parameter]) -> Result<Simulate, ProblemError> {
         let gives =
             |parameter: Parameter| swept.contains(&parameter) || self.gives_parameter(parameter);
         self.check_swept(swept, gives)?;
         if self.equation.is_some() {
-            return Err(SimulateError::Equation);
+            return refused(
+                "simulate follows the paper's equation (7): leave out `equation`, or use `lindstedt derive`",
+            );
         }
         self.check_keys(Reader::Simulate)?;
         refuse_two_forms(gives)?;
@@ -207,7 +118,7 @@ impl Problem {
     }
 
     /// The numbers of the pendulum and its barrier, as they are given.
-    pub(super) fn case(&self) -> Result<Case, SimulateError> {
+    pub(super) fn case(&self) -> Result<Case, ProblemError> {
         let side = match self.pendulum.side {
             Some(BarrierSide::Left) => Side::Left,
             Some(BarrierSide::Right) | None => Side::Right,
@@ -221,7 +132,11 @@ impl Problem {
         let friction = match self.damping.friction.as_deref() {
             None | Some("exact") => Friction::Exact,
             Some("arctangent") => Friction::Arctangent,
-            Some(other) => return Err(SimulateError::Friction(other.to_owned())),
+            Some(other) => {
+                return refused(format!(
+                    "[damping] friction `{other}` is neither \"exact\" nor \"arctangent\""
+                ));
+            }
         };
         Ok(Case {
             amplitude: self.pendulum.amplitude,
@@ -241,29 +156,26 @@ impl Problem {
             friction,
             beta: self.excitation.beta,
             frequency_ratio: self.excitation.frequency_ratio,
-            design: self.design().map_err(ProblemError::from)?,
+            design: self.design()?,
         })
     }
 
     /// `[run]`
-    pub(super) fn settings(&self) -> Result<Settings, SimulateError> {
+    pub(super) fn settings(&self) -> Result<Settings, ProblemError> {
         let tolerance = self.run.integrator_tolerance;
         if !(1e-15..=0.01).contains(&tolerance) {
-            return Err(SimulateError::Tolerance(tolerance));
+            return refused(format!(
+                "[run] integrator_tolerance must lie between 1e-15 and 0.01, not {tolerance:e}: 1e-10 is a good choice"
+            ));
         }
-        if !(1..=MOST_STEPS).contains(&self.run.step_limit) {
-            return Err(SimulateError::StepLimit(self.run.step_limit));
-        }
-        let duration = self.run.duration;
-        if !(duration > 0.0 && duration.is_finite()) {
-            return Err(SimulateError::Duration(duration));
-        }
+        let maximum_steps = self.run.step_limit()?;
+        let duration = self.run.duration()?;
         Ok(Settings {
             duration,
             // The errors of some hundred steps add up, and impacts multiply them.
             relative_tolerance: (1e-2 * tolerance).max(1e-15),
             absolute_tolerance: 1e-4 * tolerance,
-            maximum_steps: self.run.step_limit as usize,
+            maximum_steps,
             ..Settings::default()
         })
     }
@@ -274,7 +186,7 @@ impl Problem {
         &self,
         swept: &[Parameter],
         gives: impl Fn(Parameter) -> bool,
-    ) -> Result<(), SimulateError> {
+    ) -> Result<(), ProblemError> {
         use Parameter::{
             AtSpeed, Barrier as Place, Beta, ContactDamping as Coefficient, FrequencyRatio, Gamma,
             Gravity, Lambda, Length, Mass, Modulus, Mu, MuOverGamma, Radius, Restitution, Torque,
@@ -299,15 +211,19 @@ impl Problem {
         };
         if matches!(self.pendulum.barrier, Barrier::Absent(_)) && !swept.contains(&Place) {
             let first = swept.iter().copied().find(of_contact);
-            first.map_or(Ok(()), |key| Err(SimulateError::NoBarrier(key)))?;
+            if let Some(key) = first {
+                return refused(format!(
+                    "`{key}` changes nothing where `[pendulum] barrier = false`: leave one of them out"
+                ));
+            }
         }
         if self.contact.gamma == Some(0.0) && !swept.contains(&Gamma) {
             let first = swept.iter().copied().find(|key| *key == Place || of_contact(key));
-            first.map_or(Ok(()), |key| Err(SimulateError::Zero { key, other: Gamma }))?;
+            first.map_or(Ok(()), |key| beside_zero(key, Gamma))?;
         }
         if swept.contains(&FrequencyRatio) && gives(Beta) && zero(Beta, Some(self.excitation.beta))
         {
-            return Err(SimulateError::Zero { key: FrequencyRatio, other: Beta });
+            return beside_zero(FrequencyRatio, Beta);
         }
         let of_two = [
             ("[sphere] modulus", self.sphere.modulus.is_some()),
@@ -316,11 +232,13 @@ impl Problem {
         if let (true, Some((key, _))) =
             (swept.contains(&Modulus), of_two.into_iter().find(|(_, given)| *given))
         {
-            return Err(SimulateError::ModulusOfTwo(key));
+            return refused(format!(
+                "`modulus` is that of the barrier alone, and `{key}` makes it that of two bodies: leave out one of them"
+            ));
         }
         let without_loss = self.contact.restitution == Some(1.0) && !swept.contains(&Restitution);
         if swept.contains(&AtSpeed) && without_loss {
-            return Err(SimulateError::NoEffect { key: AtSpeed, other: Restitution });
+            return no_effect(AtSpeed, Restitution);
         }
         let without_say = |parameter: &Parameter| match parameter {
             Radius | Modulus => true,
@@ -330,55 +248,100 @@ impl Problem {
             _ => false,
         };
         match swept.iter().copied().find(without_say).filter(|_| gives(Gamma)) {
-            Some(key) => Err(SimulateError::NoEffect { key, other: Gamma }),
+            Some(key) => no_effect(key, Gamma),
             None => Ok(()),
         }
     }
 
     /// Refuses a side that says nothing: of a barrier there is or is swept, or of the release.
-    fn check_side(&self, swept: &[Parameter]) -> Result<(), SimulateError> {
+    fn check_side(&self, swept: &[Parameter]) -> Result<(), ProblemError> {
         let starts = self.pendulum.start.is_some() || swept.contains(&Parameter::Start);
         if self.pendulum.side.is_none() || !starts || swept.contains(&Parameter::Barrier) {
             return Ok(());
         }
-        match self.pendulum.barrier {
-            Barrier::Absent(_) => Err(SimulateError::Side("no barrier")),
-            Barrier::Both(_) => Err(SimulateError::Side("two barriers")),
-            Barrier::One(_) => Ok(()),
-        }
+        let barriers = match self.pendulum.barrier {
+            Barrier::Absent(_) => "no barrier",
+            Barrier::Both(_) => "two barriers",
+            Barrier::One(_) => return Ok(()),
+        };
+        refused(format!(
+            "`[pendulum] side` changes nothing beside {barriers} and a start: leave it out"
+        ))
     }
 
     /// Refuses a key that another one leaves nothing to say, or that says nothing alone.
     pub(super) fn check_pairs(
         &self,
         gives: impl Fn(Parameter) -> bool,
-    ) -> Result<(), SimulateError> {
-        let (key, other) = (Parameter::Amplitude, Parameter::Start);
-        if gives(key) && gives(other) {
-            return Err(SimulateError::NoEffect { key, other });
-        }
-        if gives(Parameter::FrequencyRatio) && !gives(Parameter::Beta) {
-            return Err(SimulateError::Alone {
-                key: "[excitation] frequency_ratio",
-                other: Parameter::Beta,
-            });
-        }
-        if gives(Parameter::AtSpeed) && !gives(Parameter::Restitution) {
-            return Err(SimulateError::Alone {
-                key: "[contact] at_speed",
-                other: Parameter::Restitution,
-            });
+    ) -> Result<(), ProblemError> {
+        use Parameter::{
+            Alpha, Amplitude, AtSpeed, Beta, FrequencyRatio, Restitution, Start, Torque,
+        };
+        if gives(Amplitude) && gives(Start) {
+            return no_effect(Amplitude, Start);
         }
         let friction = "[damping] friction";
-        if self.gives(friction) && !gives(Parameter::Alpha) && !gives(Parameter::Torque) {
-            return Err(SimulateError::Alone { key: friction, other: Parameter::Alpha });
+        let has_friction = gives(Alpha) || gives(Torque);
+        let pairs = [
+            (FrequencyRatio.to_string(), gives(FrequencyRatio), Beta, gives(Beta)),
+            (AtSpeed.to_string(), gives(AtSpeed), Restitution, gives(Restitution)),
+            (friction.to_owned(), self.gives(friction), Alpha, has_friction),
+        ];
+        match pairs.into_iter().find(|(_, given, _, other_given)| *given && !other_given) {
+            Some((key, _, other, _)) => refused(without(&key, &other)),
+            None => Ok(()),
         }
-        Ok(())
     }
 }
 
+impl Run {
+    /// The time to follow a motion for.
+    ///
+    /// # Errors
+    /// A duration that is none.
+    pub(super) fn duration(&self) -> Result<f64, ProblemError> {
+        match self.duration > 0.0 && self.duration.is_finite() {
+            true => Ok(self.duration),
+            false => {
+                refused(format!("[run] duration must be a positive number, not {}", self.duration))
+            }
+        }
+    }
+
+    /// The most steps of an integration.
+    ///
+    /// # Errors
+    /// A limit that nothing or too much fits into: every step of a motion is kept.
+    pub(super) fn step_limit(&self) -> Result<usize, ProblemError> {
+        match (1..=MOST_STEPS).contains(&self.step_limit) {
+            true => Ok(self.step_limit as usize),
+            false => refused(format!(
+                "[run] step_limit must be a whole number from 1 to {MOST_STEPS}, not {}",
+                self.step_limit
+            )),
+        }
+    }
+}
+
+/// Words for a key that says something only beside another one.
+pub(super) fn without(key: &str, other: &impl std::fmt::Display) -> String {
+    format!("`{key}` changes nothing without `{other}`: give that too, or leave it out")
+}
+
+/// Refuses a key that another one leaves nothing to say.
+fn no_effect(key: Parameter, other: Parameter) -> Result<(), ProblemError> {
+    refused(format!("`{key}` changes nothing where `{other}` is given: leave one of them out"))
+}
+
+/// Refuses a key that zero leaves nothing to say.
+fn beside_zero(key: Parameter, other: Parameter) -> Result<(), ProblemError> {
+    refused(format!(
+        "`{key}` changes nothing where `{other}` is 0: give it another value, or leave `{key}` out"
+    ))
+}
+
 /// Refuses what is given in two forms.
-pub(super) fn refuse_two_forms(gives: impl Fn(Parameter) -> bool) -> Result<(), SimulateError> {
+pub(super) fn refuse_two_forms(gives: impl Fn(Parameter) -> bool) -> Result<(), ProblemError> {
     let forms: [&[Parameter]; 3] = [
         &ContactDamping::FORMS,
         &[Parameter::Zeta, Parameter::Viscous],
@@ -387,7 +350,9 @@ pub(super) fn refuse_two_forms(gives: impl Fn(Parameter) -> bool) -> Result<(), 
     for forms in forms {
         let mut given = forms.iter().copied().filter(|form| gives(*form));
         if let (Some(key), Some(other)) = (given.next(), given.next()) {
-            return Err(SimulateError::Twice { key, other });
+            return refused(format!(
+                "`{key}` and `{other}` say the same: give one of them, which is then held fixed"
+            ));
         }
     }
     Ok(())
@@ -398,7 +363,7 @@ mod tests {
     use super::*;
     use crate::impact::Start;
 
-    fn asked(text: &str) -> Result<Simulate, SimulateError> {
+    fn asked(text: &str) -> Result<Simulate, ProblemError> {
         Simulate::try_from(&text.parse::<Problem>().unwrap())
     }
 

@@ -9,7 +9,7 @@ use lindstedt::Values;
 use lindstedt::expr::{CompiledFunction, Expr};
 use lindstedt::method::numbers::{evaluate, frequency_squared_of};
 use lindstedt::method::with_numbers_where_needed;
-use lindstedt::method::{Options, Refusal, Unsuited, solve};
+use lindstedt::method::{Options, Reason, Refusal, solve};
 use lindstedt::numeric::period::{PeriodError, swing};
 use lindstedt::oscillator::OscillatorError;
 use lindstedt::solution::{Method, Solution};
@@ -247,7 +247,7 @@ fn static_loads_in_symbols_are_those_in_numbers() {
                 }
                 (Err(_), Err(_)) => {}
                 // What the refusal asks for.
-                (Err(Refusal::Unsuited { reason: Unsuited::SeveralVariables, .. }), Ok(_)) => {}
+                (Err(Refusal { reason: Reason::SeveralVariables, .. }), Ok(_)) => {}
                 (a, b) => panic!("{equation} {method:?}: {:?} {:?}", a.err(), b.err()),
             }
         }
@@ -419,7 +419,7 @@ fn what_is_no_equilibrium_has_no_formula() {
         {
             let refusal = by(&oscillator(equation), method).unwrap_err();
             assert!(
-                matches!(refusal, Refusal::Oscillator(OscillatorError::Unstable { .. })),
+                matches!(refusal.reason, Reason::Oscillator(OscillatorError::Unstable { .. })),
                 "{equation} {method:?}: {refusal}"
             );
         }

@@ -263,6 +263,18 @@ fn list(symbols: &[Symbol]) -> String {
 }
 
 impl OscillatorError {
+    /// The term that it names, where it names one of the equation.
+    pub fn term(&self) -> Option<&str> {
+        match self {
+            Self::NotSmall { term, .. }
+            | Self::OneSided { term, .. }
+            | Self::NotPolynomial(term)
+            | Self::Taylor(TaylorError::NotAnalytic { term, .. }) => Some(term.words()),
+            Self::NonlinearAcceleration(words) => Some(words),
+            _ => None,
+        }
+    }
+
     /// What to try, where something is worth trying.
     pub fn help(&self) -> Option<Advice> {
         let either = |words: &str, [first, second]: [Method; 2]| {

@@ -97,7 +97,7 @@ pub(super) fn entries(heading: &str, entries: &[(String, String)], page: &Page) 
 
 pub(super) fn refused(refused: &[Refused], page: &Page) -> String {
     let named = |refused: &Refused| {
-        let reason = refused.reason.reason(refused.method);
+        let reason = refused.reason.without_title(refused.method);
         (refused.method.title().to_owned(), reason)
     };
     reasons("Not applicable", refused.iter().map(named), page)

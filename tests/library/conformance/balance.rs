@@ -2,7 +2,7 @@
 
 use lindstedt::Oscillator;
 use lindstedt::method::numbers::evaluate;
-use lindstedt::method::{MOST_HARMONICS, Options, Refusal, Unsuited};
+use lindstedt::method::{MOST_HARMONICS, Options, Reason, Refusal};
 use lindstedt::solution::Method;
 
 use super::{by, by_options, numbers};
@@ -53,7 +53,7 @@ fn harmonic_balance_converges_to_the_exact_motion() {
             "x'' + sin(x) = 0",
             Options { method: Some(Method::HarmonicBalance), order: Some(0), ..Options::default() }
         ),
-        Err(Refusal::Unsuited { reason: Unsuited::HighestOrder { highest: MOST_HARMONICS }, .. })
+        Err(Refusal { reason: Reason::HighestOrder(MOST_HARMONICS), .. })
     ));
 }
 

@@ -3,7 +3,7 @@
 
 use lindstedt::exact::Polynomial;
 use lindstedt::expr::{Expr, parse_expression};
-use lindstedt::method::{Options, Unsuited, solve};
+use lindstedt::method::{Options, Reason, solve};
 use lindstedt::response::{Point, Question, respond};
 use lindstedt::solution::{Method, Note, Solution};
 use lindstedt::{Oscillator, Symbol, Values, judge};
@@ -456,7 +456,7 @@ fn drives_that_are_refused_by_name() {
     let oscillator = Oscillator::parse(FORCED_DUFFING).expect("an oscillator");
     let asked = Options { resonance: Some((2, 1)), ..options(1) };
     let others = vec![(1, 1), (3, 1), (1, 3)];
-    let expected = Unsuited::NoResonance { asked: (2, 1), others }.to(Method::MultipleScales);
+    let expected = Reason::NoResonance { asked: (2, 1), others }.to(Method::MultipleScales);
     assert_eq!(solve(&oscillator, &asked), Err(expected));
 }
 

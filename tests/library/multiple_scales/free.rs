@@ -3,7 +3,7 @@
 
 use lindstedt::exact::{POLYNOMIALS, Polynomial, ratio};
 use lindstedt::expr::parse_expression;
-use lindstedt::method::{Options, Refusal, Unsuited, solve};
+use lindstedt::method::{Options, Reason, solve};
 use lindstedt::series::FourierSeries;
 use lindstedt::solution::Method;
 use lindstedt::{Oscillator, Symbol, Values, judge};
@@ -160,7 +160,7 @@ fn refusals_name_what_is_in_the_way() {
         let oscillator = Oscillator::parse(equation).expect("an oscillator");
         solve(&oscillator, &options(order)).expect_err("refused")
     };
-    let highest = |highest| Unsuited::HighestOrder { highest }.to(Method::MultipleScales);
+    let highest = |highest| Reason::HighestOrder(highest).to(Method::MultipleScales);
     assert_eq!(refused("x'' + x + eps*x^3 = 0", 4), highest(3));
     assert_eq!(refused("x'' + sin(x) = 0", 7), highest(6));
     for (equation, term) in [
@@ -168,7 +168,7 @@ fn refusals_name_what_is_in_the_way() {
         ("x'' + x + eps*abs(x)*x = 0", "eps*abs(x)*x"),
     ] {
         let refusal = refused(equation, 2);
-        assert!(matches!(&refusal, Refusal::Oscillator(_)), "{equation}: {refusal}");
+        assert!(matches!(&refusal.reason, Reason::Oscillator(_)), "{equation}: {refusal}");
         assert_eq!(refusal.term(), Some(term), "{equation}: {refusal}");
     }
 }

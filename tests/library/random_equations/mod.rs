@@ -41,7 +41,7 @@ use force::Shape;
 use lindstedt::Values;
 use lindstedt::expr::Expr;
 use lindstedt::method::numbers::{self, NoNumbers};
-use lindstedt::method::{Options, Refusal, solve};
+use lindstedt::method::{Options, Reason, Refusal, solve};
 use lindstedt::solution::{Degrees, Method};
 use lindstedt::{Oscillator, Symbol};
 use random::Random;
@@ -208,7 +208,7 @@ fn run(seed: u64) -> (Case, String, Vec<Comparison>) {
             format!("--method {}{order}{degrees}{hbar}: {complaint}", method.name())
         };
         let complaint = match solve(&oscillator, &options) {
-            Err(Refusal::TooLong { .. }) => None,
+            Err(Refusal { reason: Reason::TooLong(_), .. }) => None,
             Err(refusal) => applies.then(|| {
                 let reason: String = refusal.to_string().chars().take(150).collect();
                 format!("refused though it applies: {reason}")

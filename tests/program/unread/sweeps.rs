@@ -2,10 +2,10 @@
 
 use lindstedt::impact::sweep::sweep;
 use lindstedt::impact::{Model, Parameter, Start};
-use lindstedt::problem::{Problem, SimulateError};
+use lindstedt::problem::{Problem, ProblemError};
 
 /// The motions of a grid of two values for each parameter, as the command makes them.
-fn grid(file: &str, swept: &[Parameter]) -> Result<Vec<(Model, Start)>, SimulateError> {
+fn grid(file: &str, swept: &[Parameter]) -> Result<Vec<(Model, Start)>, ProblemError> {
     let asked = file.parse::<Problem>().expect("a file").simulate(swept)?;
     (0..1_usize << swept.len())
         .map(|number| {

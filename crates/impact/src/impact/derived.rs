@@ -88,7 +88,7 @@ impl NoFlight {
     /// The message without the name of the method at its head, for lists that name it already.
     pub fn of(&self, method: Method) -> String {
         match self {
-            Self::Refusal(refusal) => refusal.reason(method),
+            Self::Refusal(refusal) => refusal.without_title(method),
             other => other.to_string(),
         }
     }

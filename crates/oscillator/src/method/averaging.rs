@@ -48,7 +48,7 @@ use self::small_terms::SmallTerms;
 use super::limit_cycle::{AmplitudeEquation, Units};
 use super::multiple_scales::scaling::has_quadratic_terms;
 use super::secular::bounded;
-use super::{Options, Refusal, Unsuited, not_polynomial, transient};
+use super::{Options, Reason, Refusal, not_polynomial, transient};
 use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::Integer;
@@ -75,27 +75,27 @@ type Series = FourierSeries<Polynomials>;
 /// A drive that is no wave near a resonance, a term without a closed projection, no linear
 /// restoring force, an order that is not 1 or 2.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
-    let refuse = |reason: Unsuited| Err(reason.to(Method::Averaging));
+    let refuse = |reason: Reason| Err(reason.to(Method::Averaging));
     let parts = oscillator.parts()?;
     if !parts.forcing.is_zero() {
         return driven::solve(oscillator, &parts, options);
     }
     if options.resonance.is_some() {
         let choice = super::table::Choice::Resonance;
-        return refuse(Unsuited::NoSuchChoice { choice });
+        return refuse(Reason::NoSuchChoice(choice));
     }
     if let Some(restoring) = PurePower::of(&parts, oscillator.coordinate) {
         return pure_power::solve(oscillator, &parts, &restoring, options);
     }
     let order = match options.order.unwrap_or(1) {
-        0 => return refuse(Unsuited::LowestOrder { lowest: 1 }),
-        order if order > HIGHEST => return refuse(Unsuited::HighestOrder { highest: HIGHEST }),
+        0 => return refuse(Reason::LowestOrder(1)),
+        order if order > HIGHEST => return refuse(Reason::HighestOrder(HIGHEST)),
         order => order,
     };
     let conserves = parts.damping.is_zero();
     let convention = options.amplitude.unwrap_or(AmplitudeConvention::FirstHarmonic);
     if convention == AmplitudeConvention::Initial && !conserves {
-        return refuse(Unsuited::SlowAmplitude);
+        return refuse(Reason::SlowAmplitude);
     }
     let small = SmallTerms::of(oscillator, options)?;
     let mut averaged = match small.expand(order) {
@@ -121,7 +121,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         ) => {
             // That it restores is said first.
             small.linear_part()?;
-            return refuse(not_polynomial(&small.without_linear()?, oscillator.coordinate));
+            let force = small.without_linear()?;
+            return Err(not_polynomial(&force, oscillator.coordinate, Method::Averaging));
         }
         Err(error) => return Err(error.into()),
     };
@@ -546,8 +547,7 @@ impl Projected {
             let Some([sine, cosine]) =
                 projections::of_term(written, oscillator.coordinate, amplitude, &omega0)
             else {
-                let term = term.clone().into();
-                return Err(Unsuited::NoProjection { term }.to(Method::Averaging));
+                return Err(Reason::NoProjection.to(Method::Averaging).about(term));
             };
             sines.push(sine);
             cosines.push(cosine);

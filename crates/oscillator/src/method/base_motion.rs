@@ -11,7 +11,7 @@
 use std::collections::BTreeMap;
 
 use super::drive::{Quadrature, Wave};
-use super::{Options, Refusal, Unsuited, solve_in_its_coordinate};
+use super::{Options, Reason, Refusal, solve_in_its_coordinate};
 use crate::expr::{Equation, Expr, ExprError, Typed};
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Note, Solution};
@@ -19,10 +19,7 @@ use crate::symbol::{Symbol, fresh};
 
 /// Whether a refusal is one of a drive that another coordinate may simplify.
 pub(super) fn is_of_drive(refusal: &Refusal) -> bool {
-    let Refusal::Unsuited { reason, .. } = refusal else {
-        return false;
-    };
-    matches!(reason, Unsuited::NoWave { .. } | Unsuited::SecondDrive { .. })
+    matches!(refusal.reason, Reason::NoWave | Reason::SecondDrive)
 }
 
 /// The answer in the coordinate relative to the first base that leaves no such refusal; `None`

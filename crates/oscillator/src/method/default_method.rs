@@ -20,7 +20,7 @@ use super::linear::{Linear, is_free_and_linear};
 use super::multiple_scales::scaling::{
     has_linear_damping, has_quadratic_damping, has_quadratic_terms,
 };
-use super::{Options, Refusal, Unsuited, solve_by};
+use super::{Options, Reason, Refusal, solve_by};
 use crate::equilibrium::centred;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, SmallParameter};
 use crate::solution::note::Cut;
@@ -71,8 +71,8 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Soluti
     };
     if usual == Method::MultipleScales {
         // What has no series in the amplitude is averaged as it is.
-        return match refusal {
-            Refusal::Oscillator(
+        return match &refusal.reason {
+            Reason::Oscillator(
                 OscillatorError::NotPolynomial(_)
                 | OscillatorError::Taylor(_)
                 | OscillatorError::NotSmall { .. }
@@ -122,14 +122,12 @@ pub(super) fn is_of_damping(refusal: &Refusal, oscillator: &Oscillator) -> bool 
         let parts = oscillator.parts();
         parts.is_ok_and(|parts| !parts.damping.is_zero() && parts.forcing.is_zero())
     };
-    match refusal {
-        Refusal::Unsuited { reason: Unsuited::Damping { .. }, .. }
-        | Refusal::AmplitudeNotFree { .. }
-        | Refusal::NoLimitCycle { .. } => damped(),
-        Refusal::Oscillator(
+    match &refusal.reason {
+        Reason::Damping { .. } | Reason::AmplitudeNotFree | Reason::NoLimitCycle(_) => damped(),
+        Reason::Oscillator(
             OscillatorError::NotSmall { .. } | OscillatorError::NoEquilibrium(_),
         ) => damped(),
-        Refusal::Oscillator(error) => has_no_expansion(error) && damped(),
+        Reason::Oscillator(error) => has_no_expansion(error) && damped(),
         _ => false,
     }
 }
@@ -150,24 +148,22 @@ fn averaged(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refu
     let mut given = asked;
     loop {
         let options = Options { order: Some(given), ..options.clone() };
-        let lower = match solve_by(Method::Averaging, oscillator, &options) {
-            Ok(mut solution) => {
-                if given < asked {
-                    solution.validity.push(Note::HighestOrderHere { asked, given });
+        let lower =
+            match solve_by(Method::Averaging, oscillator, &options) {
+                Ok(mut solution) => {
+                    if given < asked {
+                        solution.validity.push(Note::HighestOrderHere { asked, given });
+                    }
+                    return Ok(solution);
                 }
-                return Ok(solution);
-            }
-            Err(Refusal::Unsuited { reason: Unsuited::HighestOrder { highest }, .. })
-                if highest < given =>
-            {
-                highest
-            }
-            Err(Refusal::Unsuited {
-                reason: Unsuited::PolynomialOnly { .. } | Unsuited::FirstOrderOfPower { .. },
-                ..
-            }) if given > 1 => 1,
-            Err(refusal) => return Err(refusal),
-        };
+                Err(Refusal { reason: Reason::HighestOrder(highest), .. }) if highest < given => {
+                    highest
+                }
+                Err(Refusal {
+                    reason: Reason::PolynomialOnly | Reason::FirstOrderOfPower, ..
+                }) if given > 1 => 1,
+                Err(refusal) => return Err(refusal),
+            };
         given = lower;
     }
 }
@@ -230,14 +226,13 @@ fn in_powers(
     oscillator: &Oscillator,
     options: &Options,
 ) -> Result<Solution, Refusal> {
-    let Refusal::Unsuited { reason: reason @ Unsuited::NoProjection { .. }, .. } = &refusal else {
+    if refusal.reason != Reason::NoProjection {
         return Err(refusal);
-    };
+    }
     match solve_by(Method::MultipleScales, oscillator, options) {
         Ok(mut solution) => {
-            solution
-                .validity
-                .push(Note::InsteadOf { usual: Method::Averaging, reason: format!("it {reason}") });
+            let reason = format!("it {}", refusal.without_title(Method::Averaging));
+            solution.validity.push(Note::InsteadOf { usual: Method::Averaging, reason });
             Ok(solution)
         }
         Err(_) => Err(refusal),
@@ -264,7 +259,7 @@ fn without_expansion(
     oscillator: &Oscillator,
     options: &Options,
 ) -> Option<Solution> {
-    let Refusal::Oscillator(error) = refusal else {
+    let Reason::Oscillator(error) = &refusal.reason else {
         return None;
     };
     let parts = oscillator.parts().ok()?;

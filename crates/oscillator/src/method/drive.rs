@@ -14,7 +14,7 @@ use num_integer::Integer as _;
 use num_traits::{Signed as _, ToPrimitive as _, Zero as _};
 
 use super::resonance::{RESONANCES, is_ratio};
-use super::{Refusal, Unsuited};
+use super::{Reason, Refusal};
 use crate::exact::rational::Integer;
 use crate::exact::{Polynomial, Rational};
 use crate::expr::{Expr, ExprError, Function, Node};
@@ -132,8 +132,7 @@ impl Drive {
             match multiple.as_number().filter(|number| number.is_positive()) {
                 Some(multiple) => multiples.push(multiple.clone()),
                 None => {
-                    let term = term.clone().into();
-                    return Err(Unsuited::SecondDrive { term }.to(method));
+                    return Err(Reason::SecondDrive.to(method).about(term));
                 }
             }
         }
@@ -150,8 +149,7 @@ impl Drive {
             |number: &Integer| (number / &common).to_u32().filter(|own| *own <= HIGHEST_MULTIPLE);
         for ((wave, number), term) in waves.into_iter().zip(&whole).zip(terms) {
             let Some(multiple) = multiple_of(number) else {
-                let term = term.clone().into();
-                return Err(Unsuited::SecondDrive { term }.to(method));
+                return Err(Reason::SecondDrive.to(method).about(term));
             };
             if drive.terms.is_empty() {
                 let phase = wave.still_phase(oscillator.coordinate);
@@ -295,10 +293,7 @@ impl Wave {
     /// A term that is no single wave, by name.
     pub(super) fn new(term: &Expr, method: Method) -> Result<Self, Refusal> {
         let t = Symbol::new("t");
-        let not_periodic = || {
-            let term = term.clone().into();
-            Unsuited::NoWave { term }.to(method)
-        };
+        let not_periodic = || Reason::NoWave.to(method).about(term);
         let (number, factors) = term.factors();
         let (moving, still): (Vec<&Expr>, Vec<&Expr>) =
             factors.iter().partition(|factor| factor.contains(t));

@@ -24,7 +24,7 @@
 use num_traits::Zero;
 
 use super::one_term::{integral_law, note_even_part, set_law, shared_integral, unsolved};
-use super::{Options, Refusal, Refuser, Unsuited, not_polynomial};
+use super::{Options, Reason, Refusal, Refuser, not_polynomial};
 use crate::derivation::Line;
 use crate::exact::Rational;
 use crate::expr::Expr;
@@ -60,12 +60,14 @@ pub(super) fn solve(
         // is.
         let force = &oscillator.force;
         let perturbation = (force - &force.substitute(small, &Expr::zero())?).expand()?;
-        return Err(
-            not_polynomial(&perturbation, oscillator.coordinate).to(Method::LindstedtPoincare)
-        );
+        return Err(not_polynomial(
+            &perturbation,
+            oscillator.coordinate,
+            Method::LindstedtPoincare,
+        ));
     }
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-        return Err(Unsuited::Convention.by(Refuser::FirstOrder));
+        return Err(Reason::Convention.by(Refuser::FirstOrder));
     }
     let mut solution = unsolved(oscillator, options, Method::LindstedtPoincare, 1);
     solution.small_parameter = small;
@@ -158,7 +160,7 @@ mod tests {
         let oscillator = Oscillator::parse("x'' + x + eps*sin(x) = 0").unwrap();
         assert!(matches!(
             solve(&oscillator, &first_harmonic),
-            Err(Refusal::Unsuited { reason: Unsuited::Convention, .. })
+            Err(Refusal { reason: Reason::Convention, .. })
         ));
     }
 }

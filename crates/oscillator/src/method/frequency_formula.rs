@@ -19,7 +19,7 @@
 
 use super::energy_balance::positive_amplitude;
 use super::one_term::{conservative_force, first_order_only, require_odd, set_law, unsolved};
-use super::{Options, Refusal};
+use super::{Options, Reason, Refusal};
 use crate::conservative::force::Force;
 use crate::derivation::{Formula, Line};
 use crate::expr::Expr;
@@ -42,7 +42,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let law = slope.substitute(oscillator.coordinate, &half)?.expand()?;
     let law = positive_amplitude(&law).unwrap_or(law);
     if law.is_zero() {
-        return Err(Refusal::NoSlope { force: force.to_string() });
+        return Err(Reason::NoSlope(force.to_string()).into());
     }
     let mut solution = unsolved(oscillator, options, METHOD, 1);
     set_law(&mut solution, &law)?;

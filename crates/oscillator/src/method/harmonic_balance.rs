@@ -27,7 +27,7 @@ use num_traits::{One, Zero};
 
 use super::iteration_perturbation::{horner, polynomial_coefficients};
 use super::one_term::{conservative_force, integral_law, set_law, shared_integral, unsolved};
-use super::{Options, Refusal, Unsuited};
+use super::{Options, Reason, Refusal};
 use crate::conservative::is_odd;
 use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
@@ -56,7 +56,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let force = conservative_force(oscillator, options, METHOD)?;
     let order = options.order.unwrap_or(2);
     if order == 0 || order > MOST_HARMONICS {
-        return Err(Unsuited::HighestOrder { highest: MOST_HARMONICS }.to(METHOD));
+        return Err(Reason::HighestOrder(MOST_HARMONICS).to(METHOD));
     }
     let odd = is_odd(&force, oscillator.coordinate)?;
     let mut solution = unsolved(oscillator, options, METHOD, order);

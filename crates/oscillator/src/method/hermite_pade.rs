@@ -41,7 +41,7 @@ use std::cmp::Ordering;
 use num_traits::{One, Signed, Zero};
 
 use super::power_series::{CONSTANT, Resummed, STOPPED, TOO_LONG, has_values};
-use super::{Options, Refusal, Unsuited};
+use super::{Options, Reason, Refusal};
 use crate::derivation::Line;
 use crate::exact::big_float::BigFloat;
 use crate::exact::zero_clusters::{Cluster, clusters};
@@ -74,7 +74,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     }
     let [first, others @ ..] = DEFAULTS;
     let refusal = match of_degrees(oscillator, options, first) {
-        Err(refusal @ Refusal::Approximant { .. }) => refusal,
+        Err(refusal @ Refusal { reason: Reason::Approximant { .. }, .. }) => refusal,
         other => return other,
     };
     let mut answers = others.into_iter().map(|degrees| of_degrees(oscillator, options, degrees));
@@ -86,7 +86,7 @@ fn of_degrees(
     options: &Options,
     degrees: Degrees,
 ) -> Result<Solution, Refusal> {
-    let refused = |reason| Refusal::Approximant { method: METHOD, degrees, reason };
+    let refused = |reason| Refusal::from(Reason::Approximant { method: METHOD, degrees, reason });
     let Degrees::Quadratic(p, q, r) = degrees else {
         return Err(refused("it has three, those of P, Q and R"));
     };
@@ -103,7 +103,7 @@ fn of_degrees(
         return Err(refused(CONSTANT));
     }
     let (variable, mut numbers) =
-        series.in_one_variable().ok_or_else(|| Unsuited::SeveralVariables.to(METHOD))?;
+        series.in_one_variable().ok_or_else(|| Reason::SeveralVariables.to(METHOD))?;
     // f begins with one; what it is a multiple of stands before the law.
     let first = numbers[0].clone();
     numbers.iter_mut().for_each(|number| *number = &*number / &first);

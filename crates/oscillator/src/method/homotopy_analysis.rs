@@ -30,7 +30,7 @@ use num_traits::{One, ToPrimitive};
 
 use super::one_term::{conservative_force, cosine, unsolved};
 use super::secular::SecularError;
-use super::{Options, Refusal, Unsuited};
+use super::{Options, Reason, Refusal};
 use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
@@ -73,7 +73,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     conservative_force(oscillator, options, METHOD)?;
     let order = options.order.unwrap_or(2);
     if order == 0 || order > HIGHEST {
-        return Err(Unsuited::HighestOrder { highest: HIGHEST }.to(METHOD));
+        return Err(Reason::HighestOrder(HIGHEST).to(METHOD));
     }
     let polynomial = oscillator.polynomial_degree()?;
     let degree = match polynomial {
@@ -312,7 +312,7 @@ impl<'a> Expansion<'a> {
         }
         let longest = next.harmonics().iter().map(|entry| entry.1.terms().len()).max();
         if longest.is_some_and(|longest| longest > MOST_TERMS) {
-            return Err(Refusal::TooLong { terms: MOST_TERMS });
+            return Err(Reason::TooLong(MOST_TERMS).into());
         }
         let [u, _, r] = &self.letters;
         let (name, before, residual) = (numbered(u, m), numbered(u, m - 1), numbered(r, m));

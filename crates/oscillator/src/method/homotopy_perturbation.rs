@@ -32,7 +32,7 @@ use super::expansion::expand_exactly;
 use super::inertia::VariableMass;
 use super::one_term::conservative_force;
 use super::secular::{Amplitude, Detuning, Extent, Scheme};
-use super::{Options, Refusal, Unsuited};
+use super::{Options, Reason, Refusal};
 use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
@@ -73,7 +73,7 @@ fn with_stiffness(
     if !moving {
         conservative_force(oscillator, options, METHOD)?;
     } else if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-        return Err(Unsuited::Convention.to(METHOD));
+        return Err(Reason::Convention.to(METHOD));
     }
     let order = options.order.unwrap_or(2);
     let degree = match oscillator.polynomial_degree()? {

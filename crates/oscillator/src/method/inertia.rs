@@ -34,7 +34,7 @@ use super::exact_motion::weighted_motion;
 use super::harmonic_balance::{coefficient_names, harmonics};
 use super::one_term::{compiled, first_order_only, require_odd, set_law, unsolved};
 use super::table::Entry;
-use super::{Options, Refusal, Unsuited};
+use super::{Options, Reason, Refusal};
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
 use crate::conservative::potential::potential;
@@ -225,11 +225,11 @@ pub(super) fn solve(
         return Ok(None);
     };
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-        return Err(Unsuited::Convention.to(entry.method));
+        return Err(Reason::Convention.to(entry.method));
     }
     if !moving.has_value_at_rest(oscillator) {
-        let term = oscillator.parts()?.inertia.into();
-        return Err(Unsuited::NoInertiaAtRest { term }.to(entry.method));
+        let inertia = oscillator.parts()?.inertia;
+        return Err(Reason::NoInertiaAtRest.to(entry.method).about(&inertia));
     }
     (approach.solve)(&moving, oscillator, options).map(Some)
 }
@@ -494,7 +494,7 @@ fn harmonic_balance(
     const HIGHEST: u32 = 40;
     let order = options.order.unwrap_or(2);
     if order == 0 || order > HIGHEST {
-        return Err(Unsuited::HighestOrder { highest: HIGHEST }.to(METHOD));
+        return Err(Reason::HighestOrder(HIGHEST).to(METHOD));
     }
     let x = oscillator.coordinate;
     let odd = moving.is_odd(oscillator)?;

@@ -26,7 +26,7 @@ use super::one_term::{
     conservative_force, cosine, first_projection, law_of, note_even_part_last, solve_by_integral,
     unsolved,
 };
-use super::{Options, Refusal, Unsuited, not_polynomial};
+use super::{Options, Reason, Refusal, not_polynomial};
 use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{Formula, Line};
 use crate::exact::polynomial::Monomial;
@@ -59,7 +59,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let force = conservative_force(oscillator, options, METHOD)?;
     let passes = options.order.unwrap_or(1);
     if passes > MOST_PASSES {
-        return Err(Unsuited::HighestOrder { highest: MOST_PASSES }.to(METHOD));
+        return Err(Reason::HighestOrder(MOST_PASSES).to(METHOD));
     }
     if passes > 1 {
         return iterated(oscillator, options, &force, passes);
@@ -137,11 +137,11 @@ fn iterated(
 ) -> Result<Solution, Refusal> {
     let (omega, amplitude) = (Symbol::new("omega"), Symbol::new("A"));
     let coefficients = polynomial_coefficients(oscillator, force)?
-        .ok_or_else(|| not_polynomial(force, oscillator.coordinate).to(METHOD))?;
+        .ok_or_else(|| not_polynomial(force, oscillator.coordinate, METHOD))?;
     // Every pass multiplies the number of harmonics by the degree.
     let degree = coefficients.len().saturating_sub(1);
     if degree.saturating_pow(passes) > MOST_HARMONICS {
-        return Err(Refusal::TooLong { terms: MOST_TERMS });
+        return Err(Reason::TooLong(MOST_TERMS).into());
     }
     let inverse = Monomial::power_of(omega, -2);
     let mut solution = unsolved(oscillator, options, METHOD, passes);
@@ -287,7 +287,7 @@ pub(super) fn horner(
             value.product(motion).sum(&FourierSeries::constant(POLYNOMIALS, coefficient.clone()));
         let longest = value.harmonics().iter().map(|entry| entry.1.terms().len()).max();
         if longest.is_some_and(|longest| longest > MOST_TERMS) {
-            return Err(Refusal::TooLong { terms: MOST_TERMS });
+            return Err(Reason::TooLong(MOST_TERMS).into());
         }
     }
     Ok(value)

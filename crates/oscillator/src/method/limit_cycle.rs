@@ -20,7 +20,7 @@
 use num_integer::Integer as _;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 
-use super::Refusal;
+use super::{Reason, Refusal};
 use crate::decimal::rounded;
 use crate::derivation::AmplitudeCondition;
 use crate::exact::polynomial::Monomial;
@@ -402,7 +402,7 @@ pub(super) fn chosen(
     };
     match usize::try_from(asked) {
         Ok(number) if (1..=cycles.len()).contains(&number) => Ok(number),
-        _ => Err(Refusal::NoSuchCycle { asked, count: cycles.len() }),
+        _ => Err(Reason::NoSuchCycle(asked, cycles.len()).into()),
     }
 }
 

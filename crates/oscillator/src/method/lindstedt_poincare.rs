@@ -37,7 +37,7 @@ use super::joint_expansion::expand_jointly;
 use super::limit_cycle::{AmplitudeEquation, Cycle, Units, amplitude_of, chosen};
 use super::linear::is_free_and_linear;
 use super::secular::{Amplitude, Detuning, Extent, Scheme, SecularError, bounded};
-use super::{Options, Refusal, Refuser, Unsuited, first_order, first_term};
+use super::{Options, Reason, Refusal, Refuser, first_order, first_term};
 use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
@@ -57,12 +57,15 @@ use crate::symbol::{Symbol, fresh};
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let parts = oscillator.parts()?;
     if !parts.forcing.is_zero() {
-        let term = first_term(&parts.forcing);
-        return Err(Unsuited::Forcing { term }.by(Refuser::Expansion));
+        return Err(Reason::Forcing.by(Refuser::Expansion).about(first_term(&parts.forcing)));
     }
     let mut perturbation = match perturbation(oscillator, &parts, options) {
-        Err(Refusal::Oscillator(refusal @ OscillatorError::NotPolynomial(_))) => {
-            return in_a_parameter(oscillator, &parts, options)?.ok_or(refusal.into());
+        Err(
+            refusal @ Refusal {
+                reason: Reason::Oscillator(OscillatorError::NotPolynomial(_)), ..
+            },
+        ) => {
+            return in_a_parameter(oscillator, &parts, options)?.ok_or(refusal);
         }
         other => other?,
     };
@@ -232,20 +235,22 @@ fn self_excitation(
 ) -> Result<Option<SelfExcitation>, Refusal> {
     let Some(equation) = AmplitudeEquation::new(&perturbation.force, units) else {
         return match asked {
-            Some(asked) => Err(Refusal::NoSuchCycle { asked, count: 0 }),
+            Some(asked) => Err(Reason::NoSuchCycle(asked, 0).into()),
             None => Ok(None),
         };
     };
-    let without =
-        |reason| Refusal::LimitCycle { equation: equation.in_square(fresh("z", taken)), reason };
+    let without = |reason| {
+        let equation = equation.in_square(fresh("z", taken));
+        Refusal::from(Reason::LimitCycle { equation, reason })
+    };
     let marker = perturbation.marker.unwrap_or(perturbation.small);
     let cycles = equation.cycles(marker, &units.frequency, taken).map_err(without)?;
     if perturbation.marker.is_none() {
-        return Err(Refusal::AmplitudeNotFree { term: first_term(&parts.damping) });
+        return Err(amplitude_not_free(parts));
     }
     let number = chosen(&cycles, asked, || match equation.is_single_term() {
         true => damped(parts),
-        false => Refusal::NoLimitCycle { equation: equation.in_square(fresh("z", taken)) },
+        false => Reason::NoLimitCycle(equation.in_square(fresh("z", taken))).into(),
     })?;
     if cycles[number - 1].attracts_where.is_none() {
         return Err(without("a multiple root: no expansion in powers begins there"));
@@ -439,7 +444,7 @@ fn perturbation(
         Err(OscillatorError::NotSmall { term, .. })
             if parts.damping.terms().contains(term.expression()) =>
         {
-            return Err(Unsuited::damping(term).by(Refuser::Expansion));
+            return Err(Refusal::damping(term.expression(), Refuser::Expansion));
         }
         // |x'| x', a dry friction and their like damp whether or not they have a series.
         Err(
@@ -493,8 +498,7 @@ fn drift(force: &PerturbedForce) -> Option<AmplitudeEquation> {
 }
 
 fn damped(parts: &Parts) -> Refusal {
-    let term = first_term(&parts.damping);
-    Unsuited::damping(term).by(Refuser::Expansion)
+    Refusal::damping(first_term(&parts.damping), Refuser::Expansion)
 }
 
 /// A term that feeds energy for some motions and drains it for others is no mere damping; which it
@@ -502,8 +506,12 @@ fn damped(parts: &Parts) -> Refusal {
 fn damping_or_excitation(parts: &Parts) -> Refusal {
     match parts.damping.terms() {
         [_] => damped(parts),
-        _ => Refusal::AmplitudeNotFree { term: first_term(&parts.damping) },
+        _ => amplitude_not_free(parts),
     }
+}
+
+fn amplitude_not_free(parts: &Parts) -> Refusal {
+    Refusal::from(Reason::AmplitudeNotFree).about(first_term(&parts.damping))
 }
 
 /// The terms in `y = x / unit` and the time of the linear frequency: `C_j` in the head of this
@@ -553,8 +561,8 @@ mod tests {
         ] {
             let refusal =
                 solve(&Oscillator::parse(equation).unwrap(), &Options::default()).unwrap_err();
-            let term = crate::expr::parse_expression(term).unwrap().into();
-            let expected = Unsuited::damping(term).by(Refuser::Expansion);
+            let term = crate::expr::parse_expression(term).unwrap();
+            let expected = Refusal::damping(&term, Refuser::Expansion);
             assert_eq!(refusal, expected, "{equation}");
         }
     }

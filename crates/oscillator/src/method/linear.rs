@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 
 use super::drive::{Quadrature, Wave};
 use super::one_term::unsolved;
-use super::{Options, Refusal, Unsuited, transient};
+use super::{Options, Reason, Refusal, transient};
 use crate::derivation::Line;
 use crate::exact::Polynomial;
 use crate::expr::{Expr, ExprError, Function};
@@ -105,12 +105,12 @@ impl Linear {
         solution.validity.push(Note::Exact(ExactBy::Linear));
         if sign > 0.0 && self.waves.is_empty() {
             if options.amplitude == Some(AmplitudeConvention::Initial) {
-                return Err(Unsuited::SlowAmplitude.to(Method::Exact));
+                return Err(Reason::SlowAmplitude.to(Method::Exact));
             }
             self.decay(oscillator, &rate, &square, solution)
         } else {
             if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-                return Err(Unsuited::Convention.to(Method::Exact));
+                return Err(Reason::Convention.to(Method::Exact));
             }
             self.in_time(oscillator, &rate, &square, sign, solution)
         }

@@ -34,7 +34,7 @@ use super::one_term::{
     compiled, conservative_force, first_order_only, integral_law, law_of, require_odd,
     solve_by_integral,
 };
-use super::{Options, Refusal};
+use super::{Options, Reason, Refusal};
 use crate::conservative::features::Features;
 use crate::conservative::{split, take_powers};
 use crate::decimal::decimal;
@@ -62,7 +62,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let (amplitude, x) = (Expr::symbol("A"), Expr::from(coordinate));
     let quotient = Expr::divide(&force, &x)?.expand()?;
     let at_rest = stiffness_at_rest(&quotient, &force, oscillator)
-        .ok_or_else(|| Refusal::Unbounded { quotient: quotient.to_string() })?;
+        .ok_or_else(|| Reason::Unbounded(quotient.to_string()))?;
     let at_turning =
         super::energy_balance::positive_amplitude(&quotient.substitute(coordinate, &amplitude)?)
             .unwrap_or_else(|| quotient.clone());

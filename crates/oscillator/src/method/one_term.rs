@@ -16,7 +16,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use super::{Options, Refusal, Unsuited, first_term};
+use super::{Options, Reason, Refusal, Refuser, first_term};
 use crate::conservative::force::Force;
 use crate::conservative::is_odd;
 use crate::conservative::parity::twice_even_part;
@@ -44,27 +44,21 @@ pub(super) fn conservative_force(
 ) -> Result<Expr, Refusal> {
     let parts = oscillator.parts()?;
     if !parts.forcing.is_zero() {
-        let term = first_term(&parts.forcing);
-        return Err(Unsuited::Forcing { term }.to(method));
+        return Err(Reason::Forcing.to(method).about(first_term(&parts.forcing)));
     }
     match parts.damping.terms() {
         [zero] if zero.is_zero() => {}
-        [only] => {
-            let term = only.clone().into();
-            return Err(Unsuited::damping(term).to(method));
-        }
+        [only] => return Err(Refusal::damping(only, Refuser::Method(method))),
         // Terms that feed energy for some motions and drain it for others.
         _ => {
-            let term = first_term(&parts.damping);
-            return Err(Unsuited::Velocity { term }.to(method));
+            return Err(Reason::Velocity.to(method).about(first_term(&parts.damping)));
         }
     }
     if !parts.inertia.is_zero() {
-        let term = first_term(&parts.inertia);
-        return Err(Unsuited::Velocity { term }.to(method));
+        return Err(Reason::Velocity.to(method).about(first_term(&parts.inertia)));
     }
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-        return Err(Unsuited::Convention.to(method));
+        return Err(Reason::Convention.to(method));
     }
     Ok(oscillator.force.clone())
 }
@@ -80,14 +74,14 @@ pub(super) fn require_odd(
     }
     let term = even_part(oscillator, force)?;
     let term = first_term(&term);
-    Err(Unsuited::NotOdd { term }.to(method))
+    Err(Reason::NotOdd.to(method).about(term))
 }
 
 /// Refuses any order but the first.
 pub(super) fn first_order_only(options: &Options, method: Method) -> Result<(), Refusal> {
     match options.order {
         None | Some(1) => Ok(()),
-        Some(_) => Err(Unsuited::HighestOrder { highest: 1 }.to(method)),
+        Some(_) => Err(Reason::HighestOrder(1).to(method)),
     }
 }
 

@@ -28,7 +28,7 @@ use std::collections::BTreeMap;
 use num_traits::{One, Zero};
 
 use super::power_series::{CONSTANT, PowerSeries, Resummed, STOPPED, TOO_LONG, has_values, scaled};
-use super::{Options, Refusal};
+use super::{Options, Reason, Refusal};
 use crate::derivation::{Formula, Line};
 use crate::exact::big_float::BigFloat;
 use crate::exact::polynomial::Monomial;
@@ -59,7 +59,7 @@ const LARGEST_WITH_SYMBOLS: usize = 9;
 /// As for the method of Lindstedt and Poincare; degrees without an approximant.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let degrees = options.degrees.unwrap_or(Degrees::Quotient(2, 1));
-    let refused = |reason| Refusal::Approximant { method: METHOD, degrees, reason };
+    let refused = |reason| Refusal::from(Reason::Approximant { method: METHOD, degrees, reason });
     let Degrees::Quotient(numerator_degree, denominator_degree) = degrees else {
         return Err(refused("it has two, those of numerator and denominator"));
     };

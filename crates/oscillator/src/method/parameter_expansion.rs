@@ -65,7 +65,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         return Ok(solution);
     }
     if !polynomial && options.taylor.is_none() && options.order.is_some() {
-        return Err(not_polynomial(&oscillator.force, oscillator.coordinate).to(METHOD));
+        return Err(not_polynomial(&oscillator.force, oscillator.coordinate, METHOD));
     }
     let options = Options { order: Some(order), ..options.clone() };
     let mut solution = homotopy_perturbation::solve_without_linear_part(oscillator, &options)?;

@@ -3,7 +3,7 @@
 
 use num_traits::{One, Zero};
 
-use super::{Options, Refusal, Unsuited, lindstedt_poincare};
+use super::{Options, Reason, Refusal, lindstedt_poincare};
 use crate::derivation::Line;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
@@ -126,7 +126,7 @@ impl Resummed {
         /// that is used.
         const LONG: u32 = 24;
         if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-            return Err(Unsuited::Convention.to(method));
+            return Err(Reason::Convention.to(method));
         }
         let in_amplitude =
             oscillator.small_parameter(options.small.as_deref())? == SmallParameter::Amplitude;

@@ -7,7 +7,7 @@
 
 use std::convert::Infallible;
 
-use super::{Refusal, Unsuited};
+use super::{Reason, Refusal};
 use crate::equilibrium::Centred;
 use crate::expr::{Expr, ExprError, Quotation};
 use crate::oscillator::{Oscillator, OscillatorError};
@@ -20,11 +20,10 @@ pub(super) fn as_typed(
     centred: &Centred,
 ) -> Refusal {
     let moved = !centred.position.is_zero();
-    if let Refusal::Unsuited { reason, .. } = &mut refusal {
-        quote(reason, oscillator, centred);
-    }
-    match &mut refusal {
-        Refusal::Oscillator(OscillatorError::Taylor(TaylorError::NotAnalytic { term, point })) => {
+    let of_velocity = refusal.reason == Reason::Velocity;
+    let not_odd = refusal.reason == Reason::NotOdd;
+    let term = match &mut refusal.reason {
+        Reason::Oscillator(OscillatorError::Taylor(TaylorError::NotAnalytic { term, point })) => {
             // A part of a term is quoted as it is where it stands so in the text.
             if !moved && oscillator.typed.contains(term.words()) {
                 return refusal;
@@ -38,58 +37,25 @@ pub(super) fn as_typed(
                     centre.clone_from(&centred.position);
                 }
             }
+            return refusal;
         }
-        Refusal::AmplitudeNotFree { term }
-        | Refusal::Oscillator(
+        Reason::Oscillator(
             OscillatorError::NotSmall { term, .. } | OscillatorError::NotPolynomial(term),
-        ) => {
-            replace(term, typed(term, oscillator, centred));
+        ) => Some(term),
+        Reason::NotOddAbout(..) => None,
+        _ => refusal.quoted.as_mut(),
+    };
+    let found = term.and_then(|term| Some((typed(term, oscillator, centred)?, term)));
+    // It may be the factor of the acceleration that brings the velocity in: then the term is shown
+    // over that.
+    let shows_velocity = |found: &Quotation| found.words().contains(oscillator.velocity().name());
+    if let Some((found, term)) = found.filter(|(found, _)| !of_velocity || shows_velocity(found)) {
+        *term = found;
+        if moved && not_odd {
+            refusal.reason = Reason::NotOddAbout(oscillator.coordinate, centred.position.clone());
         }
-        _ => {}
     }
     refusal
-}
-
-fn quote(reason: &mut Unsuited, oscillator: &Oscillator, centred: &Centred) {
-    match reason {
-        Unsuited::NotOdd { term } => match typed(term, oscillator, centred) {
-            Some(term) if !centred.position.is_zero() => {
-                *reason = Unsuited::NotOddAbout {
-                    term,
-                    coordinate: oscillator.coordinate,
-                    position: centred.position.clone(),
-                };
-            }
-            found => replace(term, found),
-        },
-        Unsuited::Velocity { term } => {
-            // It may be the factor of the acceleration that brings the velocity in: then the term
-            // is shown over that.
-            let has_velocity =
-                |found: &Quotation| found.words().contains(oscillator.velocity().name());
-            replace(term, typed(term, oscillator, centred).filter(has_velocity));
-        }
-        Unsuited::Damping { term, .. }
-        | Unsuited::Forcing { term }
-        | Unsuited::NoWave { term }
-        | Unsuited::SecondDrive { term }
-        | Unsuited::ResonanceWithoutDamping { term }
-        | Unsuited::NoProjection { term }
-        | Unsuited::NoLinearForce { term, .. }
-        | Unsuited::PushesAway { term }
-        | Unsuited::FirstOrderOfPower { term }
-        | Unsuited::NoInertiaAtRest { term }
-        | Unsuited::PolynomialOnly { term } => {
-            replace(term, typed(term, oscillator, centred));
-        }
-        _ => {}
-    }
-}
-
-fn replace(term: &mut Quotation, found: Option<Quotation>) {
-    if let Some(found) = found {
-        *term = found;
-    }
 }
 
 /// The typed terms from which the terms of a sum come.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::drive::Drive;
-use super::{Options, Refusal, Unsuited};
+use super::{Options, Reason, Refusal};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 use crate::solution::Method;
@@ -40,7 +40,7 @@ pub(super) fn is_near((p, q): (u32, u32), ratio: f64, method: Method) -> Result<
     const FAR: f64 = 0.5;
     let nearest = (p, q);
     match (ratio * f64::from(q) / f64::from(p) - 1.0).abs() > FAR {
-        true => Err(Unsuited::FarFromResonance { ratio, nearest }.to(method)),
+        true => Err(Reason::FarFromResonance { ratio, nearest }.to(method)),
         false => Ok(()),
     }
 }

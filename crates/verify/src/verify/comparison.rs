@@ -18,7 +18,7 @@ use crate::decimal::{decimal, significant};
 use crate::expr::Equation;
 use crate::method::homotopy_analysis::convergence_control;
 use crate::method::numbers::{Known, NoNumbers};
-use crate::method::{Options, Refusal, Unsuited, solve, with_resonance_at};
+use crate::method::{Options, Reason, Refusal, solve, with_resonance_at};
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
@@ -184,7 +184,7 @@ pub fn compare(
     if let Some(solution) = slow.first() {
         refused.push(Refused {
             method: solution.method,
-            reason: Unsuited::NoSteadyAmplitude.to(solution.method),
+            reason: Reason::NoSteadyAmplitude.to(solution.method),
         });
     }
     super::periodic(first)?;
@@ -243,11 +243,14 @@ fn answers(
             });
             let about_small = matches!(
                 &found,
-                Err(Refusal::Oscillator(
-                    OscillatorError::NotSmall { .. }
-                        | OscillatorError::NotPolynomial(_)
-                        | OscillatorError::AmbiguousSmallParameter(_)
-                ))
+                Err(Refusal {
+                    reason: Reason::Oscillator(
+                        OscillatorError::NotSmall { .. }
+                            | OscillatorError::NotPolynomial(_)
+                            | OscillatorError::AmbiguousSmallParameter(_)
+                    ),
+                    ..
+                })
             );
             if by_amplitude.is_ok() || about_small {
                 found = by_amplitude;
@@ -263,7 +266,7 @@ fn answers(
             (Ok(solution), Some(method))
                 if solution.response.is_none() && super::periodic(&solution).is_err() =>
             {
-                refused.push(Refused { method, reason: Unsuited::NoSteadyAmplitude.to(method) })
+                refused.push(Refused { method, reason: Reason::NoSteadyAmplitude.to(method) })
             }
             (Ok(solution), _) => solutions.push(solution),
             (Err(reason), Some(method))

@@ -30,7 +30,7 @@ use crate::method::frequency_response::FrequencyResponse;
 use crate::method::multiple_scales::driven::{Asked, is_of_resonance};
 use crate::method::multiple_scales::scaling::{Scaling, bounded};
 use crate::method::resonance::{by_distance, is_near, is_ratio, ratio_of};
-use crate::method::{Options, Refusal, Unsuited, not_polynomial};
+use crate::method::{Options, Reason, Refusal, not_polynomial};
 use crate::oscillator::{Oscillator, OscillatorError, Parts};
 use crate::solution::response::{ClosedRelation, Response};
 use crate::solution::{AmplitudeConvention, ClosedForm, Definition, Law, Method, Note, Solution};
@@ -49,16 +49,16 @@ pub(super) fn solve(
     parts: &Parts,
     options: &Options,
 ) -> Result<Solution, Refusal> {
-    let refuse = |reason: Unsuited| Err(reason.to(Method::Averaging));
+    let refuse = |reason: Reason| Err(reason.to(Method::Averaging));
     match options.order {
-        Some(0) => return refuse(Unsuited::LowestOrder { lowest: 1 }),
+        Some(0) => return refuse(Reason::LowestOrder(1)),
         Some(order) if order > HIGHEST => {
-            return refuse(Unsuited::HighestOrder { highest: HIGHEST });
+            return refuse(Reason::HighestOrder(HIGHEST));
         }
         _ => {}
     }
     if options.amplitude == Some(AmplitudeConvention::Initial) {
-        return refuse(Unsuited::ConventionOfFirstHarmonic);
+        return refuse(Reason::ConventionOfFirstHarmonic);
     }
     let drive = Drive::of(parts, oscillator, Method::Averaging)?;
     let mut free = oscillator.clone();
@@ -117,8 +117,8 @@ impl UnderDrive<'_> {
                 | OscillatorError::NoEquilibrium(_),
             ) => {
                 self.small.linear_part()?;
-                let reason = not_polynomial(&self.small.without_linear()?, self.free.coordinate);
-                return Err(reason.to(Method::Averaging));
+                let force = self.small.without_linear()?;
+                return Err(not_polynomial(&force, self.free.coordinate, Method::Averaging));
             }
             Err(error) => return Err(error.into()),
         };
@@ -141,7 +141,7 @@ impl UnderDrive<'_> {
 
     /// The first order by projections.
     fn first_order(&self) -> Result<Solution, Refusal> {
-        let refuse = |reason: Unsuited| Err(reason.to(Method::Averaging));
+        let refuse = |reason: Reason| Err(reason.to(Method::Averaging));
         let (oscillator, drive) = (self.oscillator, self.asked.drive);
         let a = AmplitudeConvention::FirstHarmonic.symbol();
         let projected = Projected::of(self.free, &self.small, &Expr::from(a))?;
@@ -174,8 +174,8 @@ impl UnderDrive<'_> {
             }
             let undamped = projected.terms.is_zero() && drive.frequency == projected.omega0;
             if let (true, Some(driven)) = (undamped, drive.terms.first()) {
-                let term = driven.term.clone().into();
-                return refuse(Unsuited::ResonanceWithoutDamping { term });
+                let refusal = Reason::ResonanceWithoutDamping.to(Method::Averaging);
+                return Err(refusal.about(&driven.term));
             }
             return Question::new(oscillator, &self.small, drive, projected, resonance.0)
                 .answer(&waves);
@@ -191,7 +191,7 @@ impl UnderDrive<'_> {
             }
         }
         let asked = candidates.first().copied().unwrap_or((1, 1));
-        refuse(Unsuited::NoResonance { asked, others })
+        refuse(Reason::NoResonance { asked, others })
     }
 }
 
@@ -217,10 +217,7 @@ fn waves(drive: &Drive, oscillator: &Oscillator, omega0: &Expr, p: u32) -> Resul
     let a = Expr::from(AmplitudeConvention::FirstHarmonic.symbol());
     let mut sums = [[vec![], vec![]], [vec![], vec![]]];
     for driven in &drive.terms {
-        let no_projection = || {
-            let term = driven.term.clone().into();
-            Unsuited::NoProjection { term }.to(Method::Averaging)
-        };
+        let no_projection = || Reason::NoProjection.to(Method::Averaging).about(&driven.term);
         let (size, powers) = powers(driven, oscillator.coordinate).ok_or_else(no_projection)?;
         let size = &size
             * &(a.integer_power((powers[0] + powers[1]).into())?

@@ -35,7 +35,7 @@ use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, ExprError, Function};
 use crate::method::exact::of_power;
 use crate::method::exact_motion::motion_about;
-use crate::method::{Options, Refusal, Unsuited, transient};
+use crate::method::{Options, Reason, Refusal, transient};
 use crate::oscillator::{Oscillator, Parts};
 use crate::series::FourierSeries;
 use crate::solution::modulation::Release;
@@ -238,8 +238,7 @@ impl SlowEquations {
         let (mut rates, mut turning_rates) = (vec![], vec![]);
         for term in parts.damping.terms() {
             let Some((power, size)) = restoring.drain(term, oscillator.coordinate) else {
-                let term = term.clone().into();
-                return Err(Unsuited::NoProjection { term }.to(Method::Averaging));
+                return Err(Reason::NoProjection.to(Method::Averaging).about(term));
             };
             let at = |base: Symbol, power: Rational| {
                 Expr::power(&Expr::from(base), &Expr::number(power))
@@ -310,8 +309,7 @@ pub(super) fn solve(
     refuse_other_orders(parts, options)?;
     let names = Names::beside(oscillator);
     let Some(shape) = Shape::of(restoring, oscillator, parts) else {
-        let term = parts.restoring.clone().into();
-        return Err(Unsuited::NoProjection { term }.to(Method::Averaging));
+        return Err(Reason::NoProjection.to(Method::Averaging).about(&parts.restoring));
     };
     let slow = SlowEquations::of(oscillator, parts, restoring, &names)?;
     let (small, small_with, cut) = small_in_words(oscillator, parts)?;
@@ -347,15 +345,17 @@ pub(super) fn solve(
 
 /// Refuses orders other than the first, and an amplitude that is not that of the slow equations.
 fn refuse_other_orders(parts: &Parts, options: &Options) -> Result<(), Refusal> {
-    let reason = match options.order {
-        Some(0) => Unsuited::LowestOrder { lowest: 1 },
+    let refuse = |reason: Reason| Err(reason.to(Method::Averaging));
+    match options.order {
+        Some(0) => refuse(Reason::LowestOrder(1)),
         Some(order) if order > 1 => {
-            Unsuited::FirstOrderOfPower { term: parts.restoring.clone().into() }
+            refuse(Reason::FirstOrderOfPower).map_err(|refusal| refusal.about(&parts.restoring))
         }
-        _ if options.amplitude == Some(AmplitudeConvention::Initial) => Unsuited::SlowAmplitude,
-        _ => return Ok(()),
-    };
-    Err(reason.to(Method::Averaging))
+        _ if options.amplitude == Some(AmplitudeConvention::Initial) => {
+            refuse(Reason::SlowAmplitude)
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Powers of quotients as products of powers, so that the amplitude stands alone; what has no

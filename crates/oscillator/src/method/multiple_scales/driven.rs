@@ -33,7 +33,7 @@ use crate::method::drive::{Drive, Driven, Quadrature};
 use crate::method::driven_answer::DrivenMotion;
 use crate::method::lindstedt_poincare::{LinearPart, with_square};
 use crate::method::resonance::{by_distance, is_near, is_ratio, ratio_of};
-use crate::method::{Options, Refusal, Unsuited};
+use crate::method::{Options, Reason, Refusal};
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce};
 use crate::solution::{AmplitudeConvention, Definition, Law, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh};
@@ -67,7 +67,7 @@ pub(super) fn solve(
     }
     let found = expanded(oscillator, parts, options);
     let refused = |refusal: &Refusal| {
-        matches!(refusal, Refusal::Oscillator(OscillatorError::NotPolynomial(_)))
+        matches!(refusal.reason, Reason::Oscillator(OscillatorError::NotPolynomial(_)))
     };
     // What is no polynomial may be one for small motions.
     match options.small.is_none() && found.as_ref().is_err_and(refused) {
@@ -108,7 +108,7 @@ fn expanded(
     let scaling = scaling_of(options.order)?;
     if scaling.is_below_balance() {
         let lowest = u32::try_from(scaling.small_order).unwrap_or(u32::MAX);
-        return Err(Unsuited::BelowBalance { lowest }.to(Method::MultipleScales));
+        return Err(Reason::BelowBalance(lowest).to(Method::MultipleScales));
     }
     let drive = match scaling.marker {
         Some(_) => drive,
@@ -163,10 +163,7 @@ fn is_linear(oscillator: &Oscillator, parts: &Parts) -> bool {
 
 /// Whether a refusal is that of a resonance which is not there, or far away.
 pub(in crate::method) fn is_of_resonance(refusal: &Refusal) -> bool {
-    let Refusal::Unsuited { reason, .. } = refusal else {
-        return false;
-    };
-    matches!(reason, Unsuited::NoResonance { .. } | Unsuited::FarFromResonance { .. })
+    matches!(refusal.reason, Reason::NoResonance { .. } | Reason::FarFromResonance { .. })
 }
 
 /// A driven motion that is to be expanded, by the method that asks.
@@ -234,12 +231,12 @@ impl Asked<'_> {
         if grows(scaling, self.drive, resonance) {
             let term = self.force().or(self.drive.terms.first());
             let term = term.map_or_else(Expr::zero, |driven| driven.term.clone());
-            return Err(Unsuited::ResonanceWithoutDamping { term: term.into() }.to(self.method));
+            return Err(Reason::ResonanceWithoutDamping.to(self.method).about(&term));
         }
         let found = self.at(resonance, scaling)?.ok_or_else(|| {
             let others = self.drive.resonances().into_iter().filter(reaches).collect();
             let asked = resonance;
-            Unsuited::NoResonance { asked, others }.to(self.method)
+            Reason::NoResonance { asked, others }.to(self.method)
         })?;
         if let Some(ratio) = self.near(scaling) {
             is_near(resonance, ratio, self.method)?;

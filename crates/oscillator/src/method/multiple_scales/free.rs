@@ -15,7 +15,7 @@ use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::Expr;
 use crate::method::limit_cycle::Units;
 use crate::method::lindstedt_poincare::{LinearPart, with_square};
-use crate::method::{Options, Refusal, transient};
+use crate::method::{Options, Reason, Refusal, transient};
 use crate::oscillator::{Oscillator, Parts};
 use crate::series::FourierSeries;
 use crate::solution::modulation::Release;
@@ -153,10 +153,10 @@ impl Free<'_> {
         let order = scaling.order as usize;
         let at =
             self.slow.at_cycle(cycle, &self.linear.frequency, order, names).ok_or_else(|| {
-                Refusal::LimitCycle {
+                Refusal::from(Reason::LimitCycle {
                     equation: cycles.equation.in_square(fresh("z", &self.linear.taken)),
                     reason: "which divides by a sum of symbols",
-                }
+                })
             })?;
         let put = |polynomial: &Polynomial| {
             let value = polynomial.substitute(names.amplitude, &at);

@@ -40,7 +40,7 @@ mod slow_times;
 mod slow_waves;
 
 use self::slow_times::DrivenTerm;
-use super::{Options, Refusal, Unsuited};
+use super::{Options, Reason, Refusal};
 use crate::oscillator::{Oscillator, Term};
 use crate::solution::{AmplitudeConvention, Method, Solution};
 
@@ -51,14 +51,14 @@ use crate::solution::{AmplitudeConvention, Method, Solution};
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let parts = oscillator.parts()?;
     if options.amplitude == Some(AmplitudeConvention::Initial) {
-        return Err(Unsuited::ConventionOfFirstHarmonic.to(Method::MultipleScales));
+        return Err(Reason::ConventionOfFirstHarmonic.to(Method::MultipleScales));
     }
     if !parts.forcing.is_zero() {
         return driven::solve(oscillator, &parts, options);
     }
     if options.resonance.is_some() {
         let choice = super::table::Choice::Resonance;
-        return Err(Unsuited::NoSuchChoice { choice }.to(Method::MultipleScales));
+        return Err(Reason::NoSuchChoice(choice).to(Method::MultipleScales));
     }
     free::solve(oscillator, &parts, options)
 }

@@ -10,7 +10,7 @@ use num_traits::One;
 
 use super::super::joint_expansion::expand_jointly;
 use super::super::lindstedt_poincare::may_balance;
-use super::super::{Options, Refusal, Unsuited, secular};
+use super::super::{Options, Reason, Refusal, secular};
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
@@ -146,7 +146,7 @@ pub(super) fn scaling(
         // To a lower order nothing drains a motion that is damped.
         (Ok(found), _) if found.damping.is_some() && found.is_below_balance() => {
             let lowest = SHIFT_OF_A_CUBE;
-            Err(Unsuited::BelowBalance { lowest }.to(Method::MultipleScales))
+            Err(Reason::BelowBalance(lowest).to(Method::MultipleScales))
         }
         (found, _) => found,
     }
@@ -314,7 +314,7 @@ fn without_linear_damping(oscillator: &Oscillator) -> Result<(Oscillator, Expr),
 fn order_of(options: &Options, default: u32, highest: u32) -> Result<u32, Refusal> {
     match options.order {
         Some(asked) if asked > highest => {
-            Err(Unsuited::HighestOrder { highest }.to(Method::MultipleScales))
+            Err(Reason::HighestOrder(highest).to(Method::MultipleScales))
         }
         Some(asked) => Ok(asked),
         None => Ok(default),

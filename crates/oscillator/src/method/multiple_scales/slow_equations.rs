@@ -9,7 +9,7 @@ use crate::exact::Polynomial;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::method::limit_cycle::{AmplitudeEquation, Cycle, Units, chosen};
-use crate::method::{Options, Refusal};
+use crate::method::{Options, Reason, Refusal};
 use crate::symbol::{Symbol, fresh};
 
 /// `a'` and `theta'` in powers of the marker.
@@ -90,7 +90,7 @@ pub(super) fn cycles(
     taken: &[Symbol],
 ) -> Result<Option<Cycles>, Refusal> {
     let without = match options.cycle {
-        Some(asked) => Err(Refusal::NoSuchCycle { asked, count: 0 }),
+        Some(asked) => Err(Reason::NoSuchCycle(asked, 0).into()),
         None => Ok(None),
     };
     let (Some(equation), Some(marker)) =
@@ -98,13 +98,15 @@ pub(super) fn cycles(
     else {
         return without;
     };
-    let refused =
-        |reason| Refusal::LimitCycle { equation: equation.in_square(fresh("z", taken)), reason };
+    let refused = |reason| {
+        let equation = equation.in_square(fresh("z", taken));
+        Refusal::from(Reason::LimitCycle { equation, reason })
+    };
     let cycles = equation.cycles(marker, &units.frequency, taken).map_err(refused)?;
     if cycles.is_empty() {
         return without;
     }
-    let none = || Refusal::NoSuchCycle { asked: 0, count: 0 };
+    let none = || Reason::NoSuchCycle(0, 0).into();
     let number = chosen(&cycles, options.cycle, none)?;
     if cycles[number - 1].attracts_where.is_none() {
         return Err(refused("a multiple root: no expansion in powers begins there"));

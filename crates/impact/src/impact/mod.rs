@@ -26,6 +26,7 @@
 //! - `model`: the forces of equation (7) and what its parameters may be.
 //! - `case`: a [`Case`], the same by dimensions and materials, any number of which a [`Parameter`]
 //!   reads or writes.
+//! - `regularised`: contact in a variable in which it is a power series.
 //! - `polynomial`: polynomials on an interval, and where their sign changes.
 //! - `simulation`: a motion that was followed: its path, its energy, when it came to rest.
 //! - `taylor`: the fast integrator, by power series, eight motions in one instruction stream.
@@ -85,6 +86,7 @@ mod parameter;
 mod phases;
 mod polynomial;
 pub mod primary;
+mod regularised;
 mod setup;
 mod si;
 mod simulate;

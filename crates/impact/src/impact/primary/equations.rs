@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! flight:   x' = v, y' = u, (v', u') = M^-1 h
-//! contact:  w' = sigma v/2, v' = w a, u' = w b, y' = w u, t' = w in s, dt = w ds; the force is (gamma + mu sigma v) w^3
+//! contact:  the rates of flight with the force of the barrier, in s: see `regularised`
 //! held:     y' = u, u' = b with v = v' = 0
 //! ```
 //!
@@ -14,6 +14,7 @@ use std::rc::Rc;
 use std::sync::LazyLock;
 
 use super::super::model::{Friction, STEEPNESS, Side};
+use super::super::regularised::regularised;
 use super::{PrimaryCase, PrimaryError};
 use crate::expr::{Expr, parse_expression};
 use crate::mechanics::{MechanicsError, Mechanism};
@@ -218,24 +219,13 @@ impl Equations {
         place: f64,
         direction: f64,
     ) -> Result<Followed, PrimaryError> {
-        let sign = Expr::from(side.sign() as i64);
         let [torque, power] = self.friction(direction);
-        let force = own("w^3") * (own("gamma") + &sign * &own("mu*x'"));
-        let x = own("place") + &sign * &own("w^2");
-        let slow = |rate: Expr| own("w") * rate;
-        let put = |expression: &Expr| {
-            self.put(
-                expression,
-                &[("P", -(&sign * &force)), ("G", torque.clone()), ("x", x.clone())],
-            )
-        };
-        let mut right = vec![&sign * &own("x'/2")];
-        right.push(slow(put(&self.accelerations.free[0])?));
-        right.push(slow(own("y'")));
-        right.push(slow(put(&self.accelerations.free[1])?));
-        right.push(own("w"));
-        right.extend(self.accounts(power, own("mu*x'^2*w^3")).into_iter().map(slow));
-        self.followed(&["w", "x'", "y", "y'", "t"], "s", &right, &[("place", place)])
+        let put = |acceleration: &Expr| self.put(acceleration, &[("G", torque.clone())]);
+        let [x, y] = [put(&self.accelerations.free[0])?, put(&self.accelerations.free[1])?];
+        let mut rates = vec![x, own("y'"), y, Expr::one()];
+        rates.extend(self.accounts(power, own("mu*x'^2*w^3")));
+        let right = regularised(&rates, side).map_err(MechanicsError::from)?;
+        self.followed(&["w", "x'", "y", "y'", "t"], "s", &right, &[("x_c", place)])
     }
 
     /// The main mass alone with the pendulum held at x; the torque on the pendulum is what friction

@@ -16,7 +16,7 @@
 //! In: a [`PrimaryCase`]. Out: a [`PrimaryMotion`], event by event: both states at any time, the
 //! impacts, where the energy went, and when the main mass comes to rest, beside the same main mass
 //! without damper and with the damper locked, which are linear and known in closed form. A contact
-//! is followed in w with x = x_c + w^2 and dt = w ds, in which it is analytic through the touch.
+//! is followed in the variable of `regularised`, in which it is analytic through the touch.
 //!
 //! (S. F. Masri, *J. Acoust. Soc. Am.* 45 (1969) 1111, for impact dampers of this kind.)
 

@@ -85,7 +85,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         other: &|format| match format {
             Format::Json => {
                 let mut document = json::lagrangian(&study);
-                document.findings = json::lagrangian::findings(&findings);
+                document.findings = findings.clone();
                 json_text(&document)
             }
             format => no_such(format),

@@ -142,8 +142,8 @@ fn impacts<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     let or_none = |value: Option<f64>| value.map_or_else(String::new, decimal);
     let row = |impact: &crate::impact::primary::PrimaryImpact| {
         vec![
-            decimal(impact.entry),
-            or_none(impact.exit.map(|exit| exit - impact.entry)),
+            decimal(impact.entry_time),
+            or_none(impact.exit_time.map(|exit| exit - impact.entry_time)),
             impact.side.name().to_owned(),
             decimal(impact.speed_in),
             or_none(impact.speed_out),

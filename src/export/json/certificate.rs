@@ -32,7 +32,6 @@ const LONGEST_FORCE: usize = 2000;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct CertificateDocument {
     /// The kind of document.
     #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Certificate.schema())))]
@@ -41,7 +40,7 @@ pub struct CertificateDocument {
     #[cfg_attr(feature = "schema", schemars(extend("const" = EQUATION)))]
     pub ode: String,
     /// The force: the coefficients of a polynomial by rising power of x, or an expression in x.
-    pub f: ForceDocument,
+    pub f: CertificateForce,
     /// x(0), a fraction, exact; x'(0) = 0.
     #[serde(rename = "A")]
     pub start: String,
@@ -71,7 +70,7 @@ pub struct CertificateDocument {
     /// The radius that is claimed: the true mu and c are so near in the norm.
     pub claim_r: String,
     /// The formula that is judged; null where none is.
-    pub formula: Option<FormulaDocument>,
+    pub formula: Option<CertificateFormula>,
 }
 
 /// What `ode` has.
@@ -81,8 +80,7 @@ const EQUATION: &str = "x''+f(x)=0";
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(untagged)]
-#[cfg_attr(feature = "schema", schemars(rename = "CertificateForce"))]
-pub enum ForceDocument {
+pub enum CertificateForce {
     /// The coefficients of a polynomial, fractions, that of x^0 first.
     Polynomial(Vec<String>),
     /// An expression in x; `sin` is short for `sin(x)`.
@@ -94,8 +92,7 @@ pub enum ForceDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CertificateFormula"))]
-pub struct FormulaDocument {
+pub struct CertificateFormula {
     /// The law as it was derived: `omega = ...` or `omega^2 = ...` with definitions of letters
     /// behind commas, which has to give `omega` at `values` to its last digits. What is of another
     /// form is words: nothing is checked against them.
@@ -185,8 +182,8 @@ pub(super) fn read_values(text: &str) -> Result<Values, JsonError> {
 }
 
 /// The document of a formula that is judged.
-fn formula(formula: &JudgedFormula) -> FormulaDocument {
-    FormulaDocument {
+fn formula(formula: &JudgedFormula) -> CertificateFormula {
+    CertificateFormula {
         law: formula.law.clone(),
         values: values(&formula.values),
         omega: formula.frequency.to_string(),
@@ -198,7 +195,7 @@ fn formula(formula: &JudgedFormula) -> FormulaDocument {
 }
 
 /// The coefficients of a polynomial, or the text of another force.
-pub(super) fn force(force: &Expr) -> ForceDocument {
+pub(super) fn force(force: &Expr) -> CertificateForce {
     let x = coordinate();
     let of_x_alone = force.symbols().iter().all(|name| *name == x);
     let polynomial = force.to_polynomial(&mut |_| None).ok().flatten();
@@ -214,11 +211,11 @@ pub(super) fn force(force: &Expr) -> ForceDocument {
     });
     match coefficients {
         Some(coefficients) => {
-            ForceDocument::Polynomial(coefficients.iter().map(ToString::to_string).collect())
+            CertificateForce::Polynomial(coefficients.iter().map(ToString::to_string).collect())
         }
         None => match force.to_string() {
-            text if text == "sin(x)" => ForceDocument::Expression("sin".to_owned()),
-            text => ForceDocument::Expression(text),
+            text if text == "sin(x)" => CertificateForce::Expression("sin".to_owned()),
+            text => CertificateForce::Expression(text),
         },
     }
 }
@@ -246,7 +243,7 @@ impl CertificateDocument {
             inverse: matrix(&self.inverse)?,
             sigma: self.sigma_log2,
             claim: decimal(&self.claim_r, "claim_r")?,
-            formula: self.formula.as_ref().map(FormulaDocument::read).transpose()?,
+            formula: self.formula.as_ref().map(CertificateFormula::read).transpose()?,
         })
     }
 }
@@ -276,7 +273,7 @@ pub(super) fn matrix(rows: &[Vec<String>]) -> Result<Vec<Vec<Integer>>, JsonErro
     rows.iter().map(|row| integers(row, "A_block")).collect()
 }
 
-impl FormulaDocument {
+impl CertificateFormula {
     fn read(&self) -> Result<JudgedFormula, JsonError> {
         Ok(JudgedFormula {
             law: self.law.clone(),
@@ -297,7 +294,7 @@ pub(super) fn range(ends: &[String; 2], key: &str) -> Result<[Rational; 2], Json
     Ok([decimal(&ends[0], key)?, decimal(&ends[1], key)?])
 }
 
-impl ForceDocument {
+impl CertificateForce {
     pub(super) fn read(&self, key: &str) -> Result<Expr, JsonError> {
         let x = Expr::from(coordinate());
         match self {

@@ -15,10 +15,8 @@ use crate::verify::{Verdict, validity};
 /// typed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ComparisonDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Comparison.schema())))]
     pub schema: String,
     /// The equation of motion as it was understood, `... = 0`; time is its own, so frequencies are
     /// in radians per unit of it.
@@ -51,7 +49,6 @@ pub enum MethodRow {
 /// A method that applies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ApplyingRow {
     /// The method, by its name on the command line.
     #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
@@ -91,7 +88,6 @@ pub struct ApplyingRow {
 /// A method that does not apply.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct RefusedRow {
     /// The method, by its name on the command line.
     #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
@@ -120,7 +116,6 @@ pub struct RefusedRow {
 /// How far a formula is good.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Reach {
     /// The size of the amplitude from which on the error stays within the tolerance, for motions
     /// over several wells, which begin at the separatrix; null for those that begin at rest.

@@ -15,10 +15,8 @@ use crate::trajectory::{Course, Crossing, Section, in_words};
 /// are those of the values given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct MotionDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Motion.schema())))]
     pub schema: String,
     /// The coordinates.
     pub coordinates: Vec<String>,
@@ -59,7 +57,6 @@ pub struct MotionDocument {
 /// A state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct MotionSample {
     /// The time.
     pub t: f64,
@@ -69,8 +66,7 @@ pub struct MotionSample {
 
 /// Poincare's section.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Section"))]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "Section"))]
 pub struct SectionDocument {
     /// The time between two states, a formula; null where it is the zeros of `rising` that count.
     pub every: Option<String>,
@@ -88,7 +84,6 @@ pub struct SectionDocument {
 /// h = sum q' dL/dq' - L, the energy where nothing depends on the time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct EnergyAccount {
     /// At the start.
     pub start: f64,
@@ -182,10 +177,8 @@ fn section_document(
 /// parameters or starts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct MotionSweepDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::MotionSweep.schema())))]
     pub schema: String,
     /// The coordinates.
     pub coordinates: Vec<String>,
@@ -207,8 +200,7 @@ pub struct MotionSweepDocument {
 
 /// One of many motions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SweptMotion"))]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "SweptMotion"))]
 pub struct SweptMotionDocument {
     /// The values of what is varied.
     pub values: Map<f64>,

@@ -26,7 +26,6 @@ pub(super) fn is_nothing(count: &usize) -> bool {
 /// An exact constant beside its decimal value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Constant {
     /// The exact value as text: a fraction such as `-1/8`, or an expression such as `pi/3`.
     pub exact: String,
@@ -38,7 +37,6 @@ pub struct Constant {
 /// is none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Polynomial {
     /// The terms that are added up.
     pub terms: Vec<Term>,
@@ -47,7 +45,6 @@ pub struct Polynomial {
 /// A term: its coefficient times a product of powers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Term {
     /// The power of each symbol in it, negative ones too; `verification.values` has the value of
     /// every symbol.

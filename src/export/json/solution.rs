@@ -25,7 +25,6 @@ use crate::verify;
 /// `by_quadrature`, `system`; that is the one that is judged.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct SolutionDocument {
     /// The kind of document.
     #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Solution.schema())))]
@@ -111,7 +110,6 @@ pub struct SolutionDocument {
 /// variable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Convergence {
     /// What the series runs in: the powers of the small parameter and of the symbols that enter in
     /// step with it, multiplied.
@@ -135,7 +133,6 @@ pub struct Convergence {
 /// A number that was estimated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Estimate {
     /// All digits that the error leaves, as an exact fraction in text.
     pub exact: String,
@@ -198,7 +195,6 @@ impl Convergence {
 /// Algebraic equations for omega and the coefficients of the motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct System {
     /// What is solved for: `omega` and the coefficients; `verification.values` has their values.
     pub unknowns: Vec<String>,
@@ -209,7 +205,6 @@ pub struct System {
 /// A motion as a Fourier series with symbols in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Displacement {
     /// The name of the angle, `theta`, or `phi` where the equation has a `theta` of its own: theta
     /// = omega t + `verification.phase`, in radians.
@@ -224,7 +219,6 @@ pub struct Displacement {
 /// One harmonic of a motion with symbols in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Harmonic {
     /// The multiple of theta, 0 for the mean.
     pub harmonic: usize,
@@ -237,7 +231,6 @@ pub struct Harmonic {
 /// The limit cycle that is expanded, among those of its equation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct LimitCycle {
     /// Its amplitude, as `amplitude` of the solution says, in the unit of the coordinate; to
     /// leading order where the motion is left out.
@@ -253,7 +246,6 @@ pub struct LimitCycle {
 /// A limit cycle to leading order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Cycle {
     /// Its amplitude where the small parameters vanish, in the unit of the coordinate.
     pub amplitude: Constant,
@@ -269,7 +261,6 @@ pub struct Cycle {
 /// phase)/times_linear.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Modulation {
     /// The symbol of the amplitude, in the unit of the coordinate.
     pub amplitude: String,
@@ -299,7 +290,6 @@ pub struct Modulation {
 /// times_linear * omega0 + detuning.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Resonance {
     /// The driving frequency, a symbol or a number.
     pub driving_frequency: String,
@@ -317,7 +307,6 @@ pub struct Resonance {
 /// the detuning of `modulation`, the parameters and the definitions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Response {
     /// x(t), an expression in t, the amplitude and the phase of `modulation`.
     pub motion: String,
@@ -354,7 +343,6 @@ pub struct Response {
 /// and the detuning.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ClosedRelation {
     /// Zero at every steady motion.
     pub relation: String,
@@ -367,7 +355,6 @@ pub struct ClosedRelation {
 /// detuning = centre + sqrt(width_squared) and centre - sqrt(width_squared).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Branches {
     /// The middle of both branches, the backbone.
     pub centre: Polynomial,
@@ -378,7 +365,6 @@ pub struct Branches {
 /// Amplitude and phase at t = 0 of a motion with x = A from the equilibrium and x' = 0 there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Release {
     /// The amplitude, an expression.
     pub amplitude: String,
@@ -389,7 +375,6 @@ pub struct Release {
 /// A motion from its start in closed form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Transient {
     /// The symbol of the amplitude at t = 0: A, or one of `definitions`.
     pub start: String,

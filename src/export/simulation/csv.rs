@@ -79,7 +79,7 @@ pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
     let columns = columns(report.axes, report.has_baseline());
     let units: Vec<String> = columns
         .iter()
-        .map(|column| format!("{} {}", column.name, column.unit.unwrap_or("-")))
+        .map(|column| format!("{} {}", column.name, column.unit.as_deref().unwrap_or("-")))
         .collect();
     let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
     writeln!(to, "# units: {}\n{}", units.join(", "), names.join(","))?;

@@ -106,12 +106,6 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     })
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &Oscillator, _: &Comparison) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(oscillator: &Oscillator, comparison: &Comparison) -> Result<String, Failure> {
     use lindstedt::export::figure::backbone_figure;
 

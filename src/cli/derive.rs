@@ -695,12 +695,6 @@ pub(super) fn exact_values(
     Ok((!values.is_empty()).then_some(values))
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &Oscillator, _: &Solution, _: &Values) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(
     oscillator: &Oscillator,
     solution: &Solution,

@@ -62,12 +62,6 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     answer.outcome(&arguments.common)
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &FrictionStudy) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(study: &FrictionStudy) -> Result<String, Failure> {
     friction::picture(study).map_err(|error| Failure::refused(&error, None))
 }

@@ -230,12 +230,6 @@ fn asked(arguments: &Arguments) -> Result<Problem, Failure> {
     Ok(asked)
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &Impact) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(impact: &Impact) -> Result<String, Failure> {
     use lindstedt::export::decimal;
     use lindstedt::export::figure::{CurveStyle, ImpactFigure, ImpactMotion, impact_figure};

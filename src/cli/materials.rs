@@ -90,12 +90,6 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome { note, partial: broken.is_some(), ..answer.outcome(common)? })
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &MaterialStudy) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(study: &MaterialStudy) -> Result<String, Failure> {
     materials::figure::materials(study).map_err(|error| Failure::refused(&error, None))
 }

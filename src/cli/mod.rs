@@ -645,11 +645,3 @@ fn json_text(document: &impl Serialize) -> Result<String, Failure> {
         Err(error) => Err(Failure::Refused(error.to_string())),
     }
 }
-
-/// Refuses `--plot` where pictures were left out of the build.
-#[cfg(not(feature = "plot"))]
-fn no_pictures<T>() -> Result<T, Failure> {
-    Err(Failure::Refused(
-        "this build draws no pictures: build it with the feature `plot`".to_owned(),
-    ))
-}

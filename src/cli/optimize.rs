@@ -290,12 +290,6 @@ impl Record {
     }
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &Study) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(study: &Study) -> Result<String, Failure> {
     optimization::figure::optimization(study).map_err(|error| Failure::refused(&error, None))
 }

@@ -149,22 +149,10 @@ fn check_sweep(asked: &Asked) -> Result<(), Failure> {
     }
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &PrimaryReport) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(not(feature = "plot"))]
-fn sweep_picture(_: &PrimarySweepReport) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(report: &PrimaryReport) -> Result<String, Failure> {
     primary::picture(report).map_err(|error| Failure::refused(&error, None))
 }
 
-#[cfg(feature = "plot")]
 fn sweep_picture(report: &PrimarySweepReport) -> Result<String, Failure> {
     primary::sweep_picture(report).map_err(|error| Failure::refused(&error, None))
 }

@@ -229,12 +229,6 @@ fn refused(error: ResponseError) -> Failure {
     }
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &Response) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(response: &Response) -> Result<String, Failure> {
     export::response::picture(response).map_err(|error| Failure::refused(&error, None))
 }

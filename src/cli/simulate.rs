@@ -474,23 +474,11 @@ fn check_sweep(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &Report) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(not(feature = "plot"))]
-fn sweep_picture(_: &SweepReport) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(report: &Report) -> Result<String, Failure> {
     lindstedt::export::simulation::figure::simulation(report)
         .map_err(|error| Failure::refused(&error, None))
 }
 
-#[cfg(feature = "plot")]
 fn sweep_picture(report: &SweepReport) -> Result<String, Failure> {
     lindstedt::export::simulation::figure::sweep(report)
         .map_err(|error| Failure::refused(&error, None))

@@ -155,12 +155,6 @@ fn charts(curves: &TransitionCurves, values: &Values) -> Result<(Symbol, Vec<Cha
     Ok((by, charts))
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &TransitionCurves, _: Symbol, _: &[Chart], _: &Values) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(
     curves: &TransitionCurves,
     by: Symbol,

@@ -319,12 +319,6 @@ fn stopped_early(motions: &[SweptMotion], all: usize) -> Option<String> {
     Some(format!("warning: motion {} {kept}: {}", number + 1, in_words(motions[number].reason)))
 }
 
-#[cfg(not(feature = "plot"))]
-fn sweep_picture(_: &MotionSweep) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn sweep_picture(report: &MotionSweep) -> Result<String, Failure> {
     trajectory::sweep_picture(report).map_err(|error| Failure::refused(&error, None))
 }
@@ -337,12 +331,6 @@ fn verdict(motion: &Trajectory, judge: Option<&Trajectory>, allowed: f64) -> Ver
     Verdict::of(kept && agreed && motion.is_complete())
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &TrajectoryReport) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(report: &TrajectoryReport) -> Result<String, Failure> {
     trajectory::picture(report).map_err(|error| Failure::refused(&error, None))
 }

@@ -6,13 +6,10 @@
 
 use std::fmt::Write as _;
 
-#[cfg(feature = "plot")]
 use super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, figure};
 use crate::audit::paper::Table;
-#[cfg(feature = "plot")]
 use crate::decimal::decimal;
 use crate::impact::friction::FrictionStudy;
-#[cfg(feature = "plot")]
 use crate::impact::{Simulation, friction::arctangent};
 
 /// The two laws at every speed, beside what the paper prints there; a first line of comment has the
@@ -57,7 +54,6 @@ pub fn csv(study: &FrictionStudy) -> String {
 /// assert!(lindstedt::export::friction::picture(&study)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[cfg(feature = "plot")]
 pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
     const TIME: &str = "time t (units of 1/ω)";
     const PLACE: &str = "displacement x (rad)";
@@ -120,7 +116,6 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
 }
 
 /// The motion from a time on, at equal distances of time.
-#[cfg(feature = "plot")]
 fn points(motion: &Simulation, from: f64) -> Vec<(f64, f64)> {
     const POINTS: usize = 800;
     let times =

@@ -8,7 +8,6 @@
 
 pub mod catalog;
 pub mod code;
-#[cfg(feature = "plot")]
 pub mod figure;
 pub mod friction;
 #[cfg(feature = "html")]

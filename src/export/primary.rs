@@ -3,16 +3,11 @@
 
 use std::fmt::Write as _;
 
-#[cfg(feature = "plot")]
 use super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure};
-#[cfg(feature = "plot")]
 use crate::decimal::decimal;
-#[cfg(feature = "plot")]
 use crate::impact::Units;
-#[cfg(feature = "plot")]
 use crate::impact::primary::{Alone, PrimaryParameter};
 use crate::impact::primary::{Others, PrimaryRow, PrimaryStop};
-#[cfg(feature = "plot")]
 use crate::impact::sweep::Spacing;
 use crate::report::{PrimaryReport, PrimarySweepReport};
 
@@ -20,7 +15,6 @@ use crate::report::{PrimaryReport, PrimarySweepReport};
 const POINTS: u32 = 2000;
 
 /// How many swings of the locked main mass are drawn large.
-#[cfg(feature = "plot")]
 const FIRST_SWINGS: f64 = 6.0;
 
 /// The times of a table: those asked for, or equal steps and every touch and release.
@@ -150,7 +144,6 @@ pub(super) fn rest_time(row: &PrimaryRow) -> Option<f64> {
 /// assert!(lindstedt::export::primary::picture(&report)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[cfg(feature = "plot")]
 pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
     let motion = report.motion;
     let (second, metre) = (report.units.time(), report.units.length);
@@ -232,7 +225,6 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
 }
 
 /// The swings of the main mass without a pendulum, `mass` in all, at these times, in SI units.
-#[cfg(feature = "plot")]
 fn swings_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Vec<(f64, f64)> {
     let (case, units) = (&report.motion.case, report.units);
     let [.., y, speed] = case.start;
@@ -241,7 +233,6 @@ fn swings_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Vec<(f64, f
 }
 
 /// The amplitude of these swings; nothing where the mass creeps back.
-#[cfg(feature = "plot")]
 fn decay_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Option<Vec<(f64, f64)>> {
     let (case, units) = (&report.motion.case, report.units);
     let [.., y, speed] = case.start;
@@ -273,7 +264,6 @@ fn decay_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Option<Vec<(
 /// assert!(lindstedt::export::primary::sweep_picture(&report)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[cfg(feature = "plot")]
 pub fn sweep_picture(report: &PrimarySweepReport) -> Result<String, FigureError> {
     let ([axis], [parameter]) = (report.axes, report.parameters) else {
         return Err(FigureError::Empty("the sweep".to_owned()));

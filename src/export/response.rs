@@ -3,10 +3,8 @@
 
 use std::fmt::Write as _;
 
-#[cfg(feature = "plot")]
 use super::figure::{Curve, CurveStyle, FigureError, Panel, figure};
 use crate::response::Response;
-#[cfg(feature = "plot")]
 use crate::response::{Point, bifurcation::BifurcationKind};
 
 /// Every point of every branch, the bifurcations, the backbone and the simulations, a row each; a
@@ -96,12 +94,10 @@ pub fn csv(response: &Response) -> String {
 }
 
 /// Places in the parameter and the height, joined.
-#[cfg(feature = "plot")]
 type Line = Vec<(f64, f64)>;
 
 /// The ordinates of the panels: of motions of several periods of the drive the peak, of
 /// self-excited ones the frequency as well.
-#[cfg(feature = "plot")]
 #[derive(Clone, Copy)]
 enum Height {
     Amplitude,
@@ -109,7 +105,6 @@ enum Height {
     Frequency,
 }
 
-#[cfg(feature = "plot")]
 impl Height {
     fn label(self) -> &'static str {
         match self {
@@ -130,7 +125,6 @@ impl Height {
 
 /// The pieces of a branch in the parameter and the height that are stable, or that are not;
 /// neighbouring pieces share a point.
-#[cfg(feature = "plot")]
 fn pieces(height: Height, points: &[Point], stable: bool) -> Vec<Line> {
     let mut pieces: Vec<Line> = Vec::new();
     let mut open = false;
@@ -152,7 +146,6 @@ fn pieces(height: Height, points: &[Point], stable: bool) -> Vec<Line> {
 }
 
 /// What stands where branches change.
-#[cfg(feature = "plot")]
 const MARKS: [(BifurcationKind, &str, CurveStyle); 6] = [
     (BifurcationKind::Fold, "fold", CurveStyle::MARKED_POINTS),
     (BifurcationKind::BranchPoint, "branch point", CurveStyle::SECOND_MARKED_POINTS),
@@ -163,7 +156,6 @@ const MARKS: [(BifurcationKind, &str, CurveStyle); 6] = [
 ];
 
 /// The curves of a panel, with what they are called.
-#[cfg(feature = "plot")]
 fn curves<'a>(
     response: &Response,
     height: Height,
@@ -217,7 +209,6 @@ fn curves<'a>(
 /// assert!(lindstedt::export::response::picture(&respond(&question)?)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[cfg(feature = "plot")]
 pub fn picture(response: &Response) -> Result<String, FigureError> {
     let asked = &response.question;
     let heights: &[Height] = match (response.self_excited, asked.periods) {

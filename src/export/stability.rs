@@ -3,7 +3,6 @@
 
 use std::fmt::Write as _;
 
-#[cfg(feature = "plot")]
 use super::figure::{Curve, CurveStyle, FigureError, Panel, figure};
 use crate::hill::{Chart, TransitionCurves};
 use crate::symbol::Symbol;
@@ -52,7 +51,6 @@ pub fn csv(curves: &TransitionCurves, by: Symbol, charts: &[Chart]) -> String {
 ///
 /// # Errors
 /// As [`figure`].
-#[cfg(feature = "plot")]
 pub fn picture(
     curves: &TransitionCurves,
     by: Symbol,

@@ -3,15 +3,11 @@
 
 use std::fmt::Write as _;
 
-#[cfg(feature = "plot")]
 use super::figure::{Curve, CurveStyle, FigureError, Panel, figure};
-#[cfg(feature = "plot")]
 use crate::decimal::decimal;
-#[cfg(feature = "plot")]
 use crate::report::section_in_words;
 use crate::report::{MotionSweep, TrajectoryReport};
 use crate::trajectory::in_words;
-#[cfg(feature = "plot")]
 use crate::trajectory::{Crossing, Section, SweptMotion, Trajectory};
 
 /// The points of a table or a curve where no samples are asked for.
@@ -85,7 +81,6 @@ pub fn csv(report: &TrajectoryReport) -> String {
 /// assert!(lindstedt::export::trajectory::picture(&report)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[cfg(feature = "plot")]
 pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
     let motion = report.motion;
     let course = &motion.course;
@@ -122,7 +117,6 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
 }
 
 /// The states on a section: each coordinate with its velocity.
-#[cfg(feature = "plot")]
 fn on_section(motion: &Trajectory, section: &Section) -> Result<String, FigureError> {
     let course = &motion.course;
     let count = course.coordinates.len();
@@ -143,7 +137,6 @@ fn on_section(motion: &Trajectory, section: &Section) -> Result<String, FigureEr
     figure(&panels, &format!("{}. {}", equations.join(", "), section_in_words(section)))
 }
 
-#[cfg(feature = "plot")]
 fn dots<'a>(title: &'a str, labels: [&'a str; 2], points: &'a [(f64, f64)]) -> Panel<'a> {
     Panel {
         title,
@@ -203,7 +196,6 @@ pub fn sweep_csv(sweep: &MotionSweep) -> String {
 ///
 /// # Errors
 /// As [`figure`].
-#[cfg(feature = "plot")]
 pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
     let course = sweep.course;
     let varied = sweep.names.first().map_or("", |name| name.name());

@@ -44,7 +44,6 @@ pub(crate) use response::motion_frequency;
 pub use response::{bifurcation_in_words, response};
 pub use solution::solution;
 pub use stability::{StabilityReport, stability};
-#[cfg(feature = "plot")]
 pub(crate) use trajectory::section_in_words;
 pub use trajectory::{Doubt, MotionSweep, TRUSTED, TrajectoryReport, motion_sweep, trajectory};
 

@@ -690,7 +690,7 @@ pub(super) fn exact_values(
     for (name, value) in
         file.iter().filter(|(name, _)| values.get(*name).is_none()).collect::<Vec<_>>()
     {
-        values.insert(name, value.clone()).map_err(|error| Failure::refused(&error, None))?;
+        values.insert(name, value.clone())?;
     }
     Ok((!values.is_empty()).then_some(values))
 }
@@ -702,8 +702,7 @@ fn picture(
 ) -> Result<String, Failure> {
     use lindstedt::export::figure::{MotionFigure, motion_figure};
 
-    let motions = verify::motions(oscillator, solution, values)
-        .map_err(|error| Failure::refused(&error, None))?;
+    let motions = verify::motions(oscillator, solution, values)?;
     let Some(motions) = motions else {
         return Err(Failure::Refused(
             "the formula has no real frequency there, so it has no motion".to_owned(),
@@ -722,5 +721,5 @@ fn picture(
         envelopes: motions.envelope.as_ref().map_or(&[], |envelopes| envelopes.as_slice()),
         caption: &caption,
     };
-    motion_figure(&figure).map_err(|error| Failure::refused(&error, None))
+    Ok(motion_figure(&figure)?)
 }

@@ -77,7 +77,7 @@ impl Work for Arguments {
 fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = asked(arguments)?;
     let tolerance = tolerance(&arguments.common);
-    let setup = Setup::try_from(&problem).map_err(|error| Failure::refused(&error, None))?;
+    let setup = Setup::try_from(&problem)?;
     let setup = Setup { tolerance, ..setup };
     if arguments.compare {
         return every_method(setup, &arguments.common);
@@ -85,7 +85,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.certify {
         return proved(setup, &arguments.common);
     }
-    let impact = solve(setup).map_err(|error| Failure::refused(&error, None))?;
+    let impact = solve(setup)?;
     let answer = Answer {
         document: &report::impact(&impact, tolerance),
         width: usize::MAX,
@@ -134,9 +134,8 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
     let [Some(amplitude), Some(barrier), Some(stiffness)] = &exact else {
         return Err(Failure::Refused("a number of the impact is not finite".to_owned()));
     };
-    let enclosure = enclose_impact(amplitude, barrier, stiffness)
-        .map_err(|error| Failure::refused(&error, None))?;
-    let impact = solve(setup).map_err(|error| Failure::refused(&error, None))?;
+    let enclosure = enclose_impact(amplitude, barrier, stiffness)?;
+    let impact = solve(setup)?;
     let report = ImpactCertificateReport {
         impact: &impact,
         enclosure: &enclosure,
@@ -182,7 +181,7 @@ fn every_method(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         ));
     }
     let tolerance = tolerance(common);
-    let table = compare(setup).map_err(|error| Failure::refused(&error, None))?;
+    let table = compare(setup)?;
     let answer = Answer {
         document: &report::impact_comparison(&table, tolerance),
         width: width(common.output.as_deref()),
@@ -280,5 +279,5 @@ fn picture(impact: &Impact) -> Result<String, Failure> {
         motions: &motions,
         caption: &caption,
     };
-    impact_figure(&figure).map_err(|error| Failure::refused(&error, None))
+    Ok(impact_figure(&figure)?)
 }

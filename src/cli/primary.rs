@@ -47,13 +47,12 @@ fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
             settings.duration
         )));
     }
-    let motion =
-        simulate_primary(file.case, &settings).map_err(|error| Failure::refused(&error, None))?;
+    let motion = simulate_primary(file.case, &settings)?;
     let report = PrimaryReport { motion: &motion, units: &file.units, samples: asked.samples };
     let answer = Answer {
         document: &report::primary(&report),
         width: width(common.output.as_deref()),
-        picture: Some(&|| picture(&report)),
+        picture: Some(&|| Ok(primary::picture(&report)?)),
         other: &|format| match format {
             Format::Csv => Ok(primary::csv(&report)),
             Format::Json => json_text(&json::primary(&report)),
@@ -87,7 +86,7 @@ fn many(problem: &Problem, asked: &Asked, axes: &[Axis]) -> Result<Outcome, Fail
     {
         return Err(Failure::Usage(format!("`{}` is swept twice", parameters[index].name())));
     }
-    let total = grid_size(axes).map_err(|error| Failure::refused(&error, None))?;
+    let total = grid_size(axes)?;
     let (mut motions, mut units) = (Vec::with_capacity(total), Vec::with_capacity(total));
     for number in 0..total {
         let varied: Vec<(PrimaryParameter, f64)> =
@@ -103,7 +102,7 @@ fn many(problem: &Problem, asked: &Asked, axes: &[Axis]) -> Result<Outcome, Fail
         .map_err(|(number, error)| Failure::Refused(format!("motion {}: {error}", number + 1)))?;
     bar.finish_and_clear();
     let report = PrimarySweepReport { axes, parameters: &parameters, rows: &rows, units: &units };
-    let draw: Draw = &|| sweep_picture(&report);
+    let draw: Draw = &|| Ok(primary::sweep_picture(&report)?);
     let answer = Answer {
         document: &report::primary_sweep(&report),
         width: width(common.output.as_deref()),
@@ -147,12 +146,4 @@ fn check_sweep(asked: &Asked) -> Result<(), Failure> {
         ))),
         None => Ok(()),
     }
-}
-
-fn picture(report: &PrimaryReport) -> Result<String, Failure> {
-    primary::picture(report).map_err(|error| Failure::refused(&error, None))
-}
-
-fn sweep_picture(report: &PrimarySweepReport) -> Result<String, Failure> {
-    primary::sweep_picture(report).map_err(|error| Failure::refused(&error, None))
 }

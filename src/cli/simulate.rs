@@ -3,7 +3,9 @@
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use lindstedt::export::simulation::{Report, SweepReport, csv, latex, sweep_csv, sweep_text, text};
+use lindstedt::export::simulation::{
+    Report, SweepReport, csv, figure, latex, sweep_csv, sweep_text, text,
+};
 use lindstedt::export::{html, json};
 use lindstedt::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
 use lindstedt::impact::{
@@ -231,10 +233,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
             "--sample {late} lies beyond the duration {duration}\n  help: raise `duration` in [run]"
         )));
     }
-    let follow = |integrator| {
-        simulate(&model, start, integrator, &settings)
-            .map_err(|error| Failure::refused(&error, None))
-    };
+    let follow = |integrator| simulate(&model, start, integrator, &settings);
     let integrator = arguments.integrator.unwrap_or(Method::Taylor);
     let motion = match integrator {
         _ if arguments.chain => follow(Integrator::Chain)?,
@@ -246,7 +245,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         Method::Both => Some(follow(Integrator::RungeKutta)?),
         Method::Taylor | Method::RungeKutta => None,
     };
-    let others = baseline(&motion).map_err(|error| Failure::refused(&error, None))?;
+    let others = baseline(&motion)?;
     let units = asked.units.as_ref();
     let dissipation = asked.case.dissipation(units).map_err(|error| refused(error.into()))?;
     let report = Report {
@@ -260,7 +259,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         units,
         known_until: if arguments.chain { None } else { known_until(&motion) },
     };
-    let draw: Option<Draw> = Some(&|| picture(&report));
+    let draw: Option<Draw> = Some(&|| Ok(figure::simulation(&report)?));
     let text = match arguments.common.format() {
         Format::Csv => csv(&report),
         Format::Json => json_text(&json::simulation(&report))?,
@@ -343,7 +342,7 @@ fn motions(
     problem: &Problem,
 ) -> Result<(Vec<(Model, Start)>, Settings), Failure> {
     let axes = arguments.sweep.as_slice();
-    let total = grid_size(axes).map_err(|error| Failure::refused(&error, None))?;
+    let total = grid_size(axes)?;
     for axis in axes {
         if ["duration", "integrator_tolerance", "step_limit"].contains(&axis.name()) {
             return Err(Failure::Refused(format!(
@@ -418,7 +417,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     }
     bar.finish_and_clear();
     let report = SweepReport { axes: &arguments.sweep, rows: &rows };
-    let draw: Option<Draw> = Some(&|| sweep_picture(&report));
+    let draw: Option<Draw> = Some(&|| Ok(figure::sweep(&report)?));
     let picture = pictured(&arguments.common, draw);
     let incomplete = rows.iter().filter(|row| !row.stop.is_complete()).count();
     let note =
@@ -432,7 +431,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         Format::Svg => Some(drawn(draw)?),
         Format::Html => {
             let mut lines = Vec::new();
-            write(&report, &mut lines).map_err(|error| Failure::Refused(error.to_string()))?;
+            write(&report, &mut lines)?;
             let lines = String::from_utf8_lossy(&lines);
             Some(page(draw, None, |page| html::lines(&lines, page)))
         }
@@ -472,14 +471,4 @@ fn check_sweep(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     Ok(())
-}
-
-fn picture(report: &Report) -> Result<String, Failure> {
-    lindstedt::export::simulation::figure::simulation(report)
-        .map_err(|error| Failure::refused(&error, None))
-}
-
-fn sweep_picture(report: &SweepReport) -> Result<String, Failure> {
-    lindstedt::export::simulation::figure::sweep(report)
-        .map_err(|error| Failure::refused(&error, None))
 }

@@ -164,5 +164,5 @@ fn picture(
     let others = values.iter().filter(|(name, _)| *name != by);
     let others: Vec<String> = others.map(|(name, value)| format!("; {name} = {value}")).collect();
     let caption = format!("{}{}", curves.equation, others.concat());
-    stability::picture(curves, by, charts, &caption).map_err(|error| Failure::refused(&error, None))
+    Ok(stability::picture(curves, by, charts, &caption)?)
 }

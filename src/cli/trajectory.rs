@@ -76,7 +76,7 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
     let answer = Answer {
         document: &report::trajectory(&report),
         width: width(common.output.as_deref()),
-        picture: Some(&|| picture(&report)),
+        picture: Some(&|| Ok(trajectory::picture(&report)?)),
         other: &|format| match format {
             Format::Csv => Ok(trajectory::csv(&report)),
             Format::Json => json_text(&json::motion(&report)),
@@ -279,7 +279,7 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
             )));
         }
     }
-    let total = grid_size(asked.sweep).map_err(|error| Failure::refused(&error, None))?;
+    let total = grid_size(asked.sweep)?;
     let grid: Vec<Vec<f64>> = (0..total).map(|number| grid_values(asked.sweep, number)).collect();
     let bar = progress::bar(total, MOTIONS);
     let motions = sweep(course, &names, &grid, || bar.inc(1)).map_err(|(number, error)| {
@@ -293,7 +293,7 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
     let answer = Answer {
         document: &report::motion_sweep(&report),
         width: width(common.output.as_deref()),
-        picture: Some(&|| sweep_picture(&report)),
+        picture: Some(&|| Ok(trajectory::sweep_picture(&report)?)),
         other: &|format| match format {
             Format::Csv => Ok(trajectory::sweep_csv(&report)),
             Format::Json => json_text(&json::motion_sweep(&report)),
@@ -319,18 +319,10 @@ fn stopped_early(motions: &[SweptMotion], all: usize) -> Option<String> {
     Some(format!("warning: motion {} {kept}: {}", number + 1, in_words(motions[number].reason)))
 }
 
-fn sweep_picture(report: &MotionSweep) -> Result<String, Failure> {
-    trajectory::sweep_picture(report).map_err(|error| Failure::refused(&error, None))
-}
-
 /// Complete, the energy accounted for, and where there is a judge, agreed with.
 fn verdict(motion: &Trajectory, judge: Option<&Trajectory>, allowed: f64) -> Verdict {
     let kept = motion.balance.as_ref().is_none_or(|balance| balance.residual <= allowed);
     let agreed =
         judge.is_none_or(|judge| judge.is_complete() && motion.difference(judge) <= allowed);
     Verdict::of(kept && agreed && motion.is_complete())
-}
-
-fn picture(report: &TrajectoryReport) -> Result<String, Failure> {
-    trajectory::picture(report).map_err(|error| Failure::refused(&error, None))
 }

@@ -8,13 +8,8 @@ pub(super) mod impact;
 mod table;
 
 pub use super::steps::text as steps;
-use crate::audit::Audit;
 use crate::decimal::{decimal, significant};
 use crate::derivation::NOTATION;
-use crate::impact::friction::FrictionStudy;
-use crate::impact::{Impact, ImpactComparison, MaterialStudy};
-use crate::mechanics::MechanismStudy;
-use crate::optimize::Study;
 use crate::report::{self, Block, Document};
 use crate::series::terms;
 use crate::solution::{Method, Solution, constant_in_words};
@@ -80,92 +75,6 @@ pub fn solution(
 pub fn comparison(comparison: &Comparison, width: usize) -> String {
     let _letters = comparison.letters().in_force();
     document(&report::comparison(comparison), width)
-}
-
-/// The whole story of an impact.
-///
-/// ```
-/// use lindstedt::impact::{Setup, solve};
-///
-/// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
-/// assert!(lindstedt::export::text::impact(&impact, 0.01).contains("penetration"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn impact(impact: &Impact, tolerance: f64) -> String {
-    document(&report::impact(impact, tolerance), usize::MAX)
-}
-
-/// Every method on one impact in a table, in lines of at most `width` characters where words allow
-/// it.
-///
-/// ```
-/// use lindstedt::impact::{Setup, compare};
-///
-/// let table = compare(Setup { stiffness: 1e6, ..Setup::default() })?;
-/// assert!(lindstedt::export::text::impact_comparison(&table, 0.01, 80).contains("Harmonic balance"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn impact_comparison(table: &ImpactComparison, tolerance: f64, width: usize) -> String {
-    document(&report::impact_comparison(table, tolerance), width)
-}
-
-/// Equation (6) beside Coulomb's law.
-///
-/// ```
-/// use lindstedt::impact::friction::{FrictionSetup, study};
-///
-/// let study = study(FrictionSetup::default())?;
-/// assert!(lindstedt::export::text::friction(&study).contains("Coulomb's law stops it for good"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn friction(study: &FrictionStudy) -> String {
-    document(&report::friction(study), usize::MAX)
-}
-
-/// The same swing against barriers of several materials, in lines of at most `width` characters
-/// where words allow it.
-///
-/// ```
-/// use lindstedt::impact::{MaterialQuestion, study_materials};
-///
-/// let study = study_materials(MaterialQuestion::default())?;
-/// assert!(lindstedt::export::text::materials(&study, 120).contains("What is held fixed decides"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn materials(study: &MaterialStudy, width: usize) -> String {
-    document(&report::materials(study), width)
-}
-
-/// A search for the best damper, in lines of at most `width` characters where words allow it.
-pub fn optimization(study: &Study, width: usize) -> String {
-    document(&report::optimization(study), width)
-}
-
-/// Claims with their verdicts, in lines of at most `width` characters where words allow it.
-///
-/// ```
-/// use lindstedt::audit::{Claims, audit};
-///
-/// let claims: Claims = "[[claim]]\nid = \"one\"\nquantity = \"value\"\nformula = \"1 + 1\"\nprinted = \"2\"".parse()?;
-/// assert!(lindstedt::export::text::audit(&audit(claims), 80).contains("1 reproduced"));
-/// # Ok::<(), lindstedt::audit::ClaimsError>(())
-/// ```
-pub fn audit(audit: &Audit, width: usize) -> String {
-    document(&report::audit(audit), width)
-}
-
-/// A mechanism, its equations of motion and its groups, in lines of at most `width` characters
-/// where words allow it.
-///
-/// ```
-/// use lindstedt::{audit::paper, mechanics::study};
-///
-/// let study = study(paper::mechanism())?;
-/// assert!(lindstedt::export::text::mechanism(&study, 120).contains("gamma"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn mechanism(study: &MechanismStudy, width: usize) -> String {
-    document(&report::mechanism(study), width)
 }
 
 /// A document as text, in lines of at most `width` characters where its blocks can be broken and

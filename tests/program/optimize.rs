@@ -593,7 +593,8 @@ fn a_damping_without_say_is_not_said_to_be_held_fixed() {
         assert_eq!(question.holds_contact_damping(), held);
         assert_eq!(question.defaults.contains(&Parameter::Lambda), held);
         let found = study(question);
-        let printed = lindstedt::export::text::optimization(&found, 120);
+        let printed =
+            lindstedt::export::text::document(&lindstedt::report::optimization(&found), 120);
         assert_eq!(printed.contains("lambda"), held, "{printed}");
         let document = lindstedt::export::json::optimization(&found);
         let document = serde_json::to_value(document).expect("JSON");

@@ -107,6 +107,9 @@ pub struct Curve<'a> {
     pub style: CurveStyle,
 }
 
+/// Points of one curve.
+pub(super) type Points = Vec<(f64, f64)>;
+
 /// A thin grey line across a panel, always inside the axes, with words for the legend or none.
 #[derive(Clone, Copy, Debug)]
 pub enum Guide<'a> {
@@ -444,11 +447,13 @@ fn curves<'a>(motions: &[ImpactMotion<'a>], points: &'a [Vec<(f64, f64)>]) -> Ve
     pairs.map(|(m, points)| curve(m.label, points, m.style)).collect()
 }
 
-fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
+/// A curve with words for the legend, or none.
+pub(super) fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
     Curve { label, points, style }
 }
 
-fn panel<'a>(
+/// A panel with the labels of its axes, both divided evenly.
+pub(super) fn panel<'a>(
     title: &'a str,
     labels: [&'a str; 2],
     curves: Vec<Curve<'a>>,

@@ -6,7 +6,7 @@
 
 use std::fmt::Write as _;
 
-use super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, figure};
+use super::figure::{CurveStyle, FigureError, Guide, Points, curve, figure, panel};
 use crate::audit::paper::Table;
 use crate::decimal::decimal;
 use crate::impact::friction::FrictionStudy;
@@ -62,7 +62,7 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
     let near_rest = &study.near_rest;
     let (stop, creep) = (near_rest.stop, &near_rest.creep);
     let sign = [(-NEAR_ZERO, -1.0), (0.0, -1.0), (0.0, 1.0), (NEAR_ZERO, 1.0)];
-    let smooth: Vec<(f64, f64)> = (-200..=200)
+    let smooth: Points = (-200..=200)
         .map(|index| NEAR_ZERO * f64::from(index) / 200.0)
         .map(|speed| (speed, arctangent(speed, std::f64::consts::PI)))
         .collect();
@@ -70,9 +70,8 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
     let [coulomb, by_arctangent] = near_rest.motions.each_ref().map(|motion| points(motion, from));
     let crept = points(&creep.motion, 0.0);
     let held = [(0.0, stop.x), (creep.motion.end_time, stop.x)];
-    let formula: Vec<(f64, f64)> =
+    let formula: Points =
         crept.iter().filter_map(|(t, _)| Some((*t, creep.formula(*t)?))).collect();
-    let curve = |label, points, style| Curve { label, points, style };
     let mut after = vec![
         curve("sgn", &held, CurveStyle::RUNGE_KUTTA),
         curve("arctangent", &crept, CurveStyle::DIFFERENCE),
@@ -80,14 +79,6 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
     if formula.len() > 1 {
         after.push(curve("creep by formula", &formula, CurveStyle::FORMULA));
     }
-    let panel = |title, [x_label, y_label]: [&'static str; 2], curves, guides| Panel {
-        title,
-        x_label,
-        y_label,
-        curves,
-        guides,
-        ..Panel::default()
-    };
     let pair = |first, second| {
         vec![
             curve("sgn", first, CurveStyle::RUNGE_KUTTA),
@@ -116,7 +107,7 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
 }
 
 /// The motion from a time on, at equal distances of time.
-fn points(motion: &Simulation, from: f64) -> Vec<(f64, f64)> {
+fn points(motion: &Simulation, from: f64) -> Points {
     const POINTS: usize = 800;
     let times =
         (0..=POINTS).map(|index| from + (motion.end_time - from) * (index as f64 / POINTS as f64));

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::figure::{Curve, CurveStyle, FigureError, Panel, figure};
+use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel};
 use crate::response::Response;
 use crate::response::{Point, bifurcation::BifurcationKind};
 
@@ -93,9 +93,6 @@ pub fn csv(response: &Response) -> String {
     text
 }
 
-/// Places in the parameter and the height, joined.
-type Line = Vec<(f64, f64)>;
-
 /// The ordinates of the panels: of motions of several periods of the drive the peak, of
 /// self-excited ones the frequency as well.
 #[derive(Clone, Copy)]
@@ -125,8 +122,8 @@ impl Height {
 
 /// The pieces of a branch in the parameter and the height that are stable, or that are not;
 /// neighbouring pieces share a point.
-fn pieces(height: Height, points: &[Point], stable: bool) -> Vec<Line> {
-    let mut pieces: Vec<Line> = Vec::new();
+fn pieces(height: Height, points: &[Point], stable: bool) -> Vec<Points> {
+    let mut pieces: Vec<Points> = Vec::new();
     let mut open = false;
     let place =
         |point: &Point| (point.parameter, height.of(point.amplitude, point.peak, point.frequency));
@@ -160,9 +157,9 @@ fn curves<'a>(
     response: &Response,
     height: Height,
     slow_title: &'a str,
-) -> Vec<(&'a str, Line, CurveStyle)> {
-    let mut drawn: Vec<(&str, Line, CurveStyle)> = Vec::new();
-    let mut draw = |label: &'a str, lines: Vec<Line>, style: CurveStyle| {
+) -> Vec<(&'a str, Points, CurveStyle)> {
+    let mut drawn: Vec<(&str, Points, CurveStyle)> = Vec::new();
+    let mut draw = |label: &'a str, lines: Vec<Points>, style: CurveStyle| {
         drawn.extend(lines.into_iter().map(|points| (label, points, style)));
     };
     let of_stability = |stable: bool| {
@@ -218,20 +215,15 @@ pub fn picture(response: &Response) -> Result<String, FigureError> {
     };
     let title = response.slow.as_ref().map(|slow| slow.solution.title());
     let title = title.unwrap_or_default();
-    let drawn: Vec<Vec<(&str, Line, CurveStyle)>> =
+    let drawn: Vec<Vec<(&str, Points, CurveStyle)>> =
         heights.iter().map(|height| curves(response, *height, &title)).collect();
     let panels: Vec<Panel> = heights
         .iter()
         .zip(&drawn)
-        .map(|(height, drawn)| Panel {
-            title: "Steady states",
-            x_label: asked.parameter.name(),
-            y_label: height.label(),
-            curves: drawn
-                .iter()
-                .map(|(label, points, style)| Curve { label, points, style: *style })
-                .collect(),
-            ..Panel::default()
+        .map(|(height, drawn)| {
+            let curves = drawn.iter().map(|(label, points, style)| curve(label, points, *style));
+            let labels = [asked.parameter.name(), height.label()];
+            panel("Steady states", labels, curves.collect(), vec![])
         })
         .collect();
     let values = asked.values.numbers().into_iter();

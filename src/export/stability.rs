@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::figure::{Curve, CurveStyle, FigureError, Panel, figure};
+use super::figure::{CurveStyle, FigureError, Points, curve, figure, panel};
 use crate::hill::{Chart, TransitionCurves};
 use crate::symbol::Symbol;
 
@@ -64,7 +64,7 @@ pub fn picture(
     });
     // A formula far beyond its range would leave nothing of the rest to be seen.
     let margin = 0.1 * (most - least);
-    let formulas: Vec<Vec<(f64, f64)>> = charts
+    let formulas: Vec<Points> = charts
         .iter()
         .map(|chart| {
             let near = |point: &&(f64, f64)| point.0 >= least - margin && point.0 <= most + margin;
@@ -72,23 +72,16 @@ pub fn picture(
         })
         .collect();
     let drawn = |points: &[(f64, f64)]| points.len() > 1;
-    let truths = charts.iter().filter(|chart| drawn(&chart.truth)).map(|chart| Curve {
-        label: "true motion",
-        points: &chart.truth,
-        style: CurveStyle::RUNGE_KUTTA,
-    });
+    let truths = charts
+        .iter()
+        .filter(|chart| drawn(&chart.truth))
+        .map(|chart| curve("true motion", &chart.truth, CurveStyle::RUNGE_KUTTA));
     let label = format!("order {}", curves.order);
-    let formulas = formulas.iter().filter(|points| drawn(points)).map(|points| Curve {
-        label: &label,
-        points,
-        style: CurveStyle::FORMULA,
-    });
-    let panel = Panel {
-        title: "Transition curves: rest is unstable inside the tongues",
-        x_label: &unknown,
-        y_label: by.name(),
-        curves: truths.chain(formulas).collect(),
-        ..Panel::default()
-    };
-    figure(&[panel], caption)
+    let formulas = formulas
+        .iter()
+        .filter(|points| drawn(points))
+        .map(|points| curve(&label, points, CurveStyle::FORMULA));
+    let title = "Transition curves: rest is unstable inside the tongues";
+    let curves = truths.chain(formulas).collect();
+    figure(&[panel(title, [&unknown, by.name()], curves, vec![])], caption)
 }

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::figure::{Curve, CurveStyle, FigureError, Panel, figure};
+use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel};
 use crate::decimal::decimal;
 use crate::report::section_in_words;
 use crate::report::{MotionSweep, TrajectoryReport};
@@ -91,25 +91,19 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
     let whole = TrajectoryReport { samples: &[], ..*report };
     let states: Vec<(f64, Vec<f64>)> =
         times(&whole).into_iter().filter_map(|time| Some((time, motion.at(time)?))).collect();
-    let in_time: Vec<Vec<(f64, f64)>> = (0..count)
+    let in_time: Vec<Points> = (0..count)
         .map(|index| states.iter().map(|(time, state)| (*time, state[index])).collect())
         .collect();
-    let planes: Vec<Vec<(f64, f64)>> = (0..count)
+    let planes: Vec<Points> = (0..count)
         .map(|index| states.iter().map(|(_, state)| (state[index], state[count + index])).collect())
         .collect();
     let names: Vec<[String; 2]> =
         course.coordinates.iter().map(|name| [name.to_string(), format!("{name}′")]).collect();
     let mut panels = Vec::new();
     for (name, (in_time, plane)) in names.iter().zip(in_time.iter().zip(&planes)) {
-        let panel = |title, x_label, y_label, points| Panel {
-            title,
-            x_label,
-            y_label,
-            curves: vec![Curve { label: "", points, style: CurveStyle::DIFFERENCE }],
-            ..Panel::default()
-        };
-        panels.push(panel("Motion", "time t", name[0].as_str(), in_time.as_slice()));
-        panels.push(panel("Phase plane", name[0].as_str(), name[1].as_str(), plane.as_slice()));
+        let line = |points| vec![curve("", points, CurveStyle::DIFFERENCE)];
+        panels.push(panel("Motion", ["time t", &name[0]], line(in_time), vec![]));
+        panels.push(panel("Phase plane", [&name[0], &name[1]], line(plane), vec![]));
     }
     let equations: Vec<String> =
         course.equations.iter().map(|left| format!("{left} = 0")).collect();
@@ -125,7 +119,7 @@ fn on_section(motion: &Trajectory, section: &Section) -> Result<String, FigureEr
     let point = |index: usize| {
         move |crossing: &Crossing| (crossing.state[index], crossing.state[count + index])
     };
-    let points: Vec<Vec<(f64, f64)>> =
+    let points: Vec<Points> =
         (0..count).map(|index| motion.crossings().iter().map(point(index)).collect()).collect();
     let panels: Vec<Panel> = names
         .iter()
@@ -138,13 +132,7 @@ fn on_section(motion: &Trajectory, section: &Section) -> Result<String, FigureEr
 }
 
 fn dots<'a>(title: &'a str, labels: [&'a str; 2], points: &'a [(f64, f64)]) -> Panel<'a> {
-    Panel {
-        title,
-        x_label: labels[0],
-        y_label: labels[1],
-        curves: vec![Curve { label: "", points, style: CurveStyle::DOTS }],
-        ..Panel::default()
-    }
+    panel(title, labels, vec![curve("", points, CurveStyle::DOTS)], vec![])
 }
 
 /// Many motions: a line for every state on the section, or without a section one for every motion
@@ -199,9 +187,9 @@ pub fn sweep_csv(sweep: &MotionSweep) -> String {
 pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
     let course = sweep.course;
     let varied = sweep.names.first().map_or("", |name| name.name());
-    let points: Vec<Vec<(f64, f64)>> = (0..course.coordinates.len())
+    let points: Vec<Points> = (0..course.coordinates.len())
         .map(|index| {
-            let of = |motion: &SweptMotion| -> Vec<(f64, f64)> {
+            let of = |motion: &SweptMotion| -> Points {
                 let value = motion.values.first().copied().unwrap_or(f64::NAN);
                 match course.section.is_some() {
                     true => motion

@@ -1,10 +1,12 @@
 //! Pictures: x(t), the phase plane and the energy of one run; curves or a heat map of a sweep.
 
-use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure};
 #[cfg(feature = "plot")]
 use super::heat_map::heat_map;
 use super::{Report, SweepReport};
 use crate::decimal::decimal;
+use crate::export::figure::{
+    CurveStyle, FigureError, Guide, Panel, Points, Scale, curve, figure, panel,
+};
 use crate::impact::sweep::{Axis, Spacing, Summary};
 use crate::impact::{Integrator, Simulation};
 
@@ -79,30 +81,20 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
     };
     let works = works(motion);
     let energies = works.iter().map(|(label, points, style)| curve(label, points, *style));
-    let panel = |title, x_label, y_label, curves, guides| Panel {
-        title,
-        x_label,
-        y_label,
-        curves,
-        guides,
-        ..Panel::default()
-    };
     let panels = [
         panel(
             "Motion in time",
-            TIME,
-            "displacement x (rad)",
+            [TIME, "displacement x (rad)"],
             curves(|drawn| &drawn.time),
             guides(Guide::Y),
         ),
         panel(
             "Phase plane",
-            "displacement x (rad)",
-            "velocity x′",
+            ["displacement x (rad)", "velocity x′"],
             curves(|drawn| &drawn.phase),
             guides(Guide::X),
         ),
-        panel("Energy", TIME, "energy (units of m g L)", energies.collect(), Vec::new()),
+        panel("Energy", [TIME, "energy (units of m g L)"], energies.collect(), vec![]),
     ];
     let caption = format!(
         "Equation (7): γ = {}, μ = {}, ζ = {}, α = {}, β = {}; {} impacts until t = {}.",
@@ -161,13 +153,6 @@ fn works(motion: &Simulation) -> Vec<(&'static str, Points, CurveStyle)> {
 }
 
 const TIME: &str = "time t (units of 1/ω)";
-
-fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
-    Curve { label, points, style }
-}
-
-/// Points of one curve.
-type Points = Vec<(f64, f64)>;
 
 /// A quantity of a sweep.
 pub(super) struct Quantity {
@@ -306,16 +291,11 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
                 .collect();
             let panels: Vec<Panel> = drawn
                 .iter()
-                .map(|(quantity, runs)| Panel {
-                    title: quantity.title,
-                    x_label: &x_label,
-                    y_label: quantity.label,
-                    x_scale,
-                    curves: runs
-                        .iter()
-                        .map(|points| curve("", points, CurveStyle::DIFFERENCE))
-                        .collect(),
-                    ..Panel::default()
+                .map(|(quantity, runs)| {
+                    let curves =
+                        runs.iter().map(|points| curve("", points, CurveStyle::DIFFERENCE));
+                    let labels = [x_label.as_str(), quantity.label];
+                    Panel { x_scale, ..panel(quantity.title, labels, curves.collect(), vec![]) }
                 })
                 .collect();
             let restless = report.rows.iter().filter(|row| row.rest_time.is_err()).count();

@@ -188,10 +188,6 @@ impl Body<'_> {
             | Block::Sentence(words)
             | Block::Detail(words)
             | Block::Closing(words) => paragraph(words),
-            Block::Unknowns(names) => {
-                let names: Vec<&str> = names.iter().map(|name| name.written()).collect();
-                paragraph(&format!("for {}:", names.join(", ")))
-            }
             Block::Entries { heading: of, entries } => heading(of) + &definitions("long", entries),
             Block::Facts(facts) => definitions("", facts),
             Block::Judged { verification, series_of_omega, hbar, tolerance } => {
@@ -246,7 +242,6 @@ impl Body<'_> {
             Block::Question(_)
             | Block::QuestionAsTyped(_)
             | Block::Law { .. }
-            | Block::Relation(_)
             | Block::Equality { .. }
             | Block::Line(_)
             | Block::CycleAmplitude { .. }

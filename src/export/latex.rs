@@ -199,8 +199,8 @@ pub(super) fn setting(block: &Block) -> Setting {
         Block::QuestionAsTyped(question) => {
             Setting::Equations(vec![typed(question).replacen(" = ", " &= ", 1)])
         }
+        Block::Law { left, right } if left.is_zero() => Setting::Equations(vec![zero_is(right)]),
         Block::Law { left, right } => equation_of(expression(left), sum(right)),
-        Block::Relation(relation) => Setting::Equations(vec![zero_is(relation)]),
         Block::Equality { left, right } => equation_of(expression(left), expression(right)),
         Block::Line(line) => Setting::Equations(super::steps::line_as_latex(line.as_ref())),
         Block::CycleAmplitude { symbol: name, amplitude } => {
@@ -235,7 +235,6 @@ pub(super) fn setting(block: &Block) -> Setting {
         | Block::Remark(_)
         | Block::Sentence(_)
         | Block::Detail(_)
-        | Block::Unknowns(_)
         | Block::Entries { .. }
         | Block::Facts(_)
         | Block::Judged { .. }
@@ -258,7 +257,9 @@ impl Page {
             (Setting::Equations(rows), Block::Question(_) | Block::QuestionAsTyped(_)) => {
                 self.questions.extend(rows)
             }
-            (Setting::Equations(rows), Block::Law { .. }) => self.laws.extend(rows),
+            (Setting::Equations(rows), Block::Law { left, .. }) if !left.is_zero() => {
+                self.laws.extend(rows)
+            }
             (Setting::Equations(rows), _) => self.rows.extend(rows),
             (Setting::Words, _) => {}
         }

@@ -119,13 +119,8 @@ impl Page {
             Block::Sentence(words) => comparison::wrapped(words, self.width, "  ", "  ") + "\n",
             Block::Table { head, rows } => table::table(head, rows),
             Block::Law { left, right } => format!("  {:<8}= {right}\n", left.to_string()),
-            Block::Relation(sum) => format!("  0       = {sum}\n"),
             Block::Equality { left, right } => format!("  {left} = {right}\n"),
             Block::Line(line) => format!("  {line}\n"),
-            Block::Unknowns(names) => {
-                let names: Vec<&str> = names.iter().map(|name| name.written()).collect();
-                format!("  for {}:\n", names.join(", "))
-            }
             Block::CycleAmplitude { symbol, amplitude } => {
                 format!("  limit cycle of amplitude {symbol} = {amplitude}\n")
             }

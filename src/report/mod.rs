@@ -92,15 +92,13 @@ pub enum Block<'a> {
     Sentence(String),
     /// What only the longest format has room for.
     Detail(String),
-    /// A law: omega^2, omega, or zero.
+    /// A law: omega^2 or omega, or zero of a relation between omega and the amplitude.
     Law {
         /// The left side.
         left: Expr,
         /// The right side.
         right: Sum,
     },
-    /// A relation between omega and the amplitude, zero.
-    Relation(Sum),
     /// An equation that is no polynomial.
     Equality {
         /// The left side.
@@ -110,8 +108,6 @@ pub enum Block<'a> {
     },
     /// A line of a derivation.
     Line(Cow<'a, Line>),
-    /// What a system of equations is solved for.
-    Unknowns(&'a [Symbol]),
     /// The amplitude of a limit cycle.
     CycleAmplitude {
         /// Its symbol.

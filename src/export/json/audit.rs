@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
+use super::number::texts;
 use crate::audit::{Audit, Computed, Finding, Tried, Verdict};
 use crate::report::{audit_computed, audit_entry, audit_printed};
 
@@ -165,7 +166,7 @@ fn claim(finding: &Finding) -> AuditClaim {
             .is_some_and(|tried| tried.reproduced.get(index).is_some_and(|entry| *entry)),
     };
     let tried = |tried: &Tried| AuditTried {
-        supposing: tried.supposing.iter().map(ToString::to_string).collect(),
+        supposing: texts(&tried.supposing),
         reproduced: tried.reproduced.iter().filter(|entry| **entry).count(),
         values: tried.computed.iter().map(number).collect(),
     };

@@ -9,7 +9,7 @@ use num_traits::Zero as _;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::number::expression;
+use super::number::{expression, texts};
 use super::schema::check_kind;
 use super::{JsonError, Kind, unexpected};
 use crate::certificate::{Certificate, HIGHEST_HARMONIC, JudgedFormula, MOST_BITS, coordinate};
@@ -139,17 +139,12 @@ pub fn certificate(certificate: &Certificate) -> CertificateDocument {
         c: texts(&certificate.coefficients),
         highest: certificate.highest,
         inverse_bits: certificate.inverse_bits,
-        inverse: certificate.inverse.iter().map(|row| texts(row)).collect(),
+        inverse: certificate.inverse.iter().map(texts).collect(),
         sigma_log2: certificate.sigma,
         nu: "1".to_owned(),
         claim_r: claim(&certificate.claim),
         formula: certificate.formula.as_ref().map(formula),
     }
-}
-
-/// The numbers as text.
-pub(super) fn texts(numbers: &[Integer]) -> Vec<String> {
-    numbers.iter().map(ToString::to_string).collect()
 }
 
 /// An upper claim as text: as it is, or rounded up to three digits.
@@ -210,9 +205,7 @@ pub(super) fn force(force: &Expr) -> CertificateForce {
         Some(coefficients)
     });
     match coefficients {
-        Some(coefficients) => {
-            CertificateForce::Polynomial(coefficients.iter().map(ToString::to_string).collect())
-        }
+        Some(coefficients) => CertificateForce::Polynomial(texts(&coefficients)),
         None => match force.to_string() {
             text if text == "sin(x)" => CertificateForce::Expression("sin".to_owned()),
             text => CertificateForce::Expression(text),

@@ -4,8 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::number::finite;
-use super::verification::{numbers, values};
+use super::number::{constants, finite, named, text};
 use super::{Constant, Kind, Map};
 use crate::solution::Degrees;
 use crate::verify::comparison::{Comparison, Refused, Row};
@@ -145,9 +144,9 @@ pub fn comparison(comparison: &Comparison) -> ComparisonDocument {
     ComparisonDocument {
         schema: Kind::Comparison.schema().to_owned(),
         equation: comparison.equation.to_string(),
-        at: values(&comparison.at),
+        at: constants(&comparison.at),
         true_frequency: finite(comparison.true_frequency),
-        reason: comparison.reason.as_ref().map(ToString::to_string),
+        reason: text(comparison.reason.as_ref()),
         tolerance: comparison.tolerance,
         methods: applying.chain(comparison.refused.iter().map(refused)).collect(),
         validity: comparison.validity.clone(),
@@ -160,8 +159,8 @@ fn applying(row: &Row) -> MethodRow {
         order: row.solution.order,
         degrees: row.solution.degrees.map(Degrees::list),
         applies: true,
-        reason: row.reason.as_ref().map(ToString::to_string),
-        chosen: numbers(&row.chosen),
+        reason: text(row.reason.as_ref()),
+        chosen: named(row.chosen.iter().copied()),
         formula: row.solution.formula(),
         frequency: finite(row.frequency),
         relative_error: finite(row.relative_error),

@@ -10,8 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use super::certificate::{
     CertificateForce, check_sizes, claim, claims, decimal, force, fraction, integer, integers,
-    matrix, range, read_values, texts, values,
+    matrix, range, read_values, values,
 };
+use super::number::texts;
 use super::schema::check_kind;
 use super::{JsonError, Kind, unexpected};
 use crate::certificate::{DampedCertificate, Drive, JudgedFormula};
@@ -175,7 +176,7 @@ pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateD
         s: texts(&certificate.sines),
         highest: certificate.highest,
         inverse_bits: certificate.inverse_bits,
-        inverse: certificate.inverse.iter().map(|row| texts(row)).collect(),
+        inverse: certificate.inverse.iter().map(texts).collect(),
         sigma_log2: certificate.sigma,
         nu: "1".to_owned(),
         claim_r: claim(&certificate.claim),

@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
+use super::number::text;
 use crate::audit::paper::{Entry, Table};
 use crate::impact::STEEPNESS;
 use crate::impact::friction::{CreepSample, FirstCycle, FrictionStudy};
@@ -209,9 +210,9 @@ pub fn friction(study: &FrictionStudy) -> FrictionDocument {
         },
         rest_time: RestTime {
             coulomb: times.coulomb.ok(),
-            coulomb_reason: times.coulomb.err().map(|reason| reason.to_string()),
+            coulomb_reason: text(times.coulomb.err()),
             arctangent: times.arctangent.ok(),
-            arctangent_reason: times.arctangent.err().map(|reason| reason.to_string()),
+            arctangent_reason: text(times.arctangent.err()),
             difference: times.difference(),
         },
     }

@@ -7,6 +7,7 @@ use num_complex::Complex64;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::number::text;
 use super::solution::{SolutionDocument, solution};
 use super::{JsonError, Kind, check_kind};
 use crate::audit::paper;
@@ -633,7 +634,7 @@ impl Parameters {
                 Side::Right => "right",
             }
             .to_owned(),
-            force: setup.force.as_ref().map(ToString::to_string),
+            force: text(setup.force.as_ref()),
             values: setup
                 .values
                 .numbers()
@@ -677,7 +678,7 @@ impl ContactLawRow {
         Self {
             law: row.law.name().to_owned(),
             applies: row.outcome.is_ok(),
-            reason: row.outcome.as_ref().err().map(ToString::to_string),
+            reason: text(row.outcome.as_ref().err()),
             duration: judged(&|motion, errors| [motion.duration, errors.duration]),
             penetration: judged(&|motion, errors| [motion.depth, errors.depth]),
             peak_force: judged(&|motion, errors| [motion.peak_force, errors.peak_force]),

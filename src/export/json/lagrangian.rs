@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
-use super::number::Map;
+use super::number::{Map, named, text, texts};
 use crate::audit::paper::Finding;
 use crate::mechanics::{self, MechanismStudy, Place, RestStudy};
 
@@ -123,7 +123,6 @@ pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
     let coordinates = &mechanism.coordinates;
     let groups = study.groups.as_ref().and_then(|groups| groups.as_ref().ok());
     let zero = |left: &crate::expr::Expr| format!("{left} = 0");
-    let names = coordinates.iter().map(ToString::to_string);
     let accelerations = study.equations.accelerations().unwrap_or_default();
     let equilibrium = |rest: &RestStudy| {
         let place = |place: &Place| match place {
@@ -132,9 +131,9 @@ pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
         };
         let places = rest.rest.places.iter().map(place);
         Equilibrium {
-            places: coordinates.iter().map(ToString::to_string).zip(places).collect(),
-            cosine: rest.rest.condition.as_ref().map(ToString::to_string),
-            frequency_squared: rest.modes.square().ok().flatten().map(|square| square.to_string()),
+            places: named(coordinates.iter().zip(places)),
+            cosine: text(rest.rest.condition.as_ref()),
+            frequency_squared: text(rest.modes.square().ok().flatten()),
         }
     };
     let modes = |rest: &RestStudy| {
@@ -148,42 +147,27 @@ pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
     };
     LagrangianDocument {
         schema: Kind::Lagrangian.schema().to_owned(),
-        coordinates: names.clone().collect(),
+        coordinates: texts(coordinates),
         kinetic: mechanism.kinetic.to_string(),
         potential: mechanism.potential.to_string(),
         dissipation: mechanism.dissipation.to_string(),
-        forces: mechanism
-            .forces
-            .iter()
-            .map(|(on, force)| (on.to_string(), force.to_string()))
-            .collect(),
+        forces: named(mechanism.forces.iter().map(|(on, force)| (on, force.to_string()))),
         equations: study.equations.left.iter().map(zero).collect(),
-        divisors: study.equations.divisors.iter().map(ToString::to_string).collect(),
-        accelerations: names.zip(accelerations.iter().map(ToString::to_string)).collect(),
+        divisors: texts(&study.equations.divisors),
+        accelerations: named(coordinates.iter().zip(texts(&accelerations))),
         units_checked: study.question.units.is_some(),
-        units: groups.map(|groups| groups.units.iter().map(ToString::to_string).collect()),
+        units: groups.map(|groups| texts(&groups.units)),
         combinations: groups.map(|groups| {
             let combinations = groups.combinations.iter();
-            combinations
-                .map(|combination| (combination.name.to_string(), combination.meaning.to_string()))
-                .collect()
+            named(combinations.map(|own| (own.name, own.meaning.to_string())))
         }),
         time_unit: groups.map(|groups| groups.time.to_string()),
         parameter_count: groups.map(|groups| groups.parameters),
         rank: groups.map(|groups| groups.rank),
         groups: groups.map(|groups| groups.groups.iter().map(group).collect()),
         dimensionless: groups.map(|groups| groups.left.iter().map(zero).collect()),
-        no_groups: study
-            .groups
-            .as_ref()
-            .and_then(|groups| groups.as_ref().err())
-            .map(ToString::to_string),
-        values: study
-            .question
-            .values
-            .iter()
-            .map(|(name, value)| (name.to_string(), *value))
-            .collect(),
+        no_groups: text(study.groups.as_ref().and_then(|groups| groups.as_ref().err())),
+        values: named(study.question.values.iter().map(|(name, value)| (name, *value))),
         equilibria: study.rests.iter().map(equilibrium).collect(),
         modes: study.rests.iter().map(modes).collect(),
         findings: Vec::new(),

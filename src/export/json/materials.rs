@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
+use super::number::text;
 use super::simulation::{Barrier, Dissipation, ROUTES};
 use crate::impact::{self, ContactDamping, FirstContact, MaterialStudy, Parameter};
 use crate::report::material_sentences;
@@ -159,7 +160,7 @@ pub fn materials(study: &MaterialStudy) -> MaterialsDocument {
     let rest = |time: Result<f64, impact::NoRest>| RestTime {
         rest_time: time.ok(),
         rest_time_in_seconds: time.ok().map(|time| study.seconds(time)),
-        rest_reason: time.err().map(|reason| reason.to_string()),
+        rest_reason: text(time.err()),
     };
     let row = |row: &impact::MaterialRow| MaterialRow {
         name: row.material.name.clone(),

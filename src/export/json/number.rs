@@ -11,9 +11,10 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::exact::{self, Rational};
 use crate::expr::{Expr, parse_expression};
-use crate::solution::{Solution, Sum};
+use crate::solution::{Definition, Solution, Sum};
 use crate::symbol::Symbol;
 use crate::symbol::letters::Letters;
+use crate::values::Values;
 
 /// What stands under names that the equation or the program chose, in their order.
 pub type Map<T> = IndexMap<String, T>;
@@ -118,6 +119,31 @@ impl Polynomial {
         }
         Ok(polynomial)
     }
+}
+
+/// Each value as it is written.
+pub(super) fn texts<T: ToString>(values: impl IntoIterator<Item = T>) -> Vec<String> {
+    values.into_iter().map(|value| value.to_string()).collect()
+}
+
+/// A value as it is written, where there is one.
+pub(super) fn text<T: ToString>(value: Option<T>) -> Option<String> {
+    value.map(|value| value.to_string())
+}
+
+/// Values under names.
+pub(super) fn named<N: ToString, T>(entries: impl IntoIterator<Item = (N, T)>) -> Map<T> {
+    entries.into_iter().map(|(name, value)| (name.to_string(), value)).collect()
+}
+
+/// Exact values under their names.
+pub(super) fn constants(values: &Values) -> Map<Constant> {
+    named(values.iter().map(|(name, value)| (name, Constant::of(value))))
+}
+
+/// What symbols stand for.
+pub(super) fn meanings(definitions: &[Definition]) -> Map<String> {
+    named(definitions.iter().map(|own| (own.symbol, own.meaning.to_string())))
 }
 
 /// What the names in a document stand for: the letters of an answer give way to the names of its

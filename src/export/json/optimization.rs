@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::Kind;
-use super::number::{Map, finite};
+use super::number::{Map, finite, text};
 use super::simulation::Barrier;
 use crate::genetic::{Coding, Crossover, Mutation, Penalty, StallTest, Stop};
 use crate::impact::{self, ContactDamping, Friction, Parameter, REST_FRACTION, SpeedUnit};
@@ -463,7 +463,7 @@ fn design(study: &Study, design: &optimize::Design) -> Design {
         material: material.map(|material| material.name.clone()),
         rest_time: design.rest_time.ok(),
         rest_time_in_seconds: Objective::RestTime.value(design),
-        rest_reason: design.rest_time.err().map(|reason| reason.to_string()),
+        rest_reason: text(design.rest_time.err()),
         impacts: design.impacts,
         peak_force: design.hardest.map(|contact| contact.force),
         peak_pressure: design.hardest.map(|contact| contact.pressure),

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
-use super::number::{Constant, Map, is_nothing};
+use super::number::{Constant, Map, constants, is_nothing, meanings};
 use crate::report::motion_frequency;
 use crate::response::slow::SlowResponse;
 use crate::response::{self, Response};
@@ -135,15 +135,12 @@ fn slow(slow: &SlowResponse) -> SlowDocument {
         [&modulation.amplitude_rate, &modulation.phase_rate].map(ToString::to_string)
     });
     let [amplitude_rate, phase_rate] = rates.unwrap_or_default();
-    let definitions = solution.definitions.iter();
     SlowDocument {
         method: solution.method.name().to_owned(),
         order: solution.order,
         amplitude_rate,
         phase_rate,
-        definitions: definitions
-            .map(|definition| (definition.symbol.to_string(), definition.meaning.to_string()))
-            .collect(),
+        definitions: meanings(&solution.definitions),
         states: slow.states.clone(),
         largest_error: slow.error,
         missing: slow.missing,
@@ -204,11 +201,7 @@ pub fn response(response: &Response) -> ResponseDocument {
     ResponseDocument {
         schema: Kind::Response.schema().to_owned(),
         equation: asked.oscillator.equation().to_string(),
-        parameters: asked
-            .values
-            .iter()
-            .map(|(name, value)| (name.to_string(), Constant::of(value)))
-            .collect(),
+        parameters: constants(&asked.values),
         parameter: asked.parameter.to_string(),
         range: asked.range,
         method: match response.by_map {

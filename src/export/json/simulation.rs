@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
+use super::number::text;
 use crate::export::simulation::{COMPARED, Report, friction, notes, phases};
 use crate::impact::{
     self, ClosedForm, ContactDeviation, Friction, Geometry, Integrator, Piece, Regime, Side,
@@ -455,7 +456,7 @@ pub fn simulation(report: &Report) -> SimulationDocument {
         place_of_rest: rest.place,
         rest_time: rest.time.ok(),
         rest_time_in_seconds: report.units.and_then(|units| Some(rest.time.ok()? * units.time())),
-        rest_reason: rest.time.err().map(|reason| reason.to_string()),
+        rest_reason: text(rest.time.err()),
         last_crossing: rest.last_crossing,
         baseline: report.baseline.map(|baseline| Baseline {
             no_barrier: baseline.no_barrier.ok(),

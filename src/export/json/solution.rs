@@ -5,7 +5,7 @@ use num_traits::Zero;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::number::Names;
+use super::number::{Names, meanings, named, text, texts};
 use super::verification::{Verification, verification as judged};
 use super::{Constant, JsonError, Kind, Map, Polynomial, check_kind, unexpected};
 use crate::derivation::Line;
@@ -165,7 +165,7 @@ impl Convergence {
         let [real, imaginary] = nearest.place.each_ref().map(Estimate::of);
         let powers = convergence.variable.factors().iter();
         Self {
-            variable: powers.map(|(name, power)| (name.to_string(), *power)).collect(),
+            variable: named(powers.map(|(name, power)| (name, *power))),
             highest: convergence.highest,
             radius: Estimate::of(&nearest.radius),
             angle: Estimate::of(&nearest.angle),
@@ -404,7 +404,6 @@ pub fn solution(
 ) -> SolutionDocument {
     let _letters = solution.letters().in_force();
     let optional = |law: Option<&exact::Polynomial>| law.map(|law| Polynomial::of(law, solution));
-    let definitions = solution.definitions.iter();
     SolutionDocument {
         schema: Kind::Solution.schema().to_owned(),
         equation: solution.equation.to_string(),
@@ -413,27 +412,25 @@ pub fn solution(
         degrees: solution.degrees.map(Degrees::list),
         small_parameter: solution.small_parameter.to_string(),
         amplitude: solution.amplitude.name().to_owned(),
-        parameters: names(&solution.parameters),
-        definitions: definitions
-            .map(|definition| (definition.symbol.to_string(), definition.meaning.to_string()))
-            .collect(),
+        parameters: texts(&solution.parameters),
+        definitions: meanings(&solution.definitions),
         equilibrium: Constant::of(&solution.equilibrium),
         frequency: optional(solution.law.frequency()),
         frequency_squared: optional(solution.law.frequency_squared()),
         relation: optional(solution.law.relation()),
-        closed_form: solution.law.closed_form().map(ToString::to_string),
+        closed_form: text(solution.law.closed_form()),
         by_quadrature: solution.by_numbers(),
         system: solution.law.system().map(|system| System {
-            unknowns: names(&system.unknowns),
-            equations: system.equations.iter().map(ToString::to_string).collect(),
+            unknowns: texts(&system.unknowns),
+            equations: texts(&system.equations),
         }),
         displacement: displacement(&solution.displacement, solution),
-        closed_motion: solution.closed_motion.as_ref().map(ToString::to_string),
+        closed_motion: text(solution.closed_motion.as_ref()),
         limit_cycle: solution.limit_cycle.as_ref().map(|cycle| limit_cycle(cycle, solution)),
         modulation: solution.modulation.as_ref().map(|slow| modulation(slow, solution)),
         response: solution.response.as_ref().map(|response| self::response(response, solution)),
         numerical: solution.numerical,
-        validity: solution.validity.iter().map(ToString::to_string).collect(),
+        validity: texts(&solution.validity),
         convergence: solution.convergence.as_ref().map(Convergence::of),
         derivation: None,
         verification: verification.map(judged),
@@ -460,7 +457,7 @@ fn limit_cycle(cycle: &solution::LimitCycle, solution: &Solution) -> LimitCycle 
         amplitude: Polynomial::of(&cycle.amplitude, solution),
         number: cycle.number,
         cycles: cycle.cycles.iter().map(self::cycle).collect(),
-        small_with: names(&cycle.small_with),
+        small_with: texts(&cycle.small_with),
     }
 }
 
@@ -468,7 +465,7 @@ fn limit_cycle(cycle: &solution::LimitCycle, solution: &Solution) -> LimitCycle 
 fn cycle(leading: &LeadingCycle) -> Cycle {
     Cycle {
         amplitude: Constant::of(&leading.amplitude),
-        attracts_where_positive: leading.attracts_where.as_ref().map(ToString::to_string),
+        attracts_where_positive: text(leading.attracts_where.as_ref()),
         stability: leading.stability(),
     }
 }
@@ -480,7 +477,7 @@ fn modulation(modulation: &solution::Modulation, solution: &Solution) -> Modulat
         phase: modulation.phase.to_string(),
         amplitude_rate: modulation.amplitude_rate.to_string(),
         phase_rate: modulation.phase_rate.to_string(),
-        small_with: names(&modulation.small_with),
+        small_with: texts(&modulation.small_with),
         resonance: modulation.resonance.as_ref().map(|resonance| Resonance {
             driving_frequency: resonance.driving_frequency.to_string(),
             times_driving: resonance.times_driving,
@@ -495,8 +492,8 @@ fn modulation(modulation: &solution::Modulation, solution: &Solution) -> Modulat
         transient: modulation.transient.as_ref().map(|transient| Transient {
             start: transient.start.to_string(),
             amplitude: transient.amplitude.to_string(),
-            phase: transient.phase.as_ref().map(ToString::to_string),
-            ends: transient.ends.as_ref().map(ToString::to_string),
+            phase: text(transient.phase.as_ref()),
+            ends: text(transient.ends.as_ref()),
         }),
         steady: modulation.steady.iter().map(cycle).collect(),
         motion: modulation.motion.as_ref().map(|motion| displacement(motion, solution)),
@@ -513,8 +510,8 @@ fn response(response: &solution::Response, solution: &Solution) -> Response {
             centre: polynomial(&branches.centre),
             width_squared: polynomial(&branches.width_squared),
         }),
-        peak: response.peak.as_ref().map(ToString::to_string),
-        folds: response.folds.iter().map(ToString::to_string).collect(),
+        peak: text(response.peak.as_ref()),
+        folds: texts(&response.folds),
         jumps: response.jumps.as_ref().map(polynomial),
         closed: response.closed.as_ref().map(|closed| ClosedRelation {
             relation: closed.relation.to_string(),
@@ -534,10 +531,6 @@ fn response(response: &solution::Response, solution: &Solution) -> Response {
             plane.parts.iter().map(orders).collect()
         }),
     }
-}
-
-fn names(symbols: &[Symbol]) -> Vec<String> {
-    symbols.iter().map(ToString::to_string).collect()
 }
 
 fn symbols(texts: &[String], names: &Names) -> Vec<Symbol> {

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
-use super::number::{Constant, Map, Polynomial, finite};
+use super::number::{Constant, Map, Polynomial, constants, finite, texts};
 use crate::expr::Expr;
 use crate::report::StabilityReport;
 
@@ -112,8 +112,8 @@ pub fn stability(report: &StabilityReport) -> StabilityDocument {
         gives: Expr::from(&curves.unknown.given()).to_string(),
         unknown,
         order: curves.order,
-        small_parameters: curves.small.iter().map(ToString::to_string).collect(),
-        parameters: curves.parameters.iter().map(ToString::to_string).collect(),
+        small_parameters: texts(&curves.small),
+        parameters: texts(&curves.parameters),
         frequency: curves.driving_frequency().to_string(),
         curves: curves
             .curves
@@ -132,7 +132,7 @@ pub fn stability(report: &StabilityReport) -> StabilityDocument {
             })
             .collect(),
         verification: report.judged.map(|(at, judged)| StabilityVerification {
-            at: at.iter().map(|(name, value)| (name.to_string(), Constant::of(value))).collect(),
+            at: constants(at),
             tolerance: report.tolerance,
             curves: judged
                 .iter()

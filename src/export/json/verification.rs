@@ -5,13 +5,11 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::number::{finite, is_nothing};
+use super::number::{constants, finite, is_nothing, named, text};
 use super::{Constant, Map};
 use crate::exact::Doubles;
 use crate::export::rounding_noise;
 use crate::series::FourierSeries;
-use crate::symbol::Symbol;
-use crate::values::Values;
 use crate::verify::validity::Range;
 use crate::verify::{self, Followed};
 
@@ -137,9 +135,9 @@ pub struct HarmonicValue {
 /// ```
 pub fn verification(verification: &verify::Verification) -> Verification {
     Verification {
-        at: values(&verification.at),
+        at: constants(&verification.at),
         frequency: finite(verification.frequency),
-        reason: verification.reason.as_ref().map(ToString::to_string),
+        reason: text(verification.reason.as_ref()),
         true_frequency: verification.true_frequency,
         relative_error: finite(verification.relative_error),
         judged_on: verification.judged_on.to_owned(),
@@ -149,8 +147,8 @@ pub fn verification(verification: &verify::Verification) -> Verification {
         residual: finite(verification.residual),
         slope: finite(verification.slope),
         ranges: verification.ranges.clone(),
-        chosen: numbers(&verification.chosen),
-        values: numbers(&verification.values),
+        chosen: named(verification.chosen.iter().copied()),
+        values: named(verification.values.iter().copied()),
         phase: verification.phase,
         motion: verification.motion.as_ref().and_then(motion),
         steady_states: verification.steady_states.iter().map(steady_state).collect(),
@@ -190,15 +188,4 @@ fn motion(motion: &FourierSeries<Doubles>) -> Option<Vec<HarmonicValue>> {
         .filter(|entry| size(entry) > noise || !size(entry).is_finite())
         .map(|entry| size(&entry).is_finite().then_some(entry))
         .collect()
-}
-
-/// Exact values by their names.
-pub(super) fn values(values: &Values) -> Map<Constant> {
-    values.iter().map(|(name, value)| (name.to_string(), Constant::of(value))).collect()
-}
-
-/// Numbers by their names.
-pub(super) fn numbers(numbers: &[(Symbol, f64)]) -> Map<f64> {
-    let numbers = numbers.iter();
-    numbers.map(|(name, value)| (name.to_string(), *value)).collect()
 }

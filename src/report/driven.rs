@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use super::{Block, Document, Heading};
+use super::{Block, Document};
 use crate::decimal::{decimal, significant};
 use crate::derivation::{Formula, Line};
 use crate::exact::Polynomial;
@@ -174,22 +174,21 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
                 .to_owned(),
         ));
     } else {
-        let heading = |text, latex| Heading { text, latex };
         let a = FIRST_HARMONIC.written();
         // The names of a table live as long as the program.
         let kept = |name: String| Symbol::new(&name).name();
-        blocks.push(Block::Table {
-            head: vec![
-                heading(a, kept(format!("${a}$"))),
-                heading("phase", "phase"),
-                heading("stable", "stable"),
-                heading(kept(format!("true {a}")), kept(format!("true ${a}$"))),
-                heading("error", "error"),
-                heading("deviation", "deviation"),
-                heading("true stable", "true stable"),
+        blocks.push(Block::table(
+            [
+                (a, kept(format!("${a}$"))),
+                ("phase", "phase"),
+                ("stable", "stable"),
+                (kept(format!("true {a}")), kept(format!("true ${a}$"))),
+                ("error", "error"),
+                ("deviation", "deviation"),
+                ("true stable", "true stable"),
             ],
-            rows: verification.steady_states.iter().map(row).collect(),
-        });
+            verification.steady_states.iter().map(row),
+        ));
     }
     let stable = verification.steady_states.iter().filter(|judged| judged.state.is_stable());
     let count = stable.count();

@@ -49,6 +49,7 @@ pub use trajectory::{Doubt, MotionSweep, TRUSTED, TrajectoryReport, motion_sweep
 
 use std::borrow::Cow;
 
+use crate::decimal::decimal;
 use crate::derivation::Line;
 use crate::expr::{Equation, Expr};
 use crate::impact::contact::ContactRow;
@@ -272,6 +273,19 @@ pub enum Block<'a> {
     },
 }
 
+impl Block<'_> {
+    /// A table with these columns and rows.
+    fn table<H: Into<Heading>>(
+        head: impl IntoIterator<Item = H>,
+        rows: impl IntoIterator<Item = Vec<String>>,
+    ) -> Self {
+        Self::Table {
+            head: head.into_iter().map(Into::into).collect(),
+            rows: rows.into_iter().collect(),
+        }
+    }
+}
+
 /// What stands above a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Heading {
@@ -279,6 +293,23 @@ pub struct Heading {
     pub text: &'static str,
     /// In LaTeX.
     pub latex: &'static str,
+}
+
+impl From<&'static str> for Heading {
+    fn from(text: &'static str) -> Self {
+        Self { text, latex: text }
+    }
+}
+
+impl From<(&'static str, &'static str)> for Heading {
+    fn from((text, latex): (&'static str, &'static str)) -> Self {
+        Self { text, latex }
+    }
+}
+
+/// A number, or a stroke where there is none.
+fn cell(value: Option<f64>) -> String {
+    value.map_or("-".to_owned(), decimal)
 }
 
 /// Whether the first column of a table has names, no number among them: then it stands on the left.

@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use super::{Block, Document, Heading};
+use super::{Block, Document};
 use crate::decimal::{decimal, significant};
 use crate::derivation::Line;
 use crate::expr::Expr;
@@ -162,10 +162,7 @@ fn verdicts<'a>(
             values.join(", "),
             format_args!("{} %", significant(100.0 * report.tolerance, 3))
         )),
-        Block::Table {
-            head: head.map(|(text, latex)| Heading { text, latex }).to_vec(),
-            rows: judged.iter().map(row).collect(),
-        },
+        Block::table(head, judged.iter().map(row)),
         Block::Note(format!(
             "true: by Hill's determinant, confirmed by Floquet's multipliers of the integrated motion; none: {}",
             match report.curves.unknown.power() {

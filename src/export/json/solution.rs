@@ -186,7 +186,7 @@ impl Convergence {
                 radius: self.radius.read()?,
                 angle: self.angle.read()?,
                 place: [self.real.read()?, self.imaginary.read()?],
-                exponent: self.exponent.as_ref().map(Estimate::read).transpose()?,
+                exponent: some(&self.exponent, Estimate::read)?,
             },
         })
     }
@@ -533,6 +533,22 @@ fn response(response: &solution::Response, solution: &Solution) -> Response {
     }
 }
 
+/// Reads what there is.
+fn some<T, U>(
+    found: &Option<T>,
+    read: impl FnOnce(&T) -> Result<U, JsonError>,
+) -> Result<Option<U>, JsonError> {
+    found.as_ref().map(read).transpose()
+}
+
+/// Reads each of them.
+fn all<T, U>(
+    found: &[T],
+    read: impl FnMut(&T) -> Result<U, JsonError>,
+) -> Result<Vec<U>, JsonError> {
+    found.iter().map(read).collect()
+}
+
 fn symbols(texts: &[String], names: &Names) -> Vec<Symbol> {
     texts.iter().map(|text| names.symbol(text)).collect()
 }
@@ -586,16 +602,13 @@ impl SolutionDocument {
             equilibrium: names.expression(&self.equilibrium.exact, "equilibrium")?,
             law: self.law(names)?,
             displacement: self.displacement.read(names)?,
-            closed_motion: match &self.closed_motion {
-                Some(text) => Some(names.expression(text, "closed_motion")?),
-                None => None,
-            },
-            limit_cycle: self.limit_cycle.as_ref().map(|own| own.read(names)).transpose()?,
-            modulation: self.modulation.as_ref().map(|own| own.read(names)).transpose()?,
-            response: self.response.as_ref().map(|own| own.read(names)).transpose()?,
+            closed_motion: some(&self.closed_motion, |own| names.expression(own, "closed_motion"))?,
+            limit_cycle: some(&self.limit_cycle, |own| own.read(names))?,
+            modulation: some(&self.modulation, |own| own.read(names))?,
+            response: some(&self.response, |own| own.read(names))?,
             numerical: self.numerical,
             validity: self.validity.iter().cloned().map(Note::Stated).collect(),
-            convergence: self.convergence.as_ref().map(|own| own.read(names)).transpose()?,
+            convergence: some(&self.convergence, |own| own.read(names))?,
             steps: vec![],
             derivation: vec![],
         })
@@ -603,13 +616,11 @@ impl SolutionDocument {
 
     /// The law, of whose kinds a document holds one.
     fn law(&self, names: &Names) -> Result<Law, JsonError> {
-        let optional = |law: &Option<Polynomial>, key| {
-            law.as_ref().map(|law| names.polynomial(law, key)).transpose()
-        };
+        let optional = |law: &Option<Polynomial>, key| some(law, |law| names.polynomial(law, key));
         let frequency = optional(&self.frequency, "frequency")?;
         let squared = optional(&self.frequency_squared, "frequency_squared")?;
-        let form = self.closed_form.as_deref().map(|text| closed_form(text, names)).transpose()?;
-        let system = self.system.as_ref().map(|own| own.read(names)).transpose()?;
+        let form = some(&self.closed_form, |text| closed_form(text, names))?;
+        let system = some(&self.system, |own| own.read(names))?;
         Ok(match (optional(&self.relation, "relation")?, squared, frequency, form, system) {
             (Some(relation), squared, _, form, _) => Law::Relation {
                 relation,
@@ -640,10 +651,9 @@ fn closed_form(text: &str, names: &Names) -> Result<ClosedForm, JsonError> {
 
 impl System {
     fn read(&self, names: &Names) -> Result<solution::System, JsonError> {
-        let equations = self.equations.iter().map(|text| names.expression(text, "equations"));
         Ok(solution::System {
             unknowns: symbols(&self.unknowns, names),
-            equations: equations.collect::<Result<_, _>>()?,
+            equations: all(&self.equations, |text| names.expression(text, "equations"))?,
         })
     }
 }
@@ -653,11 +663,7 @@ impl LimitCycle {
         Ok(solution::LimitCycle {
             amplitude: names.polynomial(&self.amplitude, "limit_cycle")?,
             number: self.number,
-            cycles: self
-                .cycles
-                .iter()
-                .map(|own| own.read(names))
-                .collect::<Result<_, JsonError>>()?,
+            cycles: all(&self.cycles, |own| own.read(names))?,
             small_with: symbols(&self.small_with, names),
         })
     }
@@ -665,111 +671,87 @@ impl LimitCycle {
 
 impl Cycle {
     fn read(&self, names: &Names) -> Result<LeadingCycle, JsonError> {
-        let attracts_where = self.attracts_where_positive.as_deref();
         Ok(LeadingCycle {
             amplitude: names.expression(&self.amplitude.exact, "amplitude")?,
-            attracts_where: attracts_where
-                .map(|text| names.expression(text, "attracts_where_positive"))
-                .transpose()?,
+            attracts_where: some(&self.attracts_where_positive, |text| {
+                names.expression(text, "attracts_where_positive")
+            })?,
         })
     }
 }
 
 impl Response {
     fn read(&self, names: &Names) -> Result<solution::Response, JsonError> {
-        let polynomial = |value: &Option<Polynomial>, key| {
-            value.as_ref().map(|value| names.polynomial(value, key)).transpose()
-        };
-        let branches = |branches: &Branches| -> Result<_, JsonError> {
-            Ok(solution::response::Branches {
-                centre: names.polynomial(&branches.centre, "centre")?,
-                width_squared: names.polynomial(&branches.width_squared, "width_squared")?,
+        let polynomial = |value: &Polynomial, key| names.polynomial(value, key);
+        let both = |[u, v]: &[Polynomial; 2], key| Ok([polynomial(u, key)?, polynomial(v, key)?]);
+        let expression = |text: &String, key| names.expression(text, key);
+        let plane = |(coordinates, rates): &(&[String; 2], &[Polynomial; 2])| {
+            Ok(solution::response::Plane {
+                coordinates: coordinates.each_ref().map(|name| names.symbol(name)),
+                rates: both(rates, "rates")?,
+                parts: all(&self.parts, |part| all(part, |rates| both(rates, "parts")))?,
             })
         };
-        let closed = |closed: &ClosedRelation| -> Result<_, JsonError> {
-            Ok(solution::response::ClosedRelation {
-                relation: names.expression(&closed.relation, "relation")?,
-                centre: names.expression(&closed.centre, "centre")?,
-                width_squared: names.expression(&closed.width_squared, "width_squared")?,
-            })
-        };
-        let orders = |part: &[[Polynomial; 2]]| -> Result<Vec<_>, JsonError> {
-            let both = |[u, v]: &[Polynomial; 2]| {
-                Ok([names.polynomial(u, "parts")?, names.polynomial(v, "parts")?])
-            };
-            part.iter().map(both).collect()
-        };
-        let plane =
-            |(coordinates, [u, v]): (&[String; 2], &[Polynomial; 2])| -> Result<_, JsonError> {
-                Ok(solution::response::Plane {
-                    coordinates: coordinates.each_ref().map(|name| names.symbol(name)),
-                    rates: [names.polynomial(u, "rates")?, names.polynomial(v, "rates")?],
-                    parts: self.parts.iter().map(|part| orders(part)).collect::<Result<_, _>>()?,
-                })
-            };
         Ok(solution::Response {
-            motion: names.expression(&self.motion, "motion")?,
-            relation: polynomial(&self.relation, "relation")?,
-            branches: self.branches.as_ref().map(branches).transpose()?,
-            peak: self.peak.as_deref().map(|peak| names.expression(peak, "peak")).transpose()?,
-            folds: self
-                .folds
-                .iter()
-                .map(|fold| names.expression(fold, "folds"))
-                .collect::<Result<_, _>>()?,
-            jumps: polynomial(&self.jumps, "jumps")?,
-            closed: self.closed.as_ref().map(closed).transpose()?,
-            plane: self.coordinates.as_ref().zip(self.rates.as_ref()).map(plane).transpose()?,
+            motion: expression(&self.motion, "motion")?,
+            relation: some(&self.relation, |own| polynomial(own, "relation"))?,
+            branches: some(&self.branches, |own| {
+                Ok(solution::response::Branches {
+                    centre: polynomial(&own.centre, "centre")?,
+                    width_squared: polynomial(&own.width_squared, "width_squared")?,
+                })
+            })?,
+            peak: some(&self.peak, |own| expression(own, "peak"))?,
+            folds: all(&self.folds, |own| expression(own, "folds"))?,
+            jumps: some(&self.jumps, |own| polynomial(own, "jumps"))?,
+            closed: some(&self.closed, |own| {
+                Ok(solution::response::ClosedRelation {
+                    relation: expression(&own.relation, "relation")?,
+                    centre: expression(&own.centre, "centre")?,
+                    width_squared: expression(&own.width_squared, "width_squared")?,
+                })
+            })?,
+            plane: some(&self.coordinates.as_ref().zip(self.rates.as_ref()), plane)?,
         })
     }
 }
 
 impl Modulation {
     fn read(&self, names: &Names) -> Result<solution::Modulation, JsonError> {
-        let optional = |text: &Option<String>, key| {
-            text.as_deref().map(|text| names.expression(text, key)).transpose()
-        };
-        let resonance = |resonance: &Resonance| -> Result<_, JsonError> {
-            Ok(modulation::Resonance {
-                driving_frequency: names
-                    .expression(&resonance.driving_frequency, "driving_frequency")?,
-                times_driving: resonance.times_driving,
-                times_linear: resonance.times_linear,
-                detuning: Definition {
-                    symbol: names.symbol(&resonance.detuning),
-                    meaning: names.expression(&resonance.detuning_means, "detuning_means")?,
-                },
-            })
-        };
-        let release = |release: &Release| -> Result<_, JsonError> {
-            Ok(modulation::Release {
-                amplitude: names.expression(&release.amplitude, "amplitude")?,
-                phase: names.expression(&release.phase, "phase")?,
-            })
-        };
-        let transient = |transient: &Transient| -> Result<_, JsonError> {
-            Ok(modulation::Transient {
-                start: names.symbol(&transient.start),
-                amplitude: names.expression(&transient.amplitude, "amplitude")?,
-                phase: optional(&transient.phase, "phase")?,
-                ends: optional(&transient.ends, "ends")?,
-            })
-        };
+        let expression = |text: &String, key| names.expression(text, key);
         Ok(solution::Modulation {
             amplitude: names.symbol(&self.amplitude),
             phase: names.symbol(&self.phase),
-            amplitude_rate: names.expression(&self.amplitude_rate, "amplitude_rate")?,
-            phase_rate: names.expression(&self.phase_rate, "phase_rate")?,
+            amplitude_rate: expression(&self.amplitude_rate, "amplitude_rate")?,
+            phase_rate: expression(&self.phase_rate, "phase_rate")?,
             small_with: symbols(&self.small_with, names),
-            resonance: self.resonance.as_ref().map(resonance).transpose()?,
-            release: self.release.as_ref().map(release).transpose()?,
-            transient: self.transient.as_ref().map(transient).transpose()?,
-            steady: self
-                .steady
-                .iter()
-                .map(|own| own.read(names))
-                .collect::<Result<_, JsonError>>()?,
-            motion: self.motion.as_ref().map(|own| own.read(names)).transpose()?,
+            resonance: some(&self.resonance, |own| {
+                Ok(modulation::Resonance {
+                    driving_frequency: expression(&own.driving_frequency, "driving_frequency")?,
+                    times_driving: own.times_driving,
+                    times_linear: own.times_linear,
+                    detuning: Definition {
+                        symbol: names.symbol(&own.detuning),
+                        meaning: expression(&own.detuning_means, "detuning_means")?,
+                    },
+                })
+            })?,
+            release: some(&self.release, |own| {
+                Ok(modulation::Release {
+                    amplitude: expression(&own.amplitude, "amplitude")?,
+                    phase: expression(&own.phase, "phase")?,
+                })
+            })?,
+            transient: some(&self.transient, |own| {
+                Ok(modulation::Transient {
+                    start: names.symbol(&own.start),
+                    amplitude: expression(&own.amplitude, "amplitude")?,
+                    phase: some(&own.phase, |text| expression(text, "phase"))?,
+                    ends: some(&own.ends, |text| expression(text, "ends"))?,
+                })
+            })?,
+            steady: all(&self.steady, |own| own.read(names))?,
+            motion: some(&self.motion, |own| own.read(names))?,
         })
     }
 }

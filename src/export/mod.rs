@@ -8,6 +8,7 @@
 
 pub mod catalog;
 pub mod code;
+mod csv;
 pub mod figure;
 pub mod friction;
 #[cfg(feature = "html")]

@@ -1,8 +1,7 @@
 //! The main mass with its damper as comma-separated values and as a picture; text by
 //! [`text::document`](super::text::document).
 
-use std::fmt::Write as _;
-
+use super::csv::{cell, end, head, line};
 use super::figure::{CurveStyle, FigureError, Guide, Panel, Points, Scale, curve, figure, panel};
 use crate::decimal::decimal;
 use crate::impact::Units;
@@ -51,25 +50,12 @@ pub fn csv(report: &PrimaryReport) -> String {
         "# units: t 1/omega, x rad, velocity omega, y L, speed L*omega, energy m*g*L\nt,x,velocity,y,speed,energy\n",
     );
     for t in times(report) {
-        if let Some(state) = motion.at(t) {
+        text.extend(motion.at(t).map(|state| {
             let energy = motion.case.energy(state);
-            let _ = writeln!(
-                text,
-                "{t},{},{},{},{},{energy}",
-                state.x, state.velocity, state.y, state.speed
-            );
-        }
+            line([t, state.x, state.velocity, state.y, state.speed, energy])
+        }));
     }
-    match report.doubt() {
-        _ if !motion.is_complete() => {
-            let _ = writeln!(text, "# incomplete: {}", motion.stop);
-        }
-        Some(doubt) => {
-            let _ = writeln!(text, "# incomplete: {doubt}");
-        }
-        None => {}
-    }
-    text
+    text + &end(motion.is_complete(), motion.stop, report.doubt())
 }
 
 /// A row for every motion of a sweep: the values that are swept, in their own units, then what came
@@ -101,23 +87,18 @@ pub fn sweep_csv(report: &PrimarySweepReport) -> String {
         unit => (parameter.name(), unit),
     });
     let columns: Vec<(&str, &str)> = swept.chain(RESULTS).collect();
-    let units: Vec<String> = columns.iter().map(|(name, unit)| format!("{name} {unit}")).collect();
-    let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
-    let mut text = format!("# units: {}\n{}\n", units.join(", "), names.join(","));
-    let or_none = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+    let mut text = head(&columns);
     for (number, (row, units)) in report.rows.iter().zip(report.units).enumerate() {
-        let count = |count: usize| {
-            if row.is_begun() { count.to_string() } else { String::new() }
-        };
+        let count = |count: usize| cell(row.is_begun().then_some(count));
         let Others { locked, without } = row.others;
         let mut cells: Vec<String> = report.values(number).iter().map(f64::to_string).collect();
         let amplitude = row.is_begun().then_some(row.amplitude);
-        cells.extend([amplitude, locked.amplitude, without.amplitude].map(or_none));
+        cells.extend([amplitude, locked.amplitude, without.amplitude].map(cell));
         cells.push(count(row.impacts));
-        cells.extend([rest_time(row), locked.rest_time, without.rest_time].map(or_none));
+        cells.extend([rest_time(row), locked.rest_time, without.rest_time].map(cell));
         cells.extend([count(row.all_impacts), units.time().to_string(), units.length.to_string()]);
         cells.push((row.stop == PrimaryStop::Duration).to_string());
-        let _ = writeln!(text, "{}", cells.join(","));
+        text += &line(cells);
     }
     text
 }

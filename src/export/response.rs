@@ -3,6 +3,7 @@
 
 use std::fmt::Write as _;
 
+use super::csv::cell;
 use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel};
 use crate::response::Response;
 use crate::response::{Point, bifurcation::BifurcationKind};
@@ -33,14 +34,9 @@ pub fn csv(response: &Response) -> String {
          kind,branch,{},amplitude,{own},peak,stable,multiplier,error\n",
         response.question.parameter
     );
-    let optional = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
     for (index, branch) in response.branches.iter().enumerate() {
         for point in &branch.points {
-            let stable = match point.stable {
-                Some(true) => "1",
-                Some(false) => "0",
-                None => "",
-            };
+            let stable = cell(point.stable.map(u8::from));
             let _ = writeln!(
                 text,
                 "branch,{},{},{},{},{},{stable},{},{}",
@@ -49,8 +45,8 @@ pub fn csv(response: &Response) -> String {
                 point.amplitude,
                 of_own(point.frequency, point.phase.to_string()),
                 point.peak,
-                optional(point.multipliers.map(|multipliers| multipliers[0].norm())),
-                optional(point.error)
+                cell(point.multipliers.map(|multipliers| multipliers[0].norm())),
+                cell(point.error)
             );
         }
     }

@@ -3,6 +3,7 @@
 
 use std::fmt::Write as _;
 
+use super::csv::cell;
 use super::figure::{CurveStyle, FigureError, Points, curve, figure, panel};
 use crate::hill::{Chart, TransitionCurves};
 use crate::symbol::Symbol;
@@ -30,8 +31,7 @@ pub fn csv(curves: &TransitionCurves, by: Symbol, charts: &[Chart]) -> String {
         sizes.sort_by(f64::total_cmp);
         sizes.dedup();
         let at = |points: &[(f64, f64)], size: f64| {
-            let point = points.iter().find(|point| point.1 == size);
-            point.map_or(String::new(), |point| point.0.to_string())
+            cell(points.iter().find(|point| point.1 == size).map(|point| point.0))
         };
         for size in sizes {
             let name = &curves.curves[chart.curve].name;

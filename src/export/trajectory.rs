@@ -1,12 +1,12 @@
 //! A motion in numbers as comma-separated values and as a picture; text by
 //! [`text::document`](super::text::document).
 
-use std::fmt::Write as _;
-
+use super::csv::{end, line};
 use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel};
 use crate::decimal::decimal;
 use crate::report::section_in_words;
 use crate::report::{MotionSweep, TrajectoryReport};
+use crate::symbol::Symbol;
 use crate::trajectory::in_words;
 use crate::trajectory::{Crossing, Section, SweptMotion, Trajectory};
 
@@ -39,29 +39,18 @@ fn times(report: &TrajectoryReport) -> Vec<f64> {
 /// ```
 pub fn csv(report: &TrajectoryReport) -> String {
     let motion = report.motion;
-    let names: Vec<&str> = motion.course.rates.states.iter().map(|name| name.name()).collect();
-    let mut text = format!("t,{}\n", names.join(","));
+    let names = motion.course.rates.states.iter().map(|name| name.name());
+    let mut text = line(std::iter::once("t").chain(names));
     let on_section = motion.course.section.is_some() && report.samples.is_empty();
     let times = match on_section {
         true => motion.crossings().iter().map(|crossing| crossing.time).collect(),
         false => times(report),
     };
     for time in times {
-        if let Some(state) = motion.at(time) {
-            let state: Vec<String> = state.iter().map(ToString::to_string).collect();
-            let _ = writeln!(text, "{time},{}", state.join(","));
-        }
+        let state = motion.at(time).into_iter();
+        text.extend(state.map(|state| line(std::iter::once(time).chain(state))));
     }
-    match report.doubt() {
-        _ if !motion.is_complete() => {
-            let _ = writeln!(text, "# incomplete: {}", in_words(motion.reason()));
-        }
-        Some(doubt) => {
-            let _ = writeln!(text, "# incomplete: {doubt}");
-        }
-        None => {}
-    }
-    text
+    text + &end(motion.is_complete(), in_words(motion.reason()), report.doubt())
 }
 
 /// Every coordinate in time, and its phase plane beside it.
@@ -139,44 +128,31 @@ fn dots<'a>(title: &'a str, labels: [&'a str; 2], points: &'a [(f64, f64)]) -> P
 /// with its extremes.
 pub fn sweep_csv(sweep: &MotionSweep) -> String {
     let course = sweep.course;
-    let varied: Vec<&str> = sweep.names.iter().map(|name| name.name()).collect();
-    let states: Vec<&str> = course.rates.states.iter().map(|name| name.name()).collect();
-    let join = |numbers: &mut dyn Iterator<Item = f64>| {
-        let numbers: Vec<String> = numbers.map(|number| number.to_string()).collect();
-        numbers.join(",")
-    };
-    let mut text = String::new();
+    let named = |name: &Symbol| name.name().to_owned();
+    let varied = sweep.names.iter().map(named);
+    let states = course.rates.states.iter().map(named);
     match course.section.is_some() {
         true => {
-            let _ = writeln!(text, "{},t,{}", varied.join(","), states.join(","));
-            for motion in sweep.motions {
-                for crossing in &motion.crossings {
-                    let line = motion.values.iter().chain([&crossing.time]).chain(&crossing.state);
-                    let _ = writeln!(text, "{}", join(&mut line.copied()));
-                }
-            }
+            let rows = sweep.motions.iter().flat_map(|motion| {
+                motion.crossings.iter().map(|crossing| {
+                    line(motion.values.iter().chain([&crossing.time]).chain(&crossing.state))
+                })
+            });
+            line(varied.chain(["t".to_owned()]).chain(states)) + &rows.collect::<String>()
         }
         false => {
-            let extremes: Vec<String> = course
+            let extremes = course
                 .coordinates
                 .iter()
-                .map(|name| format!("least {name},greatest {name}"))
-                .collect();
-            let _ = writeln!(
-                text,
-                "{},{},end,{}",
-                varied.join(","),
-                extremes.join(","),
-                states.join(",")
-            );
-            for motion in sweep.motions {
-                let line = motion.values.iter().chain(motion.extremes.iter().flatten());
-                let line = line.chain([&motion.end]).chain(&motion.state);
-                let _ = writeln!(text, "{}", join(&mut line.copied()));
-            }
+                .flat_map(|name| [format!("least {name}"), format!("greatest {name}")]);
+            let rows = sweep.motions.iter().map(|motion| {
+                let cells = motion.values.iter().chain(motion.extremes.iter().flatten());
+                line(cells.chain([&motion.end]).chain(&motion.state))
+            });
+            line(varied.chain(extremes).chain(["end".to_owned()]).chain(states))
+                + &rows.collect::<String>()
         }
     }
-    text
 }
 
 /// Over what is varied: every state on the section, a bifurcation diagram; without a section the

@@ -5,4 +5,3 @@ mod csv;
 pub mod figure;
 
 pub use csv::materials as csv;
-pub(super) use csv::quoted;

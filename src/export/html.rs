@@ -186,8 +186,8 @@ impl Body<'_> {
             Block::Note(words)
             | Block::Remark(words)
             | Block::Sentence(words)
-            | Block::Detail(words)
             | Block::Closing(words) => paragraph(words),
+            Block::Detail(words) => paragraph(words.trim_start()),
             Block::Entries { heading: of, entries } => heading(of) + &definitions("long", entries),
             Block::Facts(facts) => definitions("", facts),
             Block::Judged { verification, series_of_omega, hbar, tolerance } => {
@@ -234,9 +234,6 @@ impl Body<'_> {
                     .map(|(reading, verdict)| (reading.name(), verdict.name().to_owned()));
                 heading(&format!("Verdict: every number and phase within {within} %"))
                     + &definitions("", &facts.collect::<Vec<_>>())
-            }
-            Block::Shortcoming { reading, errors, cause } => {
-                paragraph(text::impact::shortcoming(*reading, errors, cause).trim())
             }
             // Formulas and tables have been set.
             Block::Question(_)

@@ -242,8 +242,7 @@ pub(super) fn setting(block: &Block) -> Setting {
         | Block::Refused(_)
         | Block::TrueMotion(_)
         | Block::Closing(_)
-        | Block::Verdicts { .. }
-        | Block::Shortcoming { .. } => Setting::Words,
+        | Block::Verdicts { .. } => Setting::Words,
     }
 }
 

@@ -4,40 +4,20 @@
 //! lines no longer than that where words allow it. Relative errors stand in percent.
 
 pub(super) mod comparison;
-pub(super) mod impact;
+mod impact;
 mod table;
 
 pub use super::steps::text as steps;
 use crate::decimal::{decimal, significant};
 use crate::derivation::NOTATION;
-use crate::report::{self, Block, Document};
+pub use crate::report::percent;
+use crate::report::{self, Block, Document, size_in_percent};
 use crate::series::terms;
 use crate::solution::{Method, Solution, constant_in_words};
 use crate::symbol::Symbol;
 use crate::symbol::letters::{FREQUENCY, of_frequency};
 use crate::verify::comparison::Comparison;
 use crate::verify::{Followed, Verification};
-
-/// A signed relative error in percent: `-1.49 %`; what is rounding is called that.
-///
-/// ```
-/// assert_eq!(lindstedt::export::text::percent(-0.0149), "-1.49 %");
-/// ```
-pub fn percent(error: f64) -> String {
-    if error.abs() < 1e-9 {
-        return "< 1e-7 %".to_owned();
-    }
-    let digits = significant(100.0 * error.abs(), 3);
-    format!("{}{digits} %", if error < 0.0 { "-" } else { "+" })
-}
-
-/// A size in percent: `2.86 %`; what is rounding is called that.
-fn size_in_percent(size: f64) -> String {
-    match size < 1e-9 {
-        true => "< 1e-7 %".to_owned(),
-        false => format!("{} %", significant(100.0 * size, 3)),
-    }
-}
 
 /// The derived formula, and the verdict where it was judged.
 ///
@@ -162,9 +142,6 @@ impl Page {
             }
             Block::SiQuantities { columns, rows } => impact::si_quantities(columns, rows),
             Block::Verdicts { verdicts, tolerance } => impact::verdicts(verdicts, *tolerance),
-            Block::Shortcoming { reading, errors, cause } => {
-                impact::shortcoming(*reading, errors, cause)
-            }
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use super::{Block, Document};
+use super::{Block, Document, size_in_percent};
 use crate::decimal::{decimal, significant};
 use crate::derivation::{Formula, Line};
 use crate::exact::Polynomial;
@@ -145,13 +145,7 @@ fn judged_in_time<'a>(verification: &Verification, tolerance: f64) -> Vec<Block<
     let at = values_in_words(verification);
     let mut blocks = vec![Block::Heading(format!("Judged against the true motion{at}"))];
     blocks.extend(verification.ranges.iter().map(|range| Block::Note(range.text.clone())));
-    /// Below it is rounding, and called that.
-    const ROUNDING: f64 = 1e-9;
-    let percent = |part: Option<f64>| match part {
-        Some(part) if part < ROUNDING => "< 1e-7 %".to_owned(),
-        Some(part) => format!("{} %", significant(100.0 * part, 3)),
-        None => "without a number".to_owned(),
-    };
+    let percent = |part: Option<f64>| part.map_or("without a number".to_owned(), size_in_percent);
     blocks.push(Block::Note(format!(
         "largest deviation {} of the largest displacement, residual {} of the force (rms)",
         percent(verification.max_deviation),

@@ -49,7 +49,7 @@ pub use trajectory::{Doubt, MotionSweep, TRUSTED, TrajectoryReport, motion_sweep
 
 use std::borrow::Cow;
 
-use crate::decimal::decimal;
+use crate::decimal::{decimal, significant};
 use crate::derivation::Line;
 use crate::expr::{Equation, Expr};
 use crate::impact::contact::ContactRow;
@@ -262,15 +262,6 @@ pub enum Block<'a> {
         /// A row each, with its unit as it is typed.
         rows: Vec<(Quantity, &'static str)>,
     },
-    /// Numbers beyond the tolerance, and what they come from.
-    Shortcoming {
-        /// Whose numbers.
-        reading: Reading,
-        /// The names and the relative errors.
-        errors: Vec<(&'static str, f64)>,
-        /// The cause.
-        cause: String,
-    },
 }
 
 impl Block<'_> {
@@ -304,6 +295,27 @@ impl From<&'static str> for Heading {
 impl From<(&'static str, &'static str)> for Heading {
     fn from((text, latex): (&'static str, &'static str)) -> Self {
         Self { text, latex }
+    }
+}
+
+/// A signed relative error in percent: `-1.49 %`; what is rounding is called that.
+///
+/// ```
+/// assert_eq!(lindstedt::report::percent(-0.0149), "-1.49 %");
+/// ```
+pub fn percent(error: f64) -> String {
+    if error.abs() < 1e-9 {
+        return "< 1e-7 %".to_owned();
+    }
+    let digits = significant(100.0 * error.abs(), 3);
+    format!("{}{digits} %", if error < 0.0 { "-" } else { "+" })
+}
+
+/// A size in percent: `2.86 %`; what is rounding is called that.
+pub(crate) fn size_in_percent(size: f64) -> String {
+    match size < 1e-9 {
+        true => "< 1e-7 %".to_owned(),
+        false => format!("{} %", significant(100.0 * size, 3)),
     }
 }
 

@@ -141,7 +141,7 @@ pub(super) fn constants(values: &Values) -> Map<Constant> {
     named(values.iter().map(|(name, value)| (name, Constant::of(value))))
 }
 
-/// What symbols stand for.
+/// The meaning of each symbol.
 pub(super) fn meanings(definitions: &[Definition]) -> Map<String> {
     named(definitions.iter().map(|own| (own.symbol, own.meaning.to_string())))
 }

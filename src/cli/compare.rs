@@ -104,21 +104,13 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     })
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &Oscillator, _: &Comparison) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(oscillator: &Oscillator, comparison: &Comparison) -> Result<String, Failure> {
     use lindstedt::export::figure::backbone_figure;
 
-    let (truth, curves) = comparison::backbones(oscillator, comparison)
-        .map_err(|error| Failure::refused(&error, None))?;
+    let (truth, curves) = comparison::backbones(oscillator, comparison)?;
     let at: Vec<String> =
         comparison.at.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     let caption = format!("{}; {}", comparison.equation, at.join(", "));
     let marked = comparison.at.get("A".into()).map(f64::abs);
-    backbone_figure(&truth, &curves, marked, &caption)
-        .map_err(|error| Failure::refused(&error, None))
+    Ok(backbone_figure(&truth, &curves, marked, &caption)?)
 }

@@ -664,17 +664,11 @@ pub(super) fn exact_values(
     for (name, value) in
         file.iter().filter(|(name, _)| values.get(*name).is_none()).collect::<Vec<_>>()
     {
-        values.insert(name, value.clone()).map_err(|error| Failure::refused(&error, None))?;
+        values.insert(name, value.clone())?;
     }
     Ok((!values.is_empty()).then_some(values))
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &Oscillator, _: &Solution, _: &Values) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -682,8 +676,7 @@ fn picture(
 ) -> Result<String, Failure> {
     use lindstedt::export::figure::{MotionFigure, motion_figure};
 
-    let motions = verify::motions(oscillator, solution, values)
-        .map_err(|error| Failure::refused(&error, None))?;
+    let motions = verify::motions(oscillator, solution, values)?;
     let Some(motions) = motions else {
         return Err(Failure::Refused(
             "the formula has no real frequency there, so it has no motion".to_owned(),
@@ -702,5 +695,5 @@ fn picture(
         envelopes: motions.envelope.as_ref().map_or(&[], |envelopes| envelopes.as_slice()),
         caption: &caption,
     };
-    motion_figure(&figure).map_err(|error| Failure::refused(&error, None))
+    Ok(motion_figure(&figure)?)
 }

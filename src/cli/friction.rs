@@ -2,7 +2,7 @@
 
 use clap::Args;
 use lindstedt::export::{friction, json};
-use lindstedt::impact::friction::{FrictionSetup, FrictionStudy, study};
+use lindstedt::impact::friction::{FrictionSetup, study};
 use lindstedt::report;
 
 use super::answer::{Answer, no_such};
@@ -48,11 +48,11 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         amplitude: arguments.amplitude.unwrap_or(usual.amplitude),
         speeds: arguments.speed.clone(),
     };
-    let study = study(setup).map_err(|error| Failure::refused(&error, None))?;
+    let study = study(setup)?;
     let answer = Answer {
         document: &report::friction(&study),
         width: usize::MAX,
-        picture: Some(&|| picture(&study)),
+        picture: Some(&|| Ok(friction::picture(&study)?)),
         other: &|format| match format {
             Format::Csv => Ok(friction::csv(&study)),
             Format::Json => json_text(&json::friction(&study)),
@@ -60,14 +60,4 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         },
     };
     answer.outcome(&arguments.common)
-}
-
-#[cfg(not(feature = "plot"))]
-fn picture(_: &FrictionStudy) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
-fn picture(study: &FrictionStudy) -> Result<String, Failure> {
-    friction::picture(study).map_err(|error| Failure::refused(&error, None))
 }

@@ -78,7 +78,7 @@ impl Work for Arguments {
 fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let problem = asked(arguments)?;
     let tolerance = tolerance(&arguments.common);
-    let setup = Setup::try_from(&problem).map_err(|error| Failure::refused(&error, None))?;
+    let setup = Setup::try_from(&problem)?;
     let setup = Setup { tolerance, ..setup };
     if arguments.compare {
         return every_method(setup, &arguments.common);
@@ -86,7 +86,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.certify {
         return proved(setup, &arguments.common);
     }
-    let impact = solve(setup).map_err(|error| Failure::refused(&error, None))?;
+    let impact = solve(setup)?;
     let answer = Answer {
         document: &report::impact(&impact, tolerance),
         width: usize::MAX,
@@ -135,9 +135,8 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
     let [Some(amplitude), Some(barrier), Some(stiffness)] = &exact else {
         return Err(Failure::Refused("a number of the impact is not finite".to_owned()));
     };
-    let enclosure = enclose_impact(amplitude, barrier, stiffness)
-        .map_err(|error| Failure::refused(&error, None))?;
-    let impact = solve(setup).map_err(|error| Failure::refused(&error, None))?;
+    let enclosure = enclose_impact(amplitude, barrier, stiffness)?;
+    let impact = solve(setup)?;
     let report = ImpactCertificateReport {
         impact: &impact,
         enclosure: &enclosure,
@@ -183,7 +182,7 @@ fn every_method(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         ));
     }
     let tolerance = tolerance(common);
-    let table = compare(setup).map_err(|error| Failure::refused(&error, None))?;
+    let table = compare(setup)?;
     let answer = Answer {
         document: &report::impact_comparison(&table, tolerance),
         width: width(common.output.as_deref()),
@@ -226,12 +225,6 @@ fn asked(arguments: &Arguments) -> Result<Problem, Failure> {
     Ok(asked)
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &Impact) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(impact: &Impact) -> Result<String, Failure> {
     use lindstedt::export::decimal;
     use lindstedt::export::figure::{CurveStyle, ImpactFigure, ImpactMotion, impact_figure};
@@ -282,5 +275,5 @@ fn picture(impact: &Impact) -> Result<String, Failure> {
         motions: &motions,
         caption: &caption,
     };
-    impact_figure(&figure).map_err(|error| Failure::refused(&error, None))
+    Ok(impact_figure(&figure)?)
 }

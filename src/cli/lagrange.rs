@@ -60,7 +60,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         None => (paper::mechanism(), Problem::default()),
         Some(path) => {
             let problem = from_file(path)?;
-            problem.check_keys(Reader::Lagrange).map_err(|error| Failure::refused(&error, None))?;
+            problem.check_keys(Reader::Lagrange)?;
             let question =
                 problem.mechanism().map_err(|error| Failure::refused(&error, error.help()))?;
             (question, problem)
@@ -71,7 +71,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let study = study(question).map_err(|error| Failure::refused(&error, error.help()))?;
     // The printed equations stand beside the derived ones where the mechanism is the paper's.
     let findings = match &arguments.file {
-        None => paper::findings().map_err(|error| Failure::refused(&error, None))?,
+        None => paper::findings()?,
         Some(_) => Vec::new(),
     };
     let mut document = report::mechanism(&study);
@@ -85,7 +85,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         other: &|format| match format {
             Format::Json => {
                 let mut document = json::lagrangian(&study);
-                document.findings = json::lagrangian::findings(&findings);
+                document.findings = findings.clone();
                 json_text(&document)
             }
             format => no_such(format),

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use lindstedt::Interrupt;
 use lindstedt::export::{json, materials};
-use lindstedt::impact::{Integrator, MaterialStudy, MaterialsError, Settings, study_materials};
+use lindstedt::impact::{Integrator, MaterialsError, Settings, study_materials};
 use lindstedt::problem::Problem;
 use lindstedt::report;
 
@@ -75,7 +75,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let answer = Answer {
         document: &report::materials(&study),
         width: width(common.output.as_deref()),
-        picture: Some(&|| picture(&study)),
+        picture: Some(&|| Ok(materials::figure::materials(&study)?)),
         other: &|format| match format {
             Format::Csv => Ok(materials::csv(&study)),
             Format::Json => json_text(&json::materials(&study)),
@@ -88,14 +88,4 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         format!("warning: {name} stopped early, what there is is kept: {stop}")
     });
     Ok(Outcome { note, partial: broken.is_some(), ..answer.outcome(common)? })
-}
-
-#[cfg(not(feature = "plot"))]
-fn picture(_: &MaterialStudy) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
-fn picture(study: &MaterialStudy) -> Result<String, Failure> {
-    materials::figure::materials(study).map_err(|error| Failure::refused(&error, None))
 }

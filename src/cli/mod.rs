@@ -348,6 +348,13 @@ enum Failure {
     Usage(String),
 }
 
+/// A refusal that knows no way forward.
+impl<E: std::error::Error> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::refused(&error, None)
+    }
+}
+
 impl Failure {
     /// A refusal with its way forward.
     fn refused(error: &impl Display, help: Option<String>) -> Self {
@@ -654,14 +661,6 @@ fn json_text(document: &impl Serialize) -> Result<String, Failure> {
             Ok(escaped.collect::<String>() + "\n")
         }
         Ok(text) => Ok(text + "\n"),
-        Err(error) => Err(Failure::Refused(error.to_string())),
+        Err(error) => Err(error.into()),
     }
-}
-
-/// Refuses `--plot` where pictures were left out of the build.
-#[cfg(not(feature = "plot"))]
-fn no_pictures<T>() -> Result<T, Failure> {
-    Err(Failure::Refused(
-        "this build draws no pictures: build it with the feature `plot`".to_owned(),
-    ))
 }

@@ -118,7 +118,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let answer = Answer {
         document: &report::optimization(&study),
         width: width(common.output.as_deref()),
-        picture: Some(&|| picture(&study)),
+        picture: Some(&|| Ok(optimization::figure::optimization(&study)?)),
         other: &|format| match format {
             Format::Csv => Ok(optimization::csv(&study)),
             Format::Json => json_text(&json::optimization(&study)),
@@ -244,10 +244,9 @@ impl Record {
             }
             false => {
                 let mut file = Self::create(path)?;
-                let mut text =
-                    record_head(question).map_err(|error| Failure::refused(&error, None))?;
+                let mut text = record_head(question)?;
                 for run in &known {
-                    text += &record_line(run).map_err(|error| Failure::refused(&error, None))?;
+                    text += &record_line(run)?;
                 }
                 file.write_all(text.as_bytes()).map_err(cannot)?;
                 file
@@ -288,14 +287,4 @@ impl Record {
     fn trouble(&self) -> Option<String> {
         self.trouble.lock().ok()?.clone()
     }
-}
-
-#[cfg(not(feature = "plot"))]
-fn picture(_: &Study) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
-fn picture(study: &Study) -> Result<String, Failure> {
-    optimization::figure::optimization(study).map_err(|error| Failure::refused(&error, None))
 }

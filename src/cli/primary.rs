@@ -14,46 +14,28 @@ use lindstedt::verify::Verdict;
 use super::answer::{Answer, Draw, no_such};
 use super::files::width;
 use super::progress::{self, MOTIONS};
-use super::{Common, Failure, Format, Outcome, STOP, json_text};
+use super::simulate::{Arguments, check_format, check_samples, check_varied};
+use super::{Failure, Format, Outcome, STOP, json_text};
 
-/// What is asked of a main mass.
-pub(super) struct Asked<'a> {
-    /// Times at which the states are wanted.
-    pub samples: &'a [f64],
-    /// The parameters that are swept, with their values.
-    pub sweep: &'a [Axis],
-    pub common: &'a Common,
-}
-
-pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
-    if asked.common.format() == Format::Latex {
-        return Err(Failure::Usage(
-            "a simulation has no LaTeX form, for it has no formulas: choose --format text, json or csv".to_owned(),
-        ));
-    }
-    match asked.sweep {
+pub(super) fn run(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failure> {
+    check_format(&asked.common)?;
+    match asked.sweep.as_slice() {
         [] => one(problem, asked),
         axes => many(problem, asked, axes),
     }
 }
 
-fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
-    let (common, file) = (asked.common, problem.primary_case(&[]));
+fn one(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failure> {
+    let (common, file) = (&asked.common, problem.primary_case(&[]));
     let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
     let settings = PrimarySettings { interrupt: Interrupt::by(&STOP), ..file.settings };
-    if let Some(late) = asked.samples.iter().find(|sample| **sample > settings.duration) {
-        return Err(Failure::Refused(format!(
-            "--sample {late} lies beyond the duration {}\n  help: raise `duration` in [run]",
-            settings.duration
-        )));
-    }
-    let motion =
-        simulate_primary(file.case, &settings).map_err(|error| Failure::refused(&error, None))?;
-    let report = PrimaryReport { motion: &motion, units: &file.units, samples: asked.samples };
+    check_samples(&asked.sample, settings.duration, "`duration` in [run]")?;
+    let motion = simulate_primary(file.case, &settings)?;
+    let report = PrimaryReport { motion: &motion, units: &file.units, samples: &asked.sample };
     let answer = Answer {
         document: &report::primary(&report),
         width: width(common.output.as_deref()),
-        picture: Some(&|| picture(&report)),
+        picture: Some(&|| Ok(primary::picture(&report)?)),
         other: &|format| match format {
             Format::Csv => Ok(primary::csv(&report)),
             Format::Json => json_text(&json::primary(&report)),
@@ -74,8 +56,8 @@ fn one(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
     })
 }
 
-fn many(problem: &Problem, asked: &Asked, axes: &[Axis]) -> Result<Outcome, Failure> {
-    let common = asked.common;
+fn many(problem: &Problem, asked: &Arguments, axes: &[Axis]) -> Result<Outcome, Failure> {
+    let common = &asked.common;
     check_sweep(asked)?;
     let parameters: Vec<PrimaryParameter> = axes
         .iter()
@@ -87,7 +69,7 @@ fn many(problem: &Problem, asked: &Asked, axes: &[Axis]) -> Result<Outcome, Fail
     {
         return Err(Failure::Usage(format!("`{}` is swept twice", parameters[index].name())));
     }
-    let total = grid_size(axes).map_err(|error| Failure::refused(&error, None))?;
+    let total = grid_size(axes)?;
     let (mut motions, mut units) = (Vec::with_capacity(total), Vec::with_capacity(total));
     for number in 0..total {
         let varied: Vec<(PrimaryParameter, f64)> =
@@ -103,7 +85,7 @@ fn many(problem: &Problem, asked: &Asked, axes: &[Axis]) -> Result<Outcome, Fail
         .map_err(|(number, error)| Failure::Refused(format!("motion {}: {error}", number + 1)))?;
     bar.finish_and_clear();
     let report = PrimarySweepReport { axes, parameters: &parameters, rows: &rows, units: &units };
-    let draw: Draw = &|| sweep_picture(&report);
+    let draw: Draw = &|| Ok(primary::sweep_picture(&report)?);
     let answer = Answer {
         document: &report::primary_sweep(&report),
         width: width(common.output.as_deref()),
@@ -125,8 +107,8 @@ fn many(problem: &Problem, asked: &Asked, axes: &[Axis]) -> Result<Outcome, Fail
 }
 
 /// Refuses what a sweep leaves no place for.
-fn check_sweep(asked: &Asked) -> Result<(), Failure> {
-    if !asked.samples.is_empty() {
+fn check_sweep(asked: &Arguments) -> Result<(), Failure> {
+    if !asked.sample.is_empty() {
         return Err(Failure::Usage(
             "a sweep reports one line a motion: leave out --sample".to_owned(),
         ));
@@ -138,33 +120,5 @@ fn check_sweep(asked: &Asked) -> Result<(), Failure> {
                 .to_owned(),
         ));
     }
-    let common =
-        |axis: &&Axis| ["duration", "integrator_tolerance", "step_limit"].contains(&axis.name());
-    match asked.sweep.iter().find(common) {
-        Some(axis) => Err(Failure::Refused(format!(
-            "`{}` is the same for all motions of a sweep: give it in [run]",
-            axis.name()
-        ))),
-        None => Ok(()),
-    }
-}
-
-#[cfg(not(feature = "plot"))]
-fn picture(_: &PrimaryReport) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(not(feature = "plot"))]
-fn sweep_picture(_: &PrimarySweepReport) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
-fn picture(report: &PrimaryReport) -> Result<String, Failure> {
-    primary::picture(report).map_err(|error| Failure::refused(&error, None))
-}
-
-#[cfg(feature = "plot")]
-fn sweep_picture(report: &PrimarySweepReport) -> Result<String, Failure> {
-    primary::sweep_picture(report).map_err(|error| Failure::refused(&error, None))
+    check_varied(&asked.sweep)
 }

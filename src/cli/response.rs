@@ -6,7 +6,7 @@ use clap::Args;
 use lindstedt::export::{self, json};
 use lindstedt::expr::parse_expression;
 use lindstedt::problem::{Order, Reader};
-use lindstedt::response::{MOST_HARMONICS, Question, Response, ResponseError, respond};
+use lindstedt::response::{MOST_HARMONICS, Question, ResponseError, respond};
 use lindstedt::solution::{Method, Solution};
 use lindstedt::{Interrupt, Options, Oscillator, Progress, Symbol, report, solve};
 
@@ -111,7 +111,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let answer = Answer {
         document: &report::response(&response),
         width: files::width(arguments.common.output.as_deref()),
-        picture: Some(&|| picture(&response)),
+        picture: Some(&|| Ok(export::response::picture(&response)?)),
         other: &|format| match format {
             Format::Csv => Ok(export::response::csv(&response)),
             Format::Json => json_text(&json::response(&response)),
@@ -227,14 +227,4 @@ fn refused(error: ResponseError) -> Failure {
         }
         _ => Failure::refused(&error, help),
     }
-}
-
-#[cfg(not(feature = "plot"))]
-fn picture(_: &Response) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
-fn picture(response: &Response) -> Result<String, Failure> {
-    export::response::picture(response).map_err(|error| Failure::refused(&error, None))
 }

@@ -3,7 +3,10 @@
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use lindstedt::export::simulation::{Report, SweepReport, csv, latex, sweep_csv, sweep_text, text};
+use lindstedt::Interrupt;
+use lindstedt::export::simulation::{
+    Report, SweepReport, csv, figure, latex, sweep_csv, sweep_text, text,
+};
 use lindstedt::export::{html, json};
 use lindstedt::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
 use lindstedt::impact::{
@@ -12,13 +15,12 @@ use lindstedt::impact::{
 };
 use lindstedt::problem::{Problem, ProblemError, Simulate};
 use lindstedt::verify::Verdict;
-use lindstedt::{Interrupt, system};
 
 use super::answer::{Draw, drawn, no_such, page, pictured};
 use super::primary;
 use super::problem::problem;
 use super::progress::{self, MOTIONS};
-use super::trajectory::{self, Asked};
+use super::trajectory;
 use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, whole};
 
 /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any
@@ -31,31 +33,31 @@ pub struct Arguments {
     /// Where an equation or a mechanism of one's own begins (x=1.5,v=0; "a=1,b'=2"): what is left
     /// out is 0
     #[arg(long, value_name = "x=VALUE", allow_hyphen_values = true)]
-    from: Vec<String>,
+    pub(super) from: Vec<String>,
     /// How long it is followed; 50 without it
     #[arg(long, value_name = "T", value_parser = super::positive, allow_hyphen_values = true)]
-    until: Option<f64>,
+    pub(super) until: Option<f64>,
     /// A value of one of its parameters (1.5, 3/2, pi/3); repeatable
     #[arg(long, value_name = "NAME=VALUE,...")]
-    at: Vec<String>,
+    pub(super) at: Vec<String>,
     /// Look at an equation or a mechanism of one's own once in this time (Poincaré's section):
     /// 2*pi/Omega
     #[arg(long, value_name = "PERIOD", conflicts_with = "section")]
-    every: Option<String>,
+    pub(super) every: Option<String>,
     /// Look at it where an expression of its coordinates, velocities and the time grows through
     /// zero: x', "x - 0.1"
     #[arg(long, value_name = "EXPRESSION", allow_hyphen_values = true)]
-    section: Option<String>,
+    pub(super) section: Option<String>,
     /// Look at it from this time on, when it has settled
     #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
-    after: Option<f64>,
+    pub(super) after: Option<f64>,
     /// Report the state at this time (repeatable)
     #[arg(long, value_name = "T", value_parser = time, allow_hyphen_values = true)]
-    sample: Vec<f64>,
+    pub(super) sample: Vec<f64>,
     /// The method: power series with the contact in a variable in which it is analytic;
     /// Runge-Kutta, one smooth phase at a time; or both, and how far they differ
     #[arg(long, value_enum)]
-    integrator: Option<Method>,
+    pub(super) integrator: Option<Method>,
     /// Do not integrate: swing and contact in closed form, impact after impact to rest, each with
     /// its formula, and its error against the integration; a sweep is not judged
     #[arg(long, conflicts_with = "integrator")]
@@ -64,7 +66,7 @@ pub struct Arguments {
     /// (from:to:count:log), or at the values of a list (NAME=a,b,c); repeated, over every
     /// combination
     #[arg(long, value_name = "NAME=from:to:count", value_parser = axis, allow_hyphen_values = true)]
-    sweep: Vec<Axis>,
+    pub(super) sweep: Vec<Axis>,
     /// In a sweep: beside each rest time those without a barrier and with one that loses nothing
     #[arg(long, requires = "sweep")]
     baseline: bool,
@@ -76,7 +78,7 @@ pub struct Arguments {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Method {
+pub(super) enum Method {
     Taylor,
     RungeKutta,
     Both,
@@ -170,14 +172,7 @@ fn main_mass(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failur
              something is swept"
         )));
     }
-    primary::run(
-        problem,
-        &primary::Asked {
-            samples: &arguments.sample,
-            sweep: &arguments.sweep,
-            common: &arguments.common,
-        },
-    )
+    primary::run(problem, arguments)
 }
 
 /// An equation or a mechanism of one's own.
@@ -193,27 +188,40 @@ fn own(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
              cores where something is swept"
         )));
     }
-    let integrators: &[system::Integrator] = match arguments.integrator {
-        None => &[],
-        Some(Method::Taylor) => &[system::Integrator::Taylor],
-        Some(Method::RungeKutta) => &[system::Integrator::RungeKutta],
-        Some(Method::Both) => &[system::Integrator::Taylor, system::Integrator::RungeKutta],
-    };
-    trajectory::run(
-        problem,
-        &Asked {
-            from: &arguments.from,
-            until: arguments.until,
-            at: &arguments.at,
-            samples: &arguments.sample,
-            every: arguments.every.as_deref(),
-            section: arguments.section.as_deref(),
-            after: arguments.after,
-            sweep: &arguments.sweep,
-            integrators,
-            common: &arguments.common,
-        },
-    )
+    trajectory::run(problem, arguments)
+}
+
+/// Refuses LaTeX, which has no form for numbers alone.
+pub(super) fn check_format(common: &Common) -> Result<(), Failure> {
+    match common.format() {
+        Format::Latex => Err(Failure::Usage(
+            "a simulation has no LaTeX form, for it has no formulas: choose --format text, json or csv".to_owned(),
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses times of states beyond the end, and says where that is given.
+pub(super) fn check_samples(samples: &[f64], duration: f64, given: &str) -> Result<(), Failure> {
+    match samples.iter().find(|sample| **sample > duration) {
+        None => Ok(()),
+        Some(late) => Err(Failure::Refused(format!(
+            "--sample {late} lies beyond the duration {duration}\n  help: raise {given}"
+        ))),
+    }
+}
+
+/// Refuses to vary what all motions of a sweep share.
+pub(super) fn check_varied(axes: &[Axis]) -> Result<(), Failure> {
+    let shared =
+        |axis: &&Axis| ["duration", "integrator_tolerance", "step_limit"].contains(&axis.name());
+    match axes.iter().find(shared) {
+        None => Ok(()),
+        Some(axis) => Err(Failure::Refused(format!(
+            "`{}` is the same for all motions of a sweep: give it in [run]",
+            axis.name()
+        ))),
+    }
 }
 
 fn refused(error: ProblemError) -> Failure {
@@ -225,16 +233,8 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let asked = Simulate::try_from(problem).map_err(refused)?;
     let (model, start) = asked.case.motion().map_err(|error| refused(error.into()))?;
     let settings = settings(arguments, &asked);
-    let duration = settings.duration;
-    if let Some(late) = arguments.sample.iter().find(|sample| **sample > duration) {
-        return Err(Failure::Refused(format!(
-            "--sample {late} lies beyond the duration {duration}\n  help: raise `duration` in [run]"
-        )));
-    }
-    let follow = |integrator| {
-        simulate(&model, start, integrator, &settings)
-            .map_err(|error| Failure::refused(&error, None))
-    };
+    check_samples(&arguments.sample, settings.duration, "`duration` in [run]")?;
+    let follow = |integrator| simulate(&model, start, integrator, &settings);
     let integrator = arguments.integrator.unwrap_or(Method::Taylor);
     let motion = match integrator {
         _ if arguments.chain => follow(Integrator::Chain)?,
@@ -246,7 +246,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         Method::Both => Some(follow(Integrator::RungeKutta)?),
         Method::Taylor | Method::RungeKutta => None,
     };
-    let others = baseline(&motion).map_err(|error| Failure::refused(&error, None))?;
+    let others = baseline(&motion)?;
     let units = asked.units.as_ref();
     let dissipation = asked.case.dissipation(units).map_err(|error| refused(error.into()))?;
     let report = Report {
@@ -260,7 +260,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         units,
         known_until: if arguments.chain { None } else { known_until(&motion) },
     };
-    let draw: Option<Draw> = Some(&|| picture(&report));
+    let draw: Option<Draw> = Some(&|| Ok(figure::simulation(&report)?));
     let text = match arguments.common.format() {
         Format::Csv => csv(&report),
         Format::Json => json_text(&json::simulation(&report))?,
@@ -343,15 +343,8 @@ fn motions(
     problem: &Problem,
 ) -> Result<(Vec<(Model, Start)>, Settings), Failure> {
     let axes = arguments.sweep.as_slice();
-    let total = grid_size(axes).map_err(|error| Failure::refused(&error, None))?;
-    for axis in axes {
-        if ["duration", "integrator_tolerance", "step_limit"].contains(&axis.name()) {
-            return Err(Failure::Refused(format!(
-                "`{}` is the same for all motions of a sweep: give it in [run]",
-                axis.name()
-            )));
-        }
-    }
+    let total = grid_size(axes)?;
+    check_varied(axes)?;
     let names: Vec<&str> = axes.iter().map(Axis::name).collect();
     if let Some(index) = (1..names.len()).find(|index| names[..*index].contains(&names[*index])) {
         return Err(Failure::Usage(format!("`{}` is swept twice", names[index])));
@@ -418,7 +411,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     }
     bar.finish_and_clear();
     let report = SweepReport { axes: &arguments.sweep, rows: &rows };
-    let draw: Option<Draw> = Some(&|| sweep_picture(&report));
+    let draw: Option<Draw> = Some(&|| Ok(figure::sweep(&report)?));
     let picture = pictured(&arguments.common, draw);
     let incomplete = rows.iter().filter(|row| !row.stop.is_complete()).count();
     let note =
@@ -432,7 +425,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         Format::Svg => Some(drawn(draw)?),
         Format::Html => {
             let mut lines = Vec::new();
-            write(&report, &mut lines).map_err(|error| Failure::Refused(error.to_string()))?;
+            write(&report, &mut lines)?;
             let lines = String::from_utf8_lossy(&lines);
             Some(page(draw, None, |page| html::lines(&lines, page)))
         }
@@ -472,26 +465,4 @@ fn check_sweep(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     Ok(())
-}
-
-#[cfg(not(feature = "plot"))]
-fn picture(_: &Report) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(not(feature = "plot"))]
-fn sweep_picture(_: &SweepReport) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
-fn picture(report: &Report) -> Result<String, Failure> {
-    lindstedt::export::simulation::figure::simulation(report)
-        .map_err(|error| Failure::refused(&error, None))
-}
-
-#[cfg(feature = "plot")]
-fn sweep_picture(report: &SweepReport) -> Result<String, Failure> {
-    lindstedt::export::simulation::figure::sweep(report)
-        .map_err(|error| Failure::refused(&error, None))
 }

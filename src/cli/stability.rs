@@ -155,12 +155,6 @@ fn charts(curves: &TransitionCurves, values: &Values) -> Result<(Symbol, Vec<Cha
     Ok((by, charts))
 }
 
-#[cfg(not(feature = "plot"))]
-fn picture(_: &TransitionCurves, _: Symbol, _: &[Chart], _: &Values) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
 fn picture(
     curves: &TransitionCurves,
     by: Symbol,
@@ -170,5 +164,5 @@ fn picture(
     let others = values.iter().filter(|(name, _)| *name != by);
     let others: Vec<String> = others.map(|(name, value)| format!("; {name} = {value}")).collect();
     let caption = format!("{}{}", curves.equation, others.concat());
-    stability::picture(curves, by, charts, &caption).map_err(|error| Failure::refused(&error, None))
+    Ok(stability::picture(curves, by, charts, &caption)?)
 }

@@ -2,7 +2,7 @@
 
 use lindstedt::export::{decimal, json, trajectory};
 use lindstedt::expr::{Expr, parse_expression};
-use lindstedt::impact::sweep::{Axis, grid_size, grid_values};
+use lindstedt::impact::sweep::{grid_size, grid_values};
 use lindstedt::problem::Problem;
 use lindstedt::report::{self, MotionSweep, TRUSTED, TrajectoryReport};
 use lindstedt::system::{End, Integrator, SystemError};
@@ -16,53 +16,23 @@ use super::answer::{Answer, no_such};
 use super::derive::exact_values;
 use super::files::width;
 use super::progress::{self, MOTIONS};
-use super::{Common, Failure, Format, Outcome, STOP, json_text};
+use super::simulate::{Arguments, Method, check_format, check_samples};
+use super::{Failure, Format, Outcome, STOP, json_text};
 
-/// What is asked of a motion of one's own.
-pub(super) struct Asked<'a> {
-    /// `x=1.5,v=0`.
-    pub from: &'a [String],
-    /// How long.
-    pub until: Option<f64>,
-    /// Values of parameters.
-    pub at: &'a [String],
-    /// Times at which the state is wanted.
-    pub samples: &'a [f64],
-    /// The period of a section.
-    pub every: Option<&'a str>,
-    /// What grows through zero on a section.
-    pub section: Option<&'a str>,
-    /// From when on it is looked at.
-    pub after: Option<f64>,
-    /// What is varied.
-    pub sweep: &'a [Axis],
-    /// By Runge-Kutta alone, by power series alone or by both.
-    pub integrators: &'a [Integrator],
-    pub common: &'a Common,
-}
-
-pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> {
-    let common = asked.common;
-    if common.format() == Format::Latex {
-        return Err(Failure::Usage(
-            "a simulation has no LaTeX form, for it has no formulas: choose --format text, json or csv".to_owned(),
-        ));
-    }
+pub(super) fn run(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failure> {
+    let common = &asked.common;
+    check_format(common)?;
     let course = course(problem, asked)?;
     if !asked.sweep.is_empty() {
         return many(&course, asked);
     }
-    if let Some(late) = asked.samples.iter().find(|sample| **sample > course.duration) {
-        return Err(Failure::Refused(format!(
-            "--sample {late} lies beyond the duration {}\n  help: raise --until",
-            course.duration
-        )));
-    }
+    check_samples(&asked.sample, course.duration, "--until")?;
     let by = |integrator: Integrator| course.clone().follow_by(integrator).map_err(refused);
-    let (motion, judge) = match asked.integrators {
-        [] => (course.clone().follow().map_err(refused)?, None),
-        [only] => (by(*only)?, None),
-        [..] => {
+    let (motion, judge) = match asked.integrator {
+        None => (course.clone().follow().map_err(refused)?, None),
+        Some(Method::Taylor) => (by(Integrator::Taylor)?, None),
+        Some(Method::RungeKutta) => (by(Integrator::RungeKutta)?, None),
+        Some(Method::Both) => {
             let [motion, judge] = by_both(&course)?;
             (motion, Some(judge))
         }
@@ -70,13 +40,13 @@ pub(super) fn run(problem: &Problem, asked: &Asked) -> Result<Outcome, Failure> 
     let report = TrajectoryReport {
         motion: &motion,
         judge: judge.as_ref(),
-        samples: asked.samples,
+        samples: &asked.sample,
         known_until: motion.known_until(),
     };
     let answer = Answer {
         document: &report::trajectory(&report),
         width: width(common.output.as_deref()),
-        picture: Some(&|| picture(&report)),
+        picture: Some(&|| Ok(trajectory::picture(&report)?)),
         other: &|format| match format {
             Format::Csv => Ok(trajectory::csv(&report)),
             Format::Json => json_text(&json::motion(&report)),
@@ -160,11 +130,11 @@ fn refused(error: TrajectoryError) -> Failure {
 }
 
 /// The course of the file with the start, the values and the duration of the command line.
-fn course(problem: &Problem, asked: &Asked) -> Result<Course, Failure> {
+fn course(problem: &Problem, asked: &Arguments) -> Result<Course, Failure> {
     let mut course = problem.course().map_err(|error| Failure::refused(&error, error.help()))?;
     course.section = section(&course, asked)?;
     let needed = course.parameters();
-    let values = exact_values(asked.at, problem.values_with(&needed))?.unwrap_or_default();
+    let values = exact_values(&asked.at, problem.values_with(&needed))?.unwrap_or_default();
     if let Some(unknown) = values.numbers().into_keys().find(|name| !needed.contains(name)) {
         return Err(refused(TrajectoryError::Unknown(unknown)));
     }
@@ -217,7 +187,7 @@ fn course(problem: &Problem, asked: &Asked) -> Result<Course, Failure> {
 }
 
 /// The section asked for.
-fn section(course: &Course, asked: &Asked) -> Result<Option<Section>, Failure> {
+fn section(course: &Course, asked: &Arguments) -> Result<Option<Section>, Failure> {
     let read = |option: &str, text: &str| {
         parse_expression(text)
             .map_err(|error| Failure::Usage(format!("--{option} {text}: {error}")))
@@ -227,7 +197,7 @@ fn section(course: &Course, asked: &Asked) -> Result<Option<Section>, Failure> {
         expression.contains(Symbol::new("t"))
             || states.iter().any(|state| expression.contains(*state))
     };
-    match (asked.every, asked.section) {
+    match (asked.every.as_deref(), asked.section.as_deref()) {
         (Some(text), _) => match read("every", text)? {
             period if moves(&period) => Err(Failure::Usage(format!(
                 "--every {text}: a period does not depend on the motion; for where something grows through zero: --section"
@@ -245,9 +215,9 @@ fn section(course: &Course, asked: &Asked) -> Result<Option<Section>, Failure> {
 }
 
 /// Many motions.
-fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
-    let common = asked.common;
-    if !asked.integrators.is_empty() || !asked.samples.is_empty() || common.tolerance.is_some() {
+fn many(course: &Course, asked: &Arguments) -> Result<Outcome, Failure> {
+    let common = &asked.common;
+    if asked.integrator.is_some() || !asked.sample.is_empty() || common.tolerance.is_some() {
         return Err(Failure::Usage(
             "a sweep reports one line a motion and has no verdict: leave out --integrator, --sample and --tolerance"
                 .to_owned(),
@@ -279,8 +249,8 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
             )));
         }
     }
-    let total = grid_size(asked.sweep).map_err(|error| Failure::refused(&error, None))?;
-    let grid: Vec<Vec<f64>> = (0..total).map(|number| grid_values(asked.sweep, number)).collect();
+    let total = grid_size(&asked.sweep)?;
+    let grid: Vec<Vec<f64>> = (0..total).map(|number| grid_values(&asked.sweep, number)).collect();
     let bar = progress::bar(total, MOTIONS);
     let motions = sweep(course, &names, &grid, || bar.inc(1)).map_err(|(number, error)| {
         let Failure::Refused(message) = refused(error) else {
@@ -293,7 +263,7 @@ fn many(course: &Course, asked: &Asked) -> Result<Outcome, Failure> {
     let answer = Answer {
         document: &report::motion_sweep(&report),
         width: width(common.output.as_deref()),
-        picture: Some(&|| sweep_picture(&report)),
+        picture: Some(&|| Ok(trajectory::sweep_picture(&report)?)),
         other: &|format| match format {
             Format::Csv => Ok(trajectory::sweep_csv(&report)),
             Format::Json => json_text(&json::motion_sweep(&report)),
@@ -319,30 +289,10 @@ fn stopped_early(motions: &[SweptMotion], all: usize) -> Option<String> {
     Some(format!("warning: motion {} {kept}: {}", number + 1, in_words(motions[number].reason)))
 }
 
-#[cfg(not(feature = "plot"))]
-fn sweep_picture(_: &MotionSweep) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
-fn sweep_picture(report: &MotionSweep) -> Result<String, Failure> {
-    trajectory::sweep_picture(report).map_err(|error| Failure::refused(&error, None))
-}
-
 /// Complete, the energy accounted for, and where there is a judge, agreed with.
 fn verdict(motion: &Trajectory, judge: Option<&Trajectory>, allowed: f64) -> Verdict {
     let kept = motion.balance.as_ref().is_none_or(|balance| balance.residual <= allowed);
     let agreed =
         judge.is_none_or(|judge| judge.is_complete() && motion.difference(judge) <= allowed);
     Verdict::of(kept && agreed && motion.is_complete())
-}
-
-#[cfg(not(feature = "plot"))]
-fn picture(_: &TrajectoryReport) -> Result<String, Failure> {
-    super::no_pictures()
-}
-
-#[cfg(feature = "plot")]
-fn picture(report: &TrajectoryReport) -> Result<String, Failure> {
-    trajectory::picture(report).map_err(|error| Failure::refused(&error, None))
 }

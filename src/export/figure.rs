@@ -6,7 +6,7 @@
 //! Design* (2008). Curves are thinned to about 2000 points; an axis whose values agree to 1e-9
 //! shows a constant. A point that is not finite is an error, never a silent gap. On a logarithmic
 //! axis negative values are an error, and zeros, where an error curve meets its reference, are left
-//! out.
+//! out. Without the feature `plot` every figure is [`FigureError::LeftOut`].
 //!
 //! ```
 //! use lindstedt::export::figure::{Curve, CurveStyle, Panel, figure};
@@ -19,20 +19,18 @@
 //! # Ok::<(), lindstedt::export::figure::FigureError>(())
 //! ```
 
-mod axes;
-
-use axes::drawn;
-pub(super) use axes::power_of_ten;
+#[cfg(feature = "plot")]
+mod drawing;
 
 use crate::verify::comparison::Backbone;
-use kuva::prelude::{
-    Figure, LabelConfig, Layout, LegendEntry, LegendPlot, Plot, SvgBackend, collect_legend_entries,
-};
-use kuva::render::render::{Primitive, Scene, TextAnchor};
-use kuva::render::render_utils::wrap_text;
+#[cfg(feature = "plot")]
+use drawing::arranged;
+#[cfg(feature = "plot")]
+pub(super) use drawing::{power_of_ten, written};
 
 /// Colour (Okabe and Ito), dash pattern and width of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(not(feature = "plot"), expect(dead_code))]
 pub struct CurveStyle(&'static str, &'static str, f64);
 
 impl CurveStyle {
@@ -109,6 +107,9 @@ pub struct Curve<'a> {
     pub style: CurveStyle,
 }
 
+/// Points of one curve.
+pub(super) type Points = Vec<(f64, f64)>;
+
 /// A thin grey line across a panel, always inside the axes, with words for the legend or none.
 #[derive(Clone, Copy, Debug)]
 pub enum Guide<'a> {
@@ -171,6 +172,9 @@ pub enum FigureError {
         "formula and truth must be sampled at the same times, but differ at sample {0}: sample both alike"
     )]
     DifferentTimes(usize),
+    /// The library was built without the feature `plot`.
+    #[error("this build draws no pictures: build it with the feature `plot`")]
+    LeftOut,
 }
 
 /// One motion of the impact oscillator: a column of the answer, or Runge-Kutta.
@@ -408,16 +412,8 @@ pub fn backbone_figure(
         below.y_scale = Scale::Logarithmic;
         panels.push(below);
     }
-    stacked(&panels, &caption)
+    arranged(&panels, &caption, false)
 }
-
-/// Width of the page in units of 1/96 inch (190 mm), and its margin.
-const PAGE: f64 = 720.0;
-const MARGIN: f64 = 10.0;
-/// Points that are not joined, beyond which only every so many are drawn.
-const MOST_DOTS: usize = 12_000;
-/// Points of one curve beyond which it is thinned.
-const MOST_POINTS: usize = 2000;
 
 /// Sets panels two abreast (a last one alone takes the row), lettered, with one legend above and
 /// the caption below.
@@ -425,7 +421,7 @@ const MOST_POINTS: usize = 2000;
 /// # Errors
 /// [`FigureError`], which names the panel and the curve.
 pub fn figure(panels: &[Panel], caption: &str) -> Result<String, FigureError> {
-    arranged(panels, caption, Arrangement::Abreast)
+    arranged(panels, caption, true)
 }
 
 /// How far a curve is from the truth, in per cent, at the amplitudes that both have: either may
@@ -441,69 +437,9 @@ fn errors_in_percent(formula: &[(f64, f64)], truth: &[(f64, f64)]) -> Vec<(f64, 
     errors.filter(|point| point.1 > LEAST_ERROR).collect()
 }
 
-/// Sets panels one below the other, each across the page.
-fn stacked(panels: &[Panel], caption: &str) -> Result<String, FigureError> {
-    arranged(panels, caption, Arrangement::Stacked)
-}
-
-#[derive(Clone, Copy, PartialEq)]
-enum Arrangement {
-    Abreast,
-    Stacked,
-}
-
-fn arranged(
-    panels: &[Panel],
-    caption: &str,
-    arrangement: Arrangement,
-) -> Result<String, FigureError> {
-    let abreast = arrangement == Arrangement::Abreast;
-    if panels.is_empty() {
-        return Err(FigureError::Empty("the figure".to_owned()));
-    }
-    let (mut plots, mut layouts, mut cells) = (Vec::new(), Vec::new(), Vec::new());
-    let mut entries: Vec<LegendEntry> = Vec::new();
-    for (index, panel) in panels.iter().enumerate() {
-        let alone = !abreast || (index + 1 == panels.len() && index % 2 == 0);
-        let columns = 1 + usize::from(alone);
-        let (lines, layout) = drawn(panel, columns)?;
-        let key = |entry: &LegendEntry| {
-            (entry.label.clone(), entry.color.clone(), entry.dasharray.clone())
-        };
-        for entry in collect_legend_entries(&lines) {
-            if entries.iter().all(|other| key(other) != key(&entry)) {
-                entries.push(entry);
-            }
-        }
-        plots.push(lines);
-        layouts.push(layout);
-        // Cells 0 and 1 are the row of the legend.
-        let first = if abreast { index + 2 } else { 2 * index + 2 };
-        cells.push((first..first + columns).collect());
-    }
-    entries.sort_by_key(|entry| entry.color == CurveStyle::GUIDE.0);
-    let longest = entries.iter().map(|entry| entry.label.chars().count()).max();
-    let rows = if abreast { panels.len().div_ceil(2) } else { panels.len() };
-    let abreast = (97 / (longest.unwrap_or(0) + 7)).clamp(1, 4);
-    let legend_height = 1.0 + 22.0 * entries.len().div_ceil(abreast) as f64;
-    let legend = LegendPlot::from_entries(entries).with_cols(abreast).with_max_cols(abreast);
-    plots.push(vec![Plot::LegendPlot(legend.without_box())]);
-    // A small font at a large scale: longer samples of the lines beside text of the usual size.
-    let layout = Layout::new((0.0, 1.0), (0.0, 1.0)).with_scale(1.5).with_body_size(8);
-    layouts.push(layout.with_force_margins(16.0, 0.0).with_force_margins_y(6.0, 0.0));
-    cells.push(vec![0, 1]);
-
-    let letters: Vec<String> = ('A'..='Z').take(panels.len()).map(String::from).collect();
-    let scene = Figure::new(1 + rows, 2)
-        .with_structure(cells)
-        .with_plots(plots)
-        .with_layouts(layouts)
-        .with_labels_custom(letters.iter().map(String::as_str).collect(), LabelConfig::default())
-        .with_padding(MARGIN)
-        .with_cell_size((PAGE - 2.0 * MARGIN - 15.0) / 2.0, 290.0)
-        .with_row_height(0, legend_height)
-        .render();
-    Ok(written(scene, caption))
+#[cfg(not(feature = "plot"))]
+fn arranged(_: &[Panel], _: &str, _: bool) -> Result<String, FigureError> {
+    Err(FigureError::LeftOut)
 }
 
 fn curves<'a>(motions: &[ImpactMotion<'a>], points: &'a [Vec<(f64, f64)>]) -> Vec<Curve<'a>> {
@@ -511,11 +447,13 @@ fn curves<'a>(motions: &[ImpactMotion<'a>], points: &'a [Vec<(f64, f64)>]) -> Ve
     pairs.map(|(m, points)| curve(m.label, points, m.style)).collect()
 }
 
-fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
+/// A curve with words for the legend, or none.
+pub(super) fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
     Curve { label, points, style }
 }
 
-fn panel<'a>(
+/// A panel with the labels of its axes, both divided evenly.
+pub(super) fn panel<'a>(
     title: &'a str,
     labels: [&'a str; 2],
     curves: Vec<Curve<'a>>,
@@ -530,213 +468,4 @@ fn time_points(samples: &[(f64, f64, f64)]) -> Vec<(f64, f64)> {
 
 fn phase_points(samples: &[(f64, f64, f64)]) -> Vec<(f64, f64)> {
     samples.iter().map(|&(_, x, velocity)| (x, velocity)).collect()
-}
-
-/// Words as they stand: the library reads `$...$` as mathematics, and XML has no control
-/// characters.
-fn printable(text: &str) -> String {
-    text.replace('$', "\\$")
-        .replace(|c: char| c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}'), " ")
-}
-
-/// The scene and its caption as SVG, without the library's version, and with the clip regions,
-/// which the library counts through the life of the process, numbered from 0.
-pub(super) fn written(mut scene: Scene, caption: &str) -> String {
-    // SVG runs ordinary spaces together.
-    let mut lines = wrap_text(&printable(caption.trim()).replace("  ", " \u{a0}"), 106);
-    lines.retain(|line| !line.is_empty());
-    for content in lines {
-        scene.height += 17.0;
-        let (x, y) = (2.0 * MARGIN, scene.height - MARGIN);
-        let (size, anchor) = (12, TextAnchor::Start);
-        scene.add(Primitive::Text {
-            x,
-            y,
-            content,
-            size,
-            anchor,
-            rotate: None,
-            bold: false,
-            color: None,
-        });
-    }
-    let clips = scene.elements.iter_mut().filter_map(|element| match element {
-        Primitive::ClipStart { id, .. } => Some(id),
-        _ => None,
-    });
-    for (number, id) in clips.enumerate() {
-        let (old, new) = (format!("\"{id}\""), format!("clip-{number}"));
-        for region in &mut scene.defs {
-            *region = region.replace(&old, &format!("\"{new}\""));
-        }
-        *id = new;
-    }
-    let svg = SvgBackend::new().with_pretty(true).render_scene(&scene);
-    // A mitred corner of a thick line sticks out: a graze would seem to go far into the barrier.
-    svg.replacen("<svg ", "<svg stroke-linejoin=\"round\" ", 1).replacen(
-        &format!("  <!-- Generated by kuva {} -->\n", kuva::VERSION),
-        "",
-        1,
-    )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::axes::thinned;
-    use super::*;
-
-    const WAVE: [(f64, f64); 4] = [(0.0, 0.0), (1.0, 2.0), (2.0, -1.0), (3.0, 0.5)];
-
-    fn one(
-        y_scale: Scale,
-        label: &str,
-        points: &[(f64, f64)],
-        guides: Vec<Guide>,
-    ) -> Result<String, FigureError> {
-        let curves = vec![curve(label, points, CurveStyle::FORMULA)];
-        let panel = panel("T", ["x (s)", "y (rad)"], curves, guides);
-        figure(&[Panel { y_scale, ..panel }], "<svg>")
-    }
-
-    /// What is drawn in the style of [`one`].
-    fn path(svg: &str) -> Vec<&str> {
-        let drawn = |line: &&str| line.contains("<path") && line.contains(CurveStyle::FORMULA.0);
-        svg.lines().filter(drawn).collect()
-    }
-
-    fn impact() -> String {
-        let samples: Vec<_> =
-            (0..50).map(|i| f64::from(i) / 8.0).map(|t| (t, t.cos(), -t.sin())).collect();
-        let motions = [("Runge-Kutta", CurveStyle::RUNGE_KUTTA), ("paper", CurveStyle::FORMULA)];
-        let motion =
-            |(label, style)| ImpactMotion { label, style, samples: &samples, contact: &WAVE };
-        let (motions, right_barrier) = (&motions.map(motion), Some(0.3));
-        impact_figure(&ImpactFigure {
-            left_barrier: None,
-            right_barrier,
-            axes: ["displacement x (rad)", "time t (units of 1/ω)"],
-            motions,
-            caption: "End.",
-        })
-        .unwrap()
-    }
-
-    #[test]
-    fn three_lettered_panels_share_one_legend_and_the_truth_lies_below() {
-        let svg = impact();
-        for words in
-            ["A", "B", "C", "Contact, enlarged", "Runge-Kutta", "paper", "barrier x_c", "End."]
-        {
-            assert_eq!(svg.matches(&format!(">{words}</text>")).count(), 1, "{words}");
-        }
-        assert_eq!((svg.matches("<clipPath").count(), svg.matches("<path").count()), (3, 9));
-        assert!(
-            svg.find(CurveStyle::RUNGE_KUTTA.0).unwrap() < svg.find(CurveStyle::FORMULA.0).unwrap()
-        );
-    }
-
-    #[test]
-    fn the_same_numbers_give_the_same_bytes_and_no_version() {
-        let first = impact();
-        assert_eq!(first, impact());
-        assert!(first.contains("url(#clip-2)") && !first.contains("kuva"));
-    }
-
-    #[test]
-    fn an_error_is_that_at_its_amplitude_wherever_the_curves_begin() {
-        let truth = [(1.0, 1.0), (2.0, 2.0), (3.0, 4.0), (4.0, 8.0)];
-        let late = [(3.0, 2.0), (4.0, 8.0), (5.0, 9.0)];
-        assert_eq!(errors_in_percent(&late, &truth), [(3.0, 50.0)]);
-        assert_eq!(errors_in_percent(&truth, &late), [(3.0, 100.0)]);
-    }
-
-    #[test]
-    fn words_stand_as_they_are() {
-        let svg = one(Scale::Linear, "a < b & $x^2$ \u{1}", &WAVE, vec![]).unwrap();
-        assert!(
-            svg.contains(">a &lt; b &amp; $x^2$ ")
-                && svg.contains(">&lt;svg&gt;<")
-                && !svg.contains('\u{1}')
-        );
-    }
-
-    #[test]
-    fn a_power_of_ten_moves_from_the_numbers_to_the_label() {
-        let draw = |factor: f64| {
-            one(Scale::Linear, "", &WAVE.map(|(x, y)| (x, y * factor)), vec![]).unwrap()
-        };
-        assert_eq!((path(&draw(1.0)).len(), path(&draw(1e-7))), (1, path(&draw(1.0))));
-        assert!(draw(1e-7).contains(">y (10⁻⁷ rad)<") && draw(1.0).contains(">y (rad)<"));
-        assert!(!draw(1e-310).contains("NaN") && !draw(8e307).contains("inf"));
-    }
-
-    #[test]
-    fn a_logarithmic_ordinate_reaches_small_errors_and_skips_zeros() {
-        let errors = [(1.0, 0.0), (1.0, 1e-18), (2.0, 1e-14), (3.0, 1e-10)];
-        let draw = |points| one(Scale::Logarithmic, "e", points, vec![]);
-        let svg = draw(&errors).unwrap();
-        assert!(svg.contains(">10⁻¹⁸<") && svg.contains(">10⁻¹²<"));
-        assert_eq!(path(&svg), path(&draw(&errors[1..]).unwrap()));
-        assert!(matches!(draw(&errors[..2]), Err(FigureError::TooFewPoints(_))));
-        let refused = draw(&[(0.0, 1.0), (1.0, -0.5)]).unwrap_err().to_string();
-        assert!(refused.starts_with("point (1.0, -0.5) of \"e\" in panel \"T\""), "{refused}");
-    }
-
-    #[test]
-    fn a_logarithmic_abscissa_has_decades() {
-        let points = [(1e4, 1.0), (1e6, 2.0), (1e9, 3.0)];
-        let curves = vec![curve("", &points, CurveStyle::FORMULA)];
-        let panel = panel("T", ["stiffness", "y"], curves, vec![Guide::X(1e5, "")]);
-        let draw = |x_scale| figure(&[Panel { x_scale, ..panel.clone() }], "").unwrap();
-        let svg = draw(Scale::Logarithmic);
-        assert!(["10⁴", "10⁹"].iter().all(|tick| svg.contains(&format!(">{tick}<"))), "{svg}");
-        assert_ne!(path(&svg), path(&draw(Scale::Linear)));
-    }
-
-    #[test]
-    fn what_cannot_be_drawn_is_refused() {
-        assert!(matches!(figure(&[], ""), Err(FigureError::Empty(_))));
-        assert!(matches!(figure(&[Panel::default()], ""), Err(FigureError::Empty(_))));
-        assert!(matches!(
-            one(Scale::Linear, "", &WAVE[..1], vec![]),
-            Err(FigureError::TooFewPoints(_))
-        ));
-        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            for points in [[WAVE[0], (bad, 0.0)], [(0.0, bad), WAVE[1]]] {
-                assert!(matches!(
-                    one(Scale::Linear, "", &points, vec![]),
-                    Err(FigureError::OffAxes(_))
-                ));
-            }
-            let guides = vec![Guide::X(bad, "g")];
-            assert!(matches!(one(Scale::Linear, "", &WAVE, guides), Err(FigureError::OffAxes(_))));
-        }
-        let [formula, truth] = [1.0, 1.1].map(|end| vec![(0.0, 1.0, 0.0), (end, 0.5, 0.2)]);
-        let draw = |formula, truth| {
-            let [coordinate, displacement_unit, time_unit, formula_label, caption] =
-                ["x", "rad", "s", "f", ""];
-            motion_figure(&MotionFigure {
-                coordinate,
-                displacement_unit,
-                time_unit,
-                formula_label,
-                formula,
-                truth,
-                envelopes: &[],
-                caption,
-            })
-        };
-        assert_eq!(draw(&formula, &truth), Err(FigureError::DifferentTimes(1)));
-        assert!(draw(&truth, &truth).unwrap().contains(">formula − Runge-Kutta (rad)<"));
-    }
-
-    #[test]
-    fn thinning_keeps_every_peak() {
-        let mut points: Vec<_> =
-            (0..100_000).map(f64::from).map(|x| (x, (x / 5e3).sin())).collect();
-        points[77_777].1 = 9.0;
-        let kept = thinned(&points);
-        assert!(kept.len() <= MOST_POINTS + 1 && kept.contains(&points[77_777]));
-        assert_eq!((kept.first(), kept.last()), (points.first(), points.last()));
-    }
 }

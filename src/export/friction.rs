@@ -6,13 +6,10 @@
 
 use std::fmt::Write as _;
 
-#[cfg(feature = "plot")]
-use super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, figure};
+use super::figure::{CurveStyle, FigureError, Guide, Points, curve, figure, panel};
 use crate::audit::paper::Table;
-#[cfg(feature = "plot")]
 use crate::decimal::decimal;
 use crate::impact::friction::FrictionStudy;
-#[cfg(feature = "plot")]
 use crate::impact::{Simulation, friction::arctangent};
 
 /// The two laws at every speed, beside what the paper prints there; a first line of comment has the
@@ -57,7 +54,6 @@ pub fn csv(study: &FrictionStudy) -> String {
 /// assert!(lindstedt::export::friction::picture(&study)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[cfg(feature = "plot")]
 pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
     const TIME: &str = "time t (units of 1/ω)";
     const PLACE: &str = "displacement x (rad)";
@@ -66,7 +62,7 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
     let near_rest = &study.near_rest;
     let (stop, creep) = (near_rest.stop, &near_rest.creep);
     let sign = [(-NEAR_ZERO, -1.0), (0.0, -1.0), (0.0, 1.0), (NEAR_ZERO, 1.0)];
-    let smooth: Vec<(f64, f64)> = (-200..=200)
+    let smooth: Points = (-200..=200)
         .map(|index| NEAR_ZERO * f64::from(index) / 200.0)
         .map(|speed| (speed, arctangent(speed, std::f64::consts::PI)))
         .collect();
@@ -74,9 +70,8 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
     let [coulomb, by_arctangent] = near_rest.motions.each_ref().map(|motion| points(motion, from));
     let crept = points(&creep.motion, 0.0);
     let held = [(0.0, stop.x), (creep.motion.end_time, stop.x)];
-    let formula: Vec<(f64, f64)> =
+    let formula: Points =
         crept.iter().filter_map(|(t, _)| Some((*t, creep.formula(*t)?))).collect();
-    let curve = |label, points, style| Curve { label, points, style };
     let mut after = vec![
         curve("sgn", &held, CurveStyle::RUNGE_KUTTA),
         curve("arctangent", &crept, CurveStyle::DIFFERENCE),
@@ -84,14 +79,6 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
     if formula.len() > 1 {
         after.push(curve("creep by formula", &formula, CurveStyle::FORMULA));
     }
-    let panel = |title, [x_label, y_label]: [&'static str; 2], curves, guides| Panel {
-        title,
-        x_label,
-        y_label,
-        curves,
-        guides,
-        ..Panel::default()
-    };
     let pair = |first, second| {
         vec![
             curve("sgn", first, CurveStyle::RUNGE_KUTTA),
@@ -120,8 +107,7 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
 }
 
 /// The motion from a time on, at equal distances of time.
-#[cfg(feature = "plot")]
-fn points(motion: &Simulation, from: f64) -> Vec<(f64, f64)> {
+fn points(motion: &Simulation, from: f64) -> Points {
     const POINTS: usize = 800;
     let times =
         (0..=POINTS).map(|index| from + (motion.end_time - from) * (index as f64 / POINTS as f64));

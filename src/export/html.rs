@@ -186,12 +186,8 @@ impl Body<'_> {
             Block::Note(words)
             | Block::Remark(words)
             | Block::Sentence(words)
-            | Block::Detail(words)
             | Block::Closing(words) => paragraph(words),
-            Block::Unknowns(names) => {
-                let names: Vec<&str> = names.iter().map(|name| name.written()).collect();
-                paragraph(&format!("for {}:", names.join(", ")))
-            }
+            Block::Detail(words) => paragraph(words.trim_start()),
             Block::Entries { heading: of, entries } => heading(of) + &definitions("long", entries),
             Block::Facts(facts) => definitions("", facts),
             Block::Judged { verification, series_of_omega, hbar, tolerance } => {
@@ -239,14 +235,10 @@ impl Body<'_> {
                 heading(&format!("Verdict: every number and phase within {within} %"))
                     + &definitions("", &facts.collect::<Vec<_>>())
             }
-            Block::Shortcoming { reading, errors, cause } => {
-                paragraph(text::impact::shortcoming(*reading, errors, cause).trim())
-            }
             // Formulas and tables have been set.
             Block::Question(_)
             | Block::QuestionAsTyped(_)
             | Block::Law { .. }
-            | Block::Relation(_)
             | Block::Equality { .. }
             | Block::Line(_)
             | Block::CycleAmplitude { .. }

@@ -17,14 +17,10 @@ pub(super) use table::Table;
 pub use super::steps::latex as steps;
 use num_traits::Zero;
 
-use crate::audit::Audit;
 use crate::decimal::{decimal, rounded_fraction};
 use crate::exact::{Polynomial, Polynomials};
 use crate::expr::{Equation, Expr, parse_expression};
-use crate::impact::friction::FrictionStudy;
-use crate::impact::{Impact, ImpactComparison, MaterialStudy, Reading};
-use crate::mechanics::MechanismStudy;
-use crate::optimize::Study;
+use crate::impact::Reading;
 use crate::report::{self, Block, Document};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
@@ -104,90 +100,6 @@ pub fn solution(solution: &Solution, verification: Option<&Verification>) -> Str
     let _letters = solution.letters().in_force();
     // What a verdict is reached on is said with the tolerance that is usual.
     document(&report::solution(solution, verification, DEFAULT_TOLERANCE))
-}
-
-/// The story of an impact: equation, law, three phases by either speed of contact, and the numbers
-/// beside Runge-Kutta.
-///
-/// ```
-/// use lindstedt::impact::{Setup, solve};
-///
-/// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
-/// assert!(lindstedt::export::latex::impact(&impact, 0.01).contains(r"\begin{align*}"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn impact(impact: &Impact, tolerance: f64) -> String {
-    document(&report::impact(impact, tolerance))
-}
-
-/// Every method on one impact in one table.
-///
-/// ```
-/// use lindstedt::impact::{Setup, compare};
-///
-/// let table = compare(Setup { stiffness: 1e6, ..Setup::default() })?;
-/// assert!(lindstedt::export::latex::impact_comparison(&table, 0.01).contains(r"\begin{tabular}"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> String {
-    document(&report::impact_comparison(table, tolerance))
-}
-
-/// Equation (6) beside Coulomb's law: the tables, with the numbers beside them in comments.
-///
-/// ```
-/// use lindstedt::impact::friction::{FrictionSetup, study};
-///
-/// let study = study(FrictionSetup::default())?;
-/// assert!(lindstedt::export::latex::friction(&study).contains(r"\begin{tabular}"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn friction(study: &FrictionStudy) -> String {
-    document(&report::friction(study))
-}
-
-/// A search for the best damper: the numbers, and what they say.
-pub fn optimization(study: &Study) -> String {
-    document(&report::optimization(study))
-}
-
-/// The same swing against barriers of several materials: the numbers, and what they say.
-///
-/// ```
-/// use lindstedt::impact::{MaterialQuestion, study_materials};
-///
-/// let study = study_materials(MaterialQuestion::default())?;
-/// assert!(lindstedt::export::latex::materials(&study).contains(r"\begin{tabular}"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn materials(study: &MaterialStudy) -> String {
-    document(&report::materials(study))
-}
-
-/// Claims with their verdicts: a table of each verdict, with the evidence in comments.
-///
-/// ```
-/// use lindstedt::audit::{Claims, audit};
-///
-/// let claims: Claims = "[[claim]]\nid = \"one\"\nquantity = \"value\"\nformula = \"1 + 1\"\nprinted = \"2\"".parse()?;
-/// assert!(lindstedt::export::latex::audit(&audit(claims)).contains(r"\begin{tabular}"));
-/// # Ok::<(), lindstedt::problem::ProblemError>(())
-/// ```
-pub fn audit(audit: &Audit) -> String {
-    document(&report::audit(audit))
-}
-
-/// A mechanism, its equations of motion and its groups.
-///
-/// ```
-/// use lindstedt::{audit::paper, mechanics::study};
-///
-/// let study = study(paper::mechanism())?;
-/// assert!(lindstedt::export::latex::mechanism(&study).contains(r"\gamma"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn mechanism(study: &MechanismStudy) -> String {
-    document(&report::mechanism(study))
 }
 
 /// Every method in one table; those that do not apply stand in comments below it.
@@ -287,8 +199,8 @@ pub(super) fn setting(block: &Block) -> Setting {
         Block::QuestionAsTyped(question) => {
             Setting::Equations(vec![typed(question).replacen(" = ", " &= ", 1)])
         }
+        Block::Law { left, right } if left.is_zero() => Setting::Equations(vec![zero_is(right)]),
         Block::Law { left, right } => equation_of(expression(left), sum(right)),
-        Block::Relation(relation) => Setting::Equations(vec![zero_is(relation)]),
         Block::Equality { left, right } => equation_of(expression(left), expression(right)),
         Block::Line(line) => Setting::Equations(super::steps::line_as_latex(line.as_ref())),
         Block::CycleAmplitude { symbol: name, amplitude } => {
@@ -323,7 +235,6 @@ pub(super) fn setting(block: &Block) -> Setting {
         | Block::Remark(_)
         | Block::Sentence(_)
         | Block::Detail(_)
-        | Block::Unknowns(_)
         | Block::Entries { .. }
         | Block::Facts(_)
         | Block::Judged { .. }
@@ -331,8 +242,7 @@ pub(super) fn setting(block: &Block) -> Setting {
         | Block::Refused(_)
         | Block::TrueMotion(_)
         | Block::Closing(_)
-        | Block::Verdicts { .. }
-        | Block::Shortcoming { .. } => Setting::Words,
+        | Block::Verdicts { .. } => Setting::Words,
     }
 }
 
@@ -346,7 +256,9 @@ impl Page {
             (Setting::Equations(rows), Block::Question(_) | Block::QuestionAsTyped(_)) => {
                 self.questions.extend(rows)
             }
-            (Setting::Equations(rows), Block::Law { .. }) => self.laws.extend(rows),
+            (Setting::Equations(rows), Block::Law { left, .. }) if !left.is_zero() => {
+                self.laws.extend(rows)
+            }
             (Setting::Equations(rows), _) => self.rows.extend(rows),
             (Setting::Words, _) => {}
         }

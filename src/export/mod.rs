@@ -8,7 +8,7 @@
 
 pub mod catalog;
 pub mod code;
-#[cfg(feature = "plot")]
+mod csv;
 pub mod figure;
 pub mod friction;
 #[cfg(feature = "html")]

@@ -1,18 +1,12 @@
 //! The main mass with its damper as comma-separated values and as a picture; text by
 //! [`text::document`](super::text::document).
 
-use std::fmt::Write as _;
-
-#[cfg(feature = "plot")]
-use super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure};
-#[cfg(feature = "plot")]
+use super::csv::{cell, end, head, line};
+use super::figure::{CurveStyle, FigureError, Guide, Panel, Points, Scale, curve, figure, panel};
 use crate::decimal::decimal;
-#[cfg(feature = "plot")]
 use crate::impact::Units;
-#[cfg(feature = "plot")]
 use crate::impact::primary::{Alone, PrimaryParameter};
 use crate::impact::primary::{Others, PrimaryRow, PrimaryStop};
-#[cfg(feature = "plot")]
 use crate::impact::sweep::Spacing;
 use crate::report::{PrimaryReport, PrimarySweepReport};
 
@@ -20,7 +14,6 @@ use crate::report::{PrimaryReport, PrimarySweepReport};
 const POINTS: u32 = 2000;
 
 /// How many swings of the locked main mass are drawn large.
-#[cfg(feature = "plot")]
 const FIRST_SWINGS: f64 = 6.0;
 
 /// The times of a table: those asked for, or equal steps and every touch and release.
@@ -57,25 +50,12 @@ pub fn csv(report: &PrimaryReport) -> String {
         "# units: t 1/omega, x rad, velocity omega, y L, speed L*omega, energy m*g*L\nt,x,velocity,y,speed,energy\n",
     );
     for t in times(report) {
-        if let Some(state) = motion.at(t) {
+        text.extend(motion.at(t).map(|state| {
             let energy = motion.case.energy(state);
-            let _ = writeln!(
-                text,
-                "{t},{},{},{},{},{energy}",
-                state.x, state.velocity, state.y, state.speed
-            );
-        }
+            line([t, state.x, state.velocity, state.y, state.speed, energy])
+        }));
     }
-    match report.doubt() {
-        _ if !motion.is_complete() => {
-            let _ = writeln!(text, "# incomplete: {}", motion.stop);
-        }
-        Some(doubt) => {
-            let _ = writeln!(text, "# incomplete: {doubt}");
-        }
-        None => {}
-    }
-    text
+    text + &end(motion.is_complete(), motion.stop, report.doubt())
 }
 
 /// A row for every motion of a sweep: the values that are swept, in their own units, then what came
@@ -107,23 +87,18 @@ pub fn sweep_csv(report: &PrimarySweepReport) -> String {
         unit => (parameter.name(), unit),
     });
     let columns: Vec<(&str, &str)> = swept.chain(RESULTS).collect();
-    let units: Vec<String> = columns.iter().map(|(name, unit)| format!("{name} {unit}")).collect();
-    let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
-    let mut text = format!("# units: {}\n{}\n", units.join(", "), names.join(","));
-    let or_none = |value: Option<f64>| value.map_or_else(String::new, |value| value.to_string());
+    let mut text = head(&columns);
     for (number, (row, units)) in report.rows.iter().zip(report.units).enumerate() {
-        let count = |count: usize| {
-            if row.is_begun() { count.to_string() } else { String::new() }
-        };
+        let count = |count: usize| cell(row.is_begun().then_some(count));
         let Others { locked, without } = row.others;
         let mut cells: Vec<String> = report.values(number).iter().map(f64::to_string).collect();
         let amplitude = row.is_begun().then_some(row.amplitude);
-        cells.extend([amplitude, locked.amplitude, without.amplitude].map(or_none));
+        cells.extend([amplitude, locked.amplitude, without.amplitude].map(cell));
         cells.push(count(row.impacts));
-        cells.extend([rest_time(row), locked.rest_time, without.rest_time].map(or_none));
+        cells.extend([rest_time(row), locked.rest_time, without.rest_time].map(cell));
         cells.extend([count(row.all_impacts), units.time().to_string(), units.length.to_string()]);
         cells.push((row.stop == PrimaryStop::Duration).to_string());
-        let _ = writeln!(text, "{}", cells.join(","));
+        text += &line(cells);
     }
     text
 }
@@ -150,16 +125,14 @@ pub(super) fn rest_time(row: &PrimaryRow) -> Option<f64> {
 /// assert!(lindstedt::export::primary::picture(&report)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[cfg(feature = "plot")]
 pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
     let motion = report.motion;
     let (second, metre) = (report.units.time(), report.units.length);
     let all = PrimaryReport { samples: &[], ..*report };
     let states: Vec<_> = times(&all).into_iter().filter_map(|t| Some((t, motion.at(t)?))).collect();
-    let with: Vec<(f64, f64)> =
-        states.iter().map(|(t, state)| (t * second, state.y * metre)).collect();
-    let angle: Vec<(f64, f64)> = states.iter().map(|(t, state)| (t * second, state.x)).collect();
-    let energy: Vec<(f64, f64)> =
+    let with: Points = states.iter().map(|(t, state)| (t * second, state.y * metre)).collect();
+    let angle: Points = states.iter().map(|(t, state)| (t * second, state.x)).collect();
+    let energy: Points =
         states.iter().map(|(t, state)| (t * second, motion.case.energy(*state))).collect();
     let [locked, without] = [motion.case.primary.mass + 1.0, motion.case.primary.mass];
     // The first swings whole, and how all of them decay.
@@ -172,53 +145,42 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
                 * (locked / motion.case.primary.stiffness).sqrt()
         })
         .collect();
-    let early: Vec<(f64, f64)> = with.iter().take(first.len()).copied().collect();
+    let early: Points = with.iter().take(first.len()).copied().collect();
     let [locked_swings, swings_without] =
         [locked, without].map(|mass| swings_alone(report, mass, &first));
     let some_times: Vec<f64> = states.iter().step_by(10).map(|(t, _)| *t).collect();
     let [locked_decay, decay_without] =
         [locked, without].map(|mass| decay_alone(report, mass, &some_times));
-    let curve = |label, points, style| Curve { label, points, style };
     let own = |points| curve("with its damper", points, CurveStyle::DIFFERENCE);
-    let (mut all, mut some) = (vec![own(with.as_slice())], vec![own(early.as_slice())]);
+    let (mut all, mut some) = (vec![own(&with)], vec![own(&early)]);
     // Driven, the closed forms are those of the long run alone.
     if motion.case.primary.force == 0.0 {
-        some.insert(0, curve("without", swings_without.as_slice(), CurveStyle::RUNGE_KUTTA));
-        some.insert(
-            1,
-            curve("damper locked", locked_swings.as_slice(), CurveStyle::SECOND_FORMULA),
-        );
+        some.insert(0, curve("without", &swings_without, CurveStyle::RUNGE_KUTTA));
+        some.insert(1, curve("damper locked", &locked_swings, CurveStyle::SECOND_FORMULA));
         if let (Some(locked), Some(without)) = (&locked_decay, &decay_without) {
-            all.push(curve("without", without.as_slice(), CurveStyle::RUNGE_KUTTA));
-            all.push(curve("damper locked", locked.as_slice(), CurveStyle::SECOND_FORMULA));
+            all.push(curve("without", without, CurveStyle::RUNGE_KUTTA));
+            all.push(curve("damper locked", locked, CurveStyle::SECOND_FORMULA));
         }
     }
     let barriers = [motion.case.model.left, motion.case.model.right].into_iter().flatten();
     let barriers = barriers.map(|place| Guide::Y(place, "barrier")).collect();
     const TIME: &str = "time t (s)";
     const PLACE: &str = "displacement y (m)";
-    let panel = |title, y_label, curves| Panel {
-        title,
-        x_label: TIME,
-        y_label,
-        curves,
-        ..Panel::default()
-    };
+    let panel = |title, y_label, curves, guides| panel(title, [TIME, y_label], curves, guides);
     let panels = [
-        panel("Main mass, first swings", PLACE, some),
-        panel("Main mass", PLACE, all),
-        Panel {
-            guides: barriers,
-            ..panel(
-                "Pendulum",
-                "angle x (rad)",
-                vec![curve("pendulum", angle.as_slice(), CurveStyle::THIRD_FORMULA)],
-            )
-        },
+        panel("Main mass, first swings", PLACE, some, vec![]),
+        panel("Main mass", PLACE, all, vec![]),
+        panel(
+            "Pendulum",
+            "angle x (rad)",
+            vec![curve("pendulum", &angle, CurveStyle::THIRD_FORMULA)],
+            barriers,
+        ),
         panel(
             "Energy of both",
             "energy (m g L)",
-            vec![curve("energy", energy.as_slice(), CurveStyle::THIRD_FORMULA)],
+            vec![curve("energy", &energy, CurveStyle::THIRD_FORMULA)],
+            vec![],
         ),
     ];
     let caption = format!(
@@ -232,8 +194,7 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
 }
 
 /// The swings of the main mass without a pendulum, `mass` in all, at these times, in SI units.
-#[cfg(feature = "plot")]
-fn swings_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Vec<(f64, f64)> {
+fn swings_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Points {
     let (case, units) = (&report.motion.case, report.units);
     let [.., y, speed] = case.start;
     let height = |t: f64| case.primary.alone_at(mass, [y, speed], t) * units.length;
@@ -241,8 +202,7 @@ fn swings_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Vec<(f64, f
 }
 
 /// The amplitude of these swings; nothing where the mass creeps back.
-#[cfg(feature = "plot")]
-fn decay_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Option<Vec<(f64, f64)>> {
+fn decay_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Option<Points> {
     let (case, units) = (&report.motion.case, report.units);
     let [.., y, speed] = case.start;
     let points = times.iter().map(|t| {
@@ -273,15 +233,14 @@ fn decay_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Option<Vec<(
 /// assert!(lindstedt::export::primary::sweep_picture(&report)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[cfg(feature = "plot")]
 pub fn sweep_picture(report: &PrimarySweepReport) -> Result<String, FigureError> {
     let ([axis], [parameter]) = (report.axes, report.parameters) else {
         return Err(FigureError::Empty("the sweep".to_owned()));
     };
     let driven = report.is_driven();
-    let points = |value: &dyn Fn(&PrimaryRow, &Units) -> Option<f64>| -> Vec<(f64, f64)> {
+    let points = |value: &dyn Fn(&PrimaryRow, &Units) -> Option<f64>| -> Points {
         let rows = axis.values().iter().zip(report.rows.iter().zip(report.units));
-        let mut points: Vec<(f64, f64)> =
+        let mut points: Points =
             rows.filter_map(|(place, (row, units))| Some((*place, value(row, units)?))).collect();
         // A list may go to and fro, a curve does not.
         points.sort_by(|one, other| one.0.total_cmp(&other.0));
@@ -310,19 +269,17 @@ pub fn sweep_picture(report: &PrimarySweepReport) -> Result<String, FigureError>
         (_, unit) => format!("{} ({unit})", parameter.name()),
     };
     let is_logarithmic = axis.spacing() == Spacing::Logarithmic && axis.ends()[0] > 0.0;
+    let (title, y_label) = match driven {
+        true => ("Main mass in the long run", "amplitude (m)"),
+        false => ("Rest of the main mass", "rest time (s)"),
+    };
+    let curves = curves.map(|(label, points, style)| curve(label, points, style)).collect();
     let panel = Panel {
-        title: match driven {
-            true => "Main mass in the long run",
-            false => "Rest of the main mass",
-        },
-        x_label: &x_label,
-        y_label: if driven { "amplitude (m)" } else { "rest time (s)" },
         x_scale: match is_logarithmic {
             true => Scale::Logarithmic,
             false => Scale::Linear,
         },
-        curves: curves.map(|(label, points, style)| Curve { label, points, style }).collect(),
-        ..Panel::default()
+        ..panel(title, [&x_label, y_label], curves, vec![])
     };
     let caption = match driven {
         true => {

@@ -3,10 +3,9 @@
 
 use std::fmt::Write as _;
 
-#[cfg(feature = "plot")]
-use super::figure::{Curve, CurveStyle, FigureError, Panel, figure};
+use super::csv::cell;
+use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel};
 use crate::response::Response;
-#[cfg(feature = "plot")]
 use crate::response::{Point, bifurcation::BifurcationKind};
 
 /// Every point of every branch, the bifurcations, the backbone and the simulations, a row each; a
@@ -35,14 +34,9 @@ pub fn csv(response: &Response) -> String {
          kind,branch,{},amplitude,{own},peak,stable,multiplier,error\n",
         response.question.parameter
     );
-    let optional = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
     for (index, branch) in response.branches.iter().enumerate() {
         for point in &branch.points {
-            let stable = match point.stable {
-                Some(true) => "1",
-                Some(false) => "0",
-                None => "",
-            };
+            let stable = cell(point.stable.map(u8::from));
             let _ = writeln!(
                 text,
                 "branch,{},{},{},{},{},{stable},{},{}",
@@ -51,8 +45,8 @@ pub fn csv(response: &Response) -> String {
                 point.amplitude,
                 of_own(point.frequency, point.phase.to_string()),
                 point.peak,
-                optional(point.multipliers.map(|multipliers| multipliers[0].norm())),
-                optional(point.error)
+                cell(point.multipliers.map(|multipliers| multipliers[0].norm())),
+                cell(point.error)
             );
         }
     }
@@ -95,13 +89,8 @@ pub fn csv(response: &Response) -> String {
     text
 }
 
-/// Places in the parameter and the height, joined.
-#[cfg(feature = "plot")]
-type Line = Vec<(f64, f64)>;
-
 /// The ordinates of the panels: of motions of several periods of the drive the peak, of
 /// self-excited ones the frequency as well.
-#[cfg(feature = "plot")]
 #[derive(Clone, Copy)]
 enum Height {
     Amplitude,
@@ -109,7 +98,6 @@ enum Height {
     Frequency,
 }
 
-#[cfg(feature = "plot")]
 impl Height {
     fn label(self) -> &'static str {
         match self {
@@ -130,9 +118,8 @@ impl Height {
 
 /// The pieces of a branch in the parameter and the height that are stable, or that are not;
 /// neighbouring pieces share a point.
-#[cfg(feature = "plot")]
-fn pieces(height: Height, points: &[Point], stable: bool) -> Vec<Line> {
-    let mut pieces: Vec<Line> = Vec::new();
+fn pieces(height: Height, points: &[Point], stable: bool) -> Vec<Points> {
+    let mut pieces: Vec<Points> = Vec::new();
     let mut open = false;
     let place =
         |point: &Point| (point.parameter, height.of(point.amplitude, point.peak, point.frequency));
@@ -152,7 +139,6 @@ fn pieces(height: Height, points: &[Point], stable: bool) -> Vec<Line> {
 }
 
 /// What stands where branches change.
-#[cfg(feature = "plot")]
 const MARKS: [(BifurcationKind, &str, CurveStyle); 6] = [
     (BifurcationKind::Fold, "fold", CurveStyle::MARKED_POINTS),
     (BifurcationKind::BranchPoint, "branch point", CurveStyle::SECOND_MARKED_POINTS),
@@ -163,14 +149,13 @@ const MARKS: [(BifurcationKind, &str, CurveStyle); 6] = [
 ];
 
 /// The curves of a panel, with what they are called.
-#[cfg(feature = "plot")]
 fn curves<'a>(
     response: &Response,
     height: Height,
     slow_title: &'a str,
-) -> Vec<(&'a str, Line, CurveStyle)> {
-    let mut drawn: Vec<(&str, Line, CurveStyle)> = Vec::new();
-    let mut draw = |label: &'a str, lines: Vec<Line>, style: CurveStyle| {
+) -> Vec<(&'a str, Points, CurveStyle)> {
+    let mut drawn: Vec<(&str, Points, CurveStyle)> = Vec::new();
+    let mut draw = |label: &'a str, lines: Vec<Points>, style: CurveStyle| {
         drawn.extend(lines.into_iter().map(|points| (label, points, style)));
     };
     let of_stability = |stable: bool| {
@@ -217,7 +202,6 @@ fn curves<'a>(
 /// assert!(lindstedt::export::response::picture(&respond(&question)?)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[cfg(feature = "plot")]
 pub fn picture(response: &Response) -> Result<String, FigureError> {
     let asked = &response.question;
     let heights: &[Height] = match (response.self_excited, asked.periods) {
@@ -227,20 +211,15 @@ pub fn picture(response: &Response) -> Result<String, FigureError> {
     };
     let title = response.slow.as_ref().map(|slow| slow.solution.title());
     let title = title.unwrap_or_default();
-    let drawn: Vec<Vec<(&str, Line, CurveStyle)>> =
+    let drawn: Vec<Vec<(&str, Points, CurveStyle)>> =
         heights.iter().map(|height| curves(response, *height, &title)).collect();
     let panels: Vec<Panel> = heights
         .iter()
         .zip(&drawn)
-        .map(|(height, drawn)| Panel {
-            title: "Steady states",
-            x_label: asked.parameter.name(),
-            y_label: height.label(),
-            curves: drawn
-                .iter()
-                .map(|(label, points, style)| Curve { label, points, style: *style })
-                .collect(),
-            ..Panel::default()
+        .map(|(height, drawn)| {
+            let curves = drawn.iter().map(|(label, points, style)| curve(label, points, *style));
+            let labels = [asked.parameter.name(), height.label()];
+            panel("Steady states", labels, curves.collect(), vec![])
         })
         .collect();
     let values = asked.values.numbers().into_iter();

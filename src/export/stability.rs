@@ -3,8 +3,8 @@
 
 use std::fmt::Write as _;
 
-#[cfg(feature = "plot")]
-use super::figure::{Curve, CurveStyle, FigureError, Panel, figure};
+use super::csv::cell;
+use super::figure::{CurveStyle, FigureError, Points, curve, figure, panel};
 use crate::hill::{Chart, TransitionCurves};
 use crate::symbol::Symbol;
 
@@ -31,8 +31,7 @@ pub fn csv(curves: &TransitionCurves, by: Symbol, charts: &[Chart]) -> String {
         sizes.sort_by(f64::total_cmp);
         sizes.dedup();
         let at = |points: &[(f64, f64)], size: f64| {
-            let point = points.iter().find(|point| point.1 == size);
-            point.map_or(String::new(), |point| point.0.to_string())
+            cell(points.iter().find(|point| point.1 == size).map(|point| point.0))
         };
         for size in sizes {
             let name = &curves.curves[chart.curve].name;
@@ -52,7 +51,6 @@ pub fn csv(curves: &TransitionCurves, by: Symbol, charts: &[Chart]) -> String {
 ///
 /// # Errors
 /// As [`figure`].
-#[cfg(feature = "plot")]
 pub fn picture(
     curves: &TransitionCurves,
     by: Symbol,
@@ -66,7 +64,7 @@ pub fn picture(
     });
     // A formula far beyond its range would leave nothing of the rest to be seen.
     let margin = 0.1 * (most - least);
-    let formulas: Vec<Vec<(f64, f64)>> = charts
+    let formulas: Vec<Points> = charts
         .iter()
         .map(|chart| {
             let near = |point: &&(f64, f64)| point.0 >= least - margin && point.0 <= most + margin;
@@ -74,23 +72,16 @@ pub fn picture(
         })
         .collect();
     let drawn = |points: &[(f64, f64)]| points.len() > 1;
-    let truths = charts.iter().filter(|chart| drawn(&chart.truth)).map(|chart| Curve {
-        label: "true motion",
-        points: &chart.truth,
-        style: CurveStyle::RUNGE_KUTTA,
-    });
+    let truths = charts
+        .iter()
+        .filter(|chart| drawn(&chart.truth))
+        .map(|chart| curve("true motion", &chart.truth, CurveStyle::RUNGE_KUTTA));
     let label = format!("order {}", curves.order);
-    let formulas = formulas.iter().filter(|points| drawn(points)).map(|points| Curve {
-        label: &label,
-        points,
-        style: CurveStyle::FORMULA,
-    });
-    let panel = Panel {
-        title: "Transition curves: rest is unstable inside the tongues",
-        x_label: &unknown,
-        y_label: by.name(),
-        curves: truths.chain(formulas).collect(),
-        ..Panel::default()
-    };
-    figure(&[panel], caption)
+    let formulas = formulas
+        .iter()
+        .filter(|points| drawn(points))
+        .map(|points| curve(&label, points, CurveStyle::FORMULA));
+    let title = "Transition curves: rest is unstable inside the tongues";
+    let curves = truths.chain(formulas).collect();
+    figure(&[panel(title, [&unknown, by.name()], curves, vec![])], caption)
 }

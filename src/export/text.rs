@@ -4,45 +4,20 @@
 //! lines no longer than that where words allow it. Relative errors stand in percent.
 
 pub(super) mod comparison;
-pub(super) mod impact;
+mod impact;
 mod table;
 
 pub use super::steps::text as steps;
-use crate::audit::Audit;
 use crate::decimal::{decimal, significant};
 use crate::derivation::NOTATION;
-use crate::impact::friction::FrictionStudy;
-use crate::impact::{Impact, ImpactComparison, MaterialStudy};
-use crate::mechanics::MechanismStudy;
-use crate::optimize::Study;
-use crate::report::{self, Block, Document};
+pub use crate::report::percent;
+use crate::report::{self, Block, Document, size_in_percent};
 use crate::series::terms;
 use crate::solution::{Method, Solution, constant_in_words};
 use crate::symbol::Symbol;
 use crate::symbol::letters::{FREQUENCY, of_frequency};
 use crate::verify::comparison::Comparison;
 use crate::verify::{Followed, Verification};
-
-/// A signed relative error in percent: `-1.49 %`; what is rounding is called that.
-///
-/// ```
-/// assert_eq!(lindstedt::export::text::percent(-0.0149), "-1.49 %");
-/// ```
-pub fn percent(error: f64) -> String {
-    if error.abs() < 1e-9 {
-        return "< 1e-7 %".to_owned();
-    }
-    let digits = significant(100.0 * error.abs(), 3);
-    format!("{}{digits} %", if error < 0.0 { "-" } else { "+" })
-}
-
-/// A size in percent: `2.86 %`; what is rounding is called that.
-fn size_in_percent(size: f64) -> String {
-    match size < 1e-9 {
-        true => "< 1e-7 %".to_owned(),
-        false => format!("{} %", significant(100.0 * size, 3)),
-    }
-}
 
 /// The derived formula, and the verdict where it was judged.
 ///
@@ -80,92 +55,6 @@ pub fn solution(
 pub fn comparison(comparison: &Comparison, width: usize) -> String {
     let _letters = comparison.letters().in_force();
     document(&report::comparison(comparison), width)
-}
-
-/// The whole story of an impact.
-///
-/// ```
-/// use lindstedt::impact::{Setup, solve};
-///
-/// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
-/// assert!(lindstedt::export::text::impact(&impact, 0.01).contains("penetration"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn impact(impact: &Impact, tolerance: f64) -> String {
-    document(&report::impact(impact, tolerance), usize::MAX)
-}
-
-/// Every method on one impact in a table, in lines of at most `width` characters where words allow
-/// it.
-///
-/// ```
-/// use lindstedt::impact::{Setup, compare};
-///
-/// let table = compare(Setup { stiffness: 1e6, ..Setup::default() })?;
-/// assert!(lindstedt::export::text::impact_comparison(&table, 0.01, 80).contains("Harmonic balance"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn impact_comparison(table: &ImpactComparison, tolerance: f64, width: usize) -> String {
-    document(&report::impact_comparison(table, tolerance), width)
-}
-
-/// Equation (6) beside Coulomb's law.
-///
-/// ```
-/// use lindstedt::impact::friction::{FrictionSetup, study};
-///
-/// let study = study(FrictionSetup::default())?;
-/// assert!(lindstedt::export::text::friction(&study).contains("Coulomb's law stops it for good"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn friction(study: &FrictionStudy) -> String {
-    document(&report::friction(study), usize::MAX)
-}
-
-/// The same swing against barriers of several materials, in lines of at most `width` characters
-/// where words allow it.
-///
-/// ```
-/// use lindstedt::impact::{MaterialQuestion, study_materials};
-///
-/// let study = study_materials(MaterialQuestion::default())?;
-/// assert!(lindstedt::export::text::materials(&study, 120).contains("What is held fixed decides"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn materials(study: &MaterialStudy, width: usize) -> String {
-    document(&report::materials(study), width)
-}
-
-/// A search for the best damper, in lines of at most `width` characters where words allow it.
-pub fn optimization(study: &Study, width: usize) -> String {
-    document(&report::optimization(study), width)
-}
-
-/// Claims with their verdicts, in lines of at most `width` characters where words allow it.
-///
-/// ```
-/// use lindstedt::audit::{Claims, audit};
-///
-/// let claims: Claims = "[[claim]]\nid = \"one\"\nquantity = \"value\"\nformula = \"1 + 1\"\nprinted = \"2\"".parse()?;
-/// assert!(lindstedt::export::text::audit(&audit(claims), 80).contains("1 reproduced"));
-/// # Ok::<(), lindstedt::problem::ProblemError>(())
-/// ```
-pub fn audit(audit: &Audit, width: usize) -> String {
-    document(&report::audit(audit), width)
-}
-
-/// A mechanism, its equations of motion and its groups, in lines of at most `width` characters
-/// where words allow it.
-///
-/// ```
-/// use lindstedt::{audit::paper, mechanics::study};
-///
-/// let study = study(paper::mechanism())?;
-/// assert!(lindstedt::export::text::mechanism(&study, 120).contains("gamma"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn mechanism(study: &MechanismStudy, width: usize) -> String {
-    document(&report::mechanism(study), width)
 }
 
 /// A document as text, in lines of at most `width` characters where its blocks can be broken and
@@ -210,13 +99,8 @@ impl Page {
             Block::Sentence(words) => comparison::wrapped(words, self.width, "  ", "  ") + "\n",
             Block::Table { head, rows } => table::table(head, rows),
             Block::Law { left, right } => format!("  {:<8}= {right}\n", left.to_string()),
-            Block::Relation(sum) => format!("  0       = {sum}\n"),
             Block::Equality { left, right } => format!("  {left} = {right}\n"),
             Block::Line(line) => format!("  {line}\n"),
-            Block::Unknowns(names) => {
-                let names: Vec<&str> = names.iter().map(|name| name.written()).collect();
-                format!("  for {}:\n", names.join(", "))
-            }
             Block::CycleAmplitude { symbol, amplitude } => {
                 format!("  limit cycle of amplitude {symbol} = {amplitude}\n")
             }
@@ -258,9 +142,6 @@ impl Page {
             }
             Block::SiQuantities { columns, rows } => impact::si_quantities(columns, rows),
             Block::Verdicts { verdicts, tolerance } => impact::verdicts(verdicts, *tolerance),
-            Block::Shortcoming { reading, errors, cause } => {
-                impact::shortcoming(*reading, errors, cause)
-            }
         }
     }
 }

@@ -1,17 +1,13 @@
 //! A motion in numbers as comma-separated values and as a picture; text by
 //! [`text::document`](super::text::document).
 
-use std::fmt::Write as _;
-
-#[cfg(feature = "plot")]
-use super::figure::{Curve, CurveStyle, FigureError, Panel, figure};
-#[cfg(feature = "plot")]
+use super::csv::{end, line};
+use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel};
 use crate::decimal::decimal;
-#[cfg(feature = "plot")]
 use crate::report::section_in_words;
 use crate::report::{MotionSweep, TrajectoryReport};
+use crate::symbol::Symbol;
 use crate::trajectory::in_words;
-#[cfg(feature = "plot")]
 use crate::trajectory::{Crossing, Section, SweptMotion, Trajectory};
 
 /// The points of a table or a curve where no samples are asked for.
@@ -43,29 +39,18 @@ fn times(report: &TrajectoryReport) -> Vec<f64> {
 /// ```
 pub fn csv(report: &TrajectoryReport) -> String {
     let motion = report.motion;
-    let names: Vec<&str> = motion.course.rates.states.iter().map(|name| name.name()).collect();
-    let mut text = format!("t,{}\n", names.join(","));
+    let names = motion.course.rates.states.iter().map(|name| name.name());
+    let mut text = line(std::iter::once("t").chain(names));
     let on_section = motion.course.section.is_some() && report.samples.is_empty();
     let times = match on_section {
         true => motion.crossings().iter().map(|crossing| crossing.time).collect(),
         false => times(report),
     };
     for time in times {
-        if let Some(state) = motion.at(time) {
-            let state: Vec<String> = state.iter().map(ToString::to_string).collect();
-            let _ = writeln!(text, "{time},{}", state.join(","));
-        }
+        let state = motion.at(time).into_iter();
+        text.extend(state.map(|state| line(std::iter::once(time).chain(state))));
     }
-    match report.doubt() {
-        _ if !motion.is_complete() => {
-            let _ = writeln!(text, "# incomplete: {}", in_words(motion.reason()));
-        }
-        Some(doubt) => {
-            let _ = writeln!(text, "# incomplete: {doubt}");
-        }
-        None => {}
-    }
-    text
+    text + &end(motion.is_complete(), in_words(motion.reason()), report.doubt())
 }
 
 /// Every coordinate in time, and its phase plane beside it.
@@ -85,7 +70,6 @@ pub fn csv(report: &TrajectoryReport) -> String {
 /// assert!(lindstedt::export::trajectory::picture(&report)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[cfg(feature = "plot")]
 pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
     let motion = report.motion;
     let course = &motion.course;
@@ -96,25 +80,19 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
     let whole = TrajectoryReport { samples: &[], ..*report };
     let states: Vec<(f64, Vec<f64>)> =
         times(&whole).into_iter().filter_map(|time| Some((time, motion.at(time)?))).collect();
-    let in_time: Vec<Vec<(f64, f64)>> = (0..count)
+    let in_time: Vec<Points> = (0..count)
         .map(|index| states.iter().map(|(time, state)| (*time, state[index])).collect())
         .collect();
-    let planes: Vec<Vec<(f64, f64)>> = (0..count)
+    let planes: Vec<Points> = (0..count)
         .map(|index| states.iter().map(|(_, state)| (state[index], state[count + index])).collect())
         .collect();
     let names: Vec<[String; 2]> =
         course.coordinates.iter().map(|name| [name.to_string(), format!("{name}′")]).collect();
     let mut panels = Vec::new();
     for (name, (in_time, plane)) in names.iter().zip(in_time.iter().zip(&planes)) {
-        let panel = |title, x_label, y_label, points| Panel {
-            title,
-            x_label,
-            y_label,
-            curves: vec![Curve { label: "", points, style: CurveStyle::DIFFERENCE }],
-            ..Panel::default()
-        };
-        panels.push(panel("Motion", "time t", name[0].as_str(), in_time.as_slice()));
-        panels.push(panel("Phase plane", name[0].as_str(), name[1].as_str(), plane.as_slice()));
+        let line = |points| vec![curve("", points, CurveStyle::DIFFERENCE)];
+        panels.push(panel("Motion", ["time t", &name[0]], line(in_time), vec![]));
+        panels.push(panel("Phase plane", [&name[0], &name[1]], line(plane), vec![]));
     }
     let equations: Vec<String> =
         course.equations.iter().map(|left| format!("{left} = 0")).collect();
@@ -122,7 +100,6 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
 }
 
 /// The states on a section: each coordinate with its velocity.
-#[cfg(feature = "plot")]
 fn on_section(motion: &Trajectory, section: &Section) -> Result<String, FigureError> {
     let course = &motion.course;
     let count = course.coordinates.len();
@@ -131,7 +108,7 @@ fn on_section(motion: &Trajectory, section: &Section) -> Result<String, FigureEr
     let point = |index: usize| {
         move |crossing: &Crossing| (crossing.state[index], crossing.state[count + index])
     };
-    let points: Vec<Vec<(f64, f64)>> =
+    let points: Vec<Points> =
         (0..count).map(|index| motion.crossings().iter().map(point(index)).collect()).collect();
     let panels: Vec<Panel> = names
         .iter()
@@ -143,59 +120,39 @@ fn on_section(motion: &Trajectory, section: &Section) -> Result<String, FigureEr
     figure(&panels, &format!("{}. {}", equations.join(", "), section_in_words(section)))
 }
 
-#[cfg(feature = "plot")]
 fn dots<'a>(title: &'a str, labels: [&'a str; 2], points: &'a [(f64, f64)]) -> Panel<'a> {
-    Panel {
-        title,
-        x_label: labels[0],
-        y_label: labels[1],
-        curves: vec![Curve { label: "", points, style: CurveStyle::DOTS }],
-        ..Panel::default()
-    }
+    panel(title, labels, vec![curve("", points, CurveStyle::DOTS)], vec![])
 }
 
 /// Many motions: a line for every state on the section, or without a section one for every motion
 /// with its extremes.
 pub fn sweep_csv(sweep: &MotionSweep) -> String {
     let course = sweep.course;
-    let varied: Vec<&str> = sweep.names.iter().map(|name| name.name()).collect();
-    let states: Vec<&str> = course.rates.states.iter().map(|name| name.name()).collect();
-    let join = |numbers: &mut dyn Iterator<Item = f64>| {
-        let numbers: Vec<String> = numbers.map(|number| number.to_string()).collect();
-        numbers.join(",")
-    };
-    let mut text = String::new();
+    let named = |name: &Symbol| name.name().to_owned();
+    let varied = sweep.names.iter().map(named);
+    let states = course.rates.states.iter().map(named);
     match course.section.is_some() {
         true => {
-            let _ = writeln!(text, "{},t,{}", varied.join(","), states.join(","));
-            for motion in sweep.motions {
-                for crossing in &motion.crossings {
-                    let line = motion.values.iter().chain([&crossing.time]).chain(&crossing.state);
-                    let _ = writeln!(text, "{}", join(&mut line.copied()));
-                }
-            }
+            let rows = sweep.motions.iter().flat_map(|motion| {
+                motion.crossings.iter().map(|crossing| {
+                    line(motion.values.iter().chain([&crossing.time]).chain(&crossing.state))
+                })
+            });
+            line(varied.chain(["t".to_owned()]).chain(states)) + &rows.collect::<String>()
         }
         false => {
-            let extremes: Vec<String> = course
+            let extremes = course
                 .coordinates
                 .iter()
-                .map(|name| format!("least {name},greatest {name}"))
-                .collect();
-            let _ = writeln!(
-                text,
-                "{},{},end,{}",
-                varied.join(","),
-                extremes.join(","),
-                states.join(",")
-            );
-            for motion in sweep.motions {
-                let line = motion.values.iter().chain(motion.extremes.iter().flatten());
-                let line = line.chain([&motion.end]).chain(&motion.state);
-                let _ = writeln!(text, "{}", join(&mut line.copied()));
-            }
+                .flat_map(|name| [format!("least {name}"), format!("greatest {name}")]);
+            let rows = sweep.motions.iter().map(|motion| {
+                let cells = motion.values.iter().chain(motion.extremes.iter().flatten());
+                line(cells.chain([&motion.end]).chain(&motion.state))
+            });
+            line(varied.chain(extremes).chain(["end".to_owned()]).chain(states))
+                + &rows.collect::<String>()
         }
     }
-    text
 }
 
 /// Over what is varied: every state on the section, a bifurcation diagram; without a section the
@@ -203,13 +160,12 @@ pub fn sweep_csv(sweep: &MotionSweep) -> String {
 ///
 /// # Errors
 /// As [`figure`].
-#[cfg(feature = "plot")]
 pub fn sweep_picture(sweep: &MotionSweep) -> Result<String, FigureError> {
     let course = sweep.course;
     let varied = sweep.names.first().map_or("", |name| name.name());
-    let points: Vec<Vec<(f64, f64)>> = (0..course.coordinates.len())
+    let points: Vec<Points> = (0..course.coordinates.len())
         .map(|index| {
-            let of = |motion: &SweptMotion| -> Vec<(f64, f64)> {
+            let of = |motion: &SweptMotion| -> Points {
                 let value = motion.values.first().copied().unwrap_or(f64::NAN);
                 match course.section.is_some() {
                     true => motion

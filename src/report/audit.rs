@@ -1,7 +1,7 @@
 //! An audit: a table of verdicts, and of every claim that is not simply reproduced what speaks for
 //! its verdict.
 
-use super::{Block, Document, Heading};
+use super::{Block, Document};
 use crate::audit::{ABSENT, Audit, Computed, Finding, Lack, Stated, Tried, Verdict};
 use crate::decimal::{decimal, significant};
 
@@ -71,13 +71,7 @@ fn table<'a>(verdict: Verdict, findings: &[&Finding]) -> Vec<Block<'a>> {
     let head = ["where", "claim", "printed", "computed"]
         .into_iter()
         .chain(assumes.then_some("assumption"));
-    vec![
-        Block::Note(format!("verdict: {name}")),
-        Block::Table {
-            head: head.map(|word| Heading { text: word, latex: word }).collect(),
-            rows: findings.iter().map(row).collect(),
-        },
-    ]
+    vec![Block::Note(format!("verdict: {name}")), Block::table(head, findings.iter().map(row))]
 }
 
 /// The most characters of a cell.

@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use super::{Block, Document, Heading};
+use super::{Block, Document, size_in_percent};
 use crate::decimal::{decimal, significant};
 use crate::derivation::{Formula, Line};
 use crate::exact::Polynomial;
@@ -145,13 +145,7 @@ fn judged_in_time<'a>(verification: &Verification, tolerance: f64) -> Vec<Block<
     let at = values_in_words(verification);
     let mut blocks = vec![Block::Heading(format!("Judged against the true motion{at}"))];
     blocks.extend(verification.ranges.iter().map(|range| Block::Note(range.text.clone())));
-    /// Below it is rounding, and called that.
-    const ROUNDING: f64 = 1e-9;
-    let percent = |part: Option<f64>| match part {
-        Some(part) if part < ROUNDING => "< 1e-7 %".to_owned(),
-        Some(part) => format!("{} %", significant(100.0 * part, 3)),
-        None => "without a number".to_owned(),
-    };
+    let percent = |part: Option<f64>| part.map_or("without a number".to_owned(), size_in_percent);
     blocks.push(Block::Note(format!(
         "largest deviation {} of the largest displacement, residual {} of the force (rms)",
         percent(verification.max_deviation),
@@ -174,22 +168,21 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
                 .to_owned(),
         ));
     } else {
-        let heading = |text, latex| Heading { text, latex };
         let a = FIRST_HARMONIC.written();
         // The names of a table live as long as the program.
         let kept = |name: String| Symbol::new(&name).name();
-        blocks.push(Block::Table {
-            head: vec![
-                heading(a, kept(format!("${a}$"))),
-                heading("phase", "phase"),
-                heading("stable", "stable"),
-                heading(kept(format!("true {a}")), kept(format!("true ${a}$"))),
-                heading("error", "error"),
-                heading("deviation", "deviation"),
-                heading("true stable", "true stable"),
+        blocks.push(Block::table(
+            [
+                (a, kept(format!("${a}$"))),
+                ("phase", "phase"),
+                ("stable", "stable"),
+                (kept(format!("true {a}")), kept(format!("true ${a}$"))),
+                ("error", "error"),
+                ("deviation", "deviation"),
+                ("true stable", "true stable"),
             ],
-            rows: verification.steady_states.iter().map(row).collect(),
-        });
+            verification.steady_states.iter().map(row),
+        ));
     }
     let stable = verification.steady_states.iter().filter(|judged| judged.state.is_stable());
     let count = stable.count();

@@ -1,7 +1,7 @@
 //! Equation (6) beside Coulomb's law: Table 1 of the paper, the pi of its digits, and a swing near
 //! rest.
 
-use super::{Block, Document, Heading};
+use super::{Block, Document};
 use crate::audit::paper::{Table, TableRow};
 use crate::decimal::{decimal, significant};
 use crate::impact::NoRest;
@@ -37,10 +37,6 @@ pub fn friction(study: &FrictionStudy) -> Document<'_> {
     }
 }
 
-fn heading(text: &'static str, latex: &'static str) -> Heading {
-    Heading { text, latex }
-}
-
 /// A share of one in per cent.
 fn percent(share: f64) -> String {
     format!("{} %", significant(100.0 * share, 4))
@@ -74,18 +70,15 @@ fn speeds(table: &Table) -> Vec<Block<'static>> {
             "Table 1 of the paper, and how its digits come out by pi = {}",
             table.best().name
         )),
-        Block::Table {
-            head: vec![
-                heading("x'", "$\\dot{x}$"),
-                heading("sgn", "sgn"),
-                heading("arctangent", "$(2/\\pi) \\arctan 100\\dot{x}$"),
-                heading("error, %", "error in \\%"),
-                heading("printed", "printed"),
-                heading("printed, %", "printed, in \\%"),
-                heading("digits", "digits"),
-            ],
-            rows: table.rows.iter().map(row).collect(),
-        },
+        Block::table([
+                ("x'", "$\\dot{x}$"),
+                ("sgn", "sgn"),
+                ("arctangent", "$(2/\\pi) \\arctan 100\\dot{x}$"),
+                ("error, %", "error in \\%"),
+                ("printed", "printed"),
+                ("printed, %", "printed, in \\%"),
+                ("digits", "digits"),
+            ], table.rows.iter().map(row)),
         Block::Note(
             "digits: how the printed value and the printed error come out, rounded, cut off, or either way".to_owned(),
         ),
@@ -111,15 +104,10 @@ fn readings(table: &Table) -> Vec<Block<'static>> {
             "The {} printed entries that come out, by the value of pi",
             table.entries()
         )),
-        Block::Table {
-            head: vec![
-                heading("pi", "$\\pi$"),
-                heading("rounded", "rounded"),
-                heading("cut", "cut"),
-                heading("either", "either"),
-            ],
-            rows: rows.collect(),
-        },
+        Block::table(
+            [("pi", "$\\pi$"), ("rounded", "rounded"), ("cut", "cut"), ("either", "either")],
+            rows,
+        ),
         Block::Note(range),
     ];
     if let Some(speed) = best.exceeds_from() {
@@ -206,13 +194,10 @@ fn creep(alpha: f64, creep: &Creep) -> Vec<Block<'static>> {
     if let Some(rate) = creep.rate_overdamped {
         entries.insert(1, ("rate without inertia", format!("{}   pi/(200*alpha)", decimal(rate))));
     }
-    let mut head = vec![
-        heading("t", "$t$"),
-        heading("x, Coulomb", "$x$, Coulomb"),
-        heading("x, arctangent", "$x$, arctangent"),
-    ];
+    let mut head =
+        vec![("t", "$t$"), ("x, Coulomb", "$x$, Coulomb"), ("x, arctangent", "$x$, arctangent")];
     if creep.creeps {
-        head.push(heading("formula", "formula"));
+        head.push(("formula", "formula"));
     }
     let held = creep.motion.start.x;
     let rows = creep.samples.iter().map(|sample| {
@@ -222,7 +207,7 @@ fn creep(alpha: f64, creep: &Creep) -> Vec<Block<'static>> {
     let mut blocks = vec![
         Block::Heading(format!("Near rest, alpha = {}: {words}", decimal(alpha))),
         Block::Facts(entries),
-        Block::Table { head, rows: rows.collect() },
+        Block::table(head, rows),
     ];
     if creep.creeps {
         blocks.push(Block::Note(

@@ -2,7 +2,7 @@
 //! numbers beside Runge-Kutta.
 
 use super::solution::law_blocks;
-use super::{Block, Document};
+use super::{Block, Document, percent};
 use crate::audit::paper;
 use crate::decimal::{decimal, significant};
 use crate::impact::contact::ContactLaw;
@@ -388,10 +388,10 @@ fn judged(impact: &Impact, tolerance: f64) -> Vec<Block<'_>> {
     }
     for (index, &reading) in columns.iter().enumerate() {
         let shortcomings = impact.shortcomings(index, tolerance).into_iter();
-        blocks.extend(shortcomings.map(|(errors, cause)| Block::Shortcoming {
-            reading,
-            errors,
-            cause,
+        blocks.extend(shortcomings.map(|(errors, cause)| {
+            let errors = errors.iter().map(|(name, error)| format!("{name} {}", percent(*error)));
+            let errors: Vec<String> = errors.collect();
+            Block::Detail(format!("  {:<8}{}: {cause}", reading.name(), errors.join(", ")))
         }));
     }
     blocks

@@ -1,7 +1,7 @@
 //! What is proved of an impact, and with it of its closed forms.
 
 use super::certificate::{enclosed, percent, rounded_percent};
-use super::{Block, Document, Heading};
+use super::{Block, Document};
 use crate::certificate::{ImpactEnclosure, Range};
 use crate::decimal::{exact_decimal, not_above_typed};
 use crate::exact::Rational;
@@ -104,10 +104,7 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
                     "How far the numbers of Runge-Kutta and of each closed form are off, proved"
                         .to_owned(),
                 ),
-                Block::Table {
-                    head: head.map(|text| Heading { text, latex: text }).collect(),
-                    rows: errors.iter().map(row).collect(),
-                },
+                Block::table(head, errors.iter().map(row)),
                 Block::Note(
                     "a single number is rounded: both of its ends have these digits".to_owned(),
                 ),

@@ -1,7 +1,7 @@
 //! A study of materials: what was asked, the first contact of each barrier, its way to rest, and
 //! what holding something else fixed changes. The sentences follow from the numbers.
 
-use super::{Block, Document, Heading};
+use super::{Block, Document, cell};
 use crate::decimal::{decimal, significant};
 use crate::impact::{
     ContactDamping, Dissipation, HeldFixed, Integrator, MaterialRow, MaterialStudy, Model,
@@ -149,15 +149,6 @@ pub(super) fn in_words(damping: ContactDamping) -> String {
     text.trim_end().to_owned()
 }
 
-pub(super) fn head(columns: &[(&'static str, &'static str)]) -> Vec<Heading> {
-    columns.iter().map(|&(text, latex)| Heading { text, latex }).collect()
-}
-
-/// A number, or a stroke where there is none.
-pub(super) fn cell(value: Option<f64>) -> String {
-    value.map_or("-".to_owned(), decimal)
-}
-
 fn first_contacts(study: &MaterialStudy) -> Vec<Block<'_>> {
     let row = |row: &MaterialRow| {
         let first = row.first;
@@ -177,8 +168,7 @@ fn first_contacts(study: &MaterialStudy) -> Vec<Block<'_>> {
             Some(first) => format!("The first contact, touched at {} m/s", decimal(first.speed)),
             None => "The first contact".to_owned(),
         }),
-        Block::Table {
-            head: head(&[
+        Block::table([
                 ("material", "material"),
                 ("E, Pa", "$E$, Pa"),
                 ("gamma", "$\\gamma$"),
@@ -187,9 +177,7 @@ fn first_contacts(study: &MaterialStudy) -> Vec<Block<'_>> {
                 ("force, N", "force, N"),
                 ("pressure, Pa", "pressure, Pa"),
                 ("restitution", "restitution"),
-            ]),
-            rows: study.rows.iter().map(row).collect(),
-        },
+            ], study.rows.iter().map(row)),
         Block::Note(
             "gamma by equation (8); greatest force with the damping in it; pressure of Hertz at the greatest depth"
                 .to_owned(),
@@ -244,8 +232,8 @@ fn until_rest(study: &MaterialStudy) -> Vec<Block<'_>> {
     };
     let mut blocks = vec![
         Block::Heading("Until rest".to_owned()),
-        Block::Table {
-            head: head(&[
+        Block::table(
+            [
                 ("material", "material"),
                 ("mu/gamma", "$\\mu/\\gamma$"),
                 ("mu", "$\\mu$"),
@@ -253,9 +241,9 @@ fn until_rest(study: &MaterialStudy) -> Vec<Block<'_>> {
                 ("rest, 1/omega", "rest, $1/\\omega$"),
                 ("rest, s", "rest, s"),
                 ("rest at mu = 0", "rest at $\\mu = 0$"),
-            ]),
-            rows: study.rows.iter().map(row).collect(),
-        },
+            ],
+            study.rows.iter().map(row),
+        ),
     ];
     let touched = study.rows.iter().any(|row| !row.course.impacts.is_empty());
     if !touched {
@@ -308,8 +296,7 @@ fn held_fixed(study: &MaterialStudy) -> Vec<Block<'_>> {
             "What is held fixed decides: the same damping at E = {} Pa, held fixed in each of its forms",
             decimal(study.question.case.design.modulus)
         )),
-        Block::Table {
-            head: head(&[
+        Block::table([
                 ("held fixed", "held fixed"),
                 ("mu/gamma from", "$\\mu/\\gamma$ from"),
                 ("to", "to"),
@@ -318,9 +305,7 @@ fn held_fixed(study: &MaterialStudy) -> Vec<Block<'_>> {
                 ("rest from", "rest from"),
                 ("to", "to"),
                 ("apart", "apart"),
-            ]),
-            rows: study.held_fixed.iter().map(row).collect(),
-        },
+            ], study.held_fixed.iter().map(row)),
         Block::Note(
             "mu/gamma and restitution (at the first touch without damping) from the softest to the hardest; rest from the first to the last"
                 .to_owned(),

@@ -294,7 +294,7 @@ pub fn paper_equations(findings: &[Finding]) -> Vec<Block<'_>> {
             Some(false) => "does not follow as printed",
             None => "is put in",
         };
-        (finding.equation.to_owned(), format!("{verdict}: {}", finding.words))
+        (finding.equation.clone(), format!("{verdict}: {}", finding.words))
     };
     let printed = findings
         .iter()

@@ -44,12 +44,12 @@ pub(crate) use response::motion_frequency;
 pub use response::{bifurcation_in_words, response};
 pub use solution::solution;
 pub use stability::{StabilityReport, stability};
-#[cfg(feature = "plot")]
 pub(crate) use trajectory::section_in_words;
 pub use trajectory::{Doubt, MotionSweep, TRUSTED, TrajectoryReport, motion_sweep, trajectory};
 
 use std::borrow::Cow;
 
+use crate::decimal::{decimal, significant};
 use crate::derivation::Line;
 use crate::expr::{Equation, Expr};
 use crate::impact::contact::ContactRow;
@@ -93,15 +93,13 @@ pub enum Block<'a> {
     Sentence(String),
     /// What only the longest format has room for.
     Detail(String),
-    /// A law: omega^2, omega, or zero.
+    /// A law: omega^2 or omega, or zero of a relation between omega and the amplitude.
     Law {
         /// The left side.
         left: Expr,
         /// The right side.
         right: Sum,
     },
-    /// A relation between omega and the amplitude, zero.
-    Relation(Sum),
     /// An equation that is no polynomial.
     Equality {
         /// The left side.
@@ -111,8 +109,6 @@ pub enum Block<'a> {
     },
     /// A line of a derivation.
     Line(Cow<'a, Line>),
-    /// What a system of equations is solved for.
-    Unknowns(&'a [Symbol]),
     /// The amplitude of a limit cycle.
     CycleAmplitude {
         /// Its symbol.
@@ -266,15 +262,19 @@ pub enum Block<'a> {
         /// A row each, with its unit as it is typed.
         rows: Vec<(Quantity, &'static str)>,
     },
-    /// Numbers beyond the tolerance, and what they come from.
-    Shortcoming {
-        /// Whose numbers.
-        reading: Reading,
-        /// The names and the relative errors.
-        errors: Vec<(&'static str, f64)>,
-        /// The cause.
-        cause: String,
-    },
+}
+
+impl Block<'_> {
+    /// A table with these columns and rows.
+    fn table<H: Into<Heading>>(
+        head: impl IntoIterator<Item = H>,
+        rows: impl IntoIterator<Item = Vec<String>>,
+    ) -> Self {
+        Self::Table {
+            head: head.into_iter().map(Into::into).collect(),
+            rows: rows.into_iter().collect(),
+        }
+    }
 }
 
 /// What stands above a column.
@@ -284,6 +284,44 @@ pub struct Heading {
     pub text: &'static str,
     /// In LaTeX.
     pub latex: &'static str,
+}
+
+impl From<&'static str> for Heading {
+    fn from(text: &'static str) -> Self {
+        Self { text, latex: text }
+    }
+}
+
+impl From<(&'static str, &'static str)> for Heading {
+    fn from((text, latex): (&'static str, &'static str)) -> Self {
+        Self { text, latex }
+    }
+}
+
+/// A signed relative error in percent: `-1.49 %`; what is rounding is called that.
+///
+/// ```
+/// assert_eq!(lindstedt::report::percent(-0.0149), "-1.49 %");
+/// ```
+pub fn percent(error: f64) -> String {
+    if error.abs() < 1e-9 {
+        return "< 1e-7 %".to_owned();
+    }
+    let digits = significant(100.0 * error.abs(), 3);
+    format!("{}{digits} %", if error < 0.0 { "-" } else { "+" })
+}
+
+/// A size in percent: `2.86 %`; what is rounding is called that.
+pub(crate) fn size_in_percent(size: f64) -> String {
+    match size < 1e-9 {
+        true => "< 1e-7 %".to_owned(),
+        false => format!("{} %", significant(100.0 * size, 3)),
+    }
+}
+
+/// A number, or a stroke where there is none.
+fn cell(value: Option<f64>) -> String {
+    value.map_or("-".to_owned(), decimal)
 }
 
 /// Whether the first column of a table has names, no number among them: then it stands on the left.

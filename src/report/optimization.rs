@@ -6,8 +6,8 @@ mod sentences;
 
 pub use sentences::optimization_sentences;
 
-use super::materials::{cell, chosen, head, in_words, percent};
-use super::{Block, Document, Heading};
+use super::materials::{chosen, in_words, percent};
+use super::{Block, Document, Heading, cell};
 use crate::decimal::{decimal, significant};
 use crate::genetic::{Coding, Crossover, Mutation, Options, Penalty, StallTest};
 use crate::impact::{Model, Parameter, REST_FRACTION};
@@ -54,7 +54,7 @@ fn column(objective: Objective) -> Heading {
         Objective::Impacts => ("impacts", "impacts"),
         Objective::PrimaryRestTime => ("main mass, s", "main mass, s"),
     };
-    Heading { text, latex }
+    (text, latex).into()
 }
 
 /// A value with its unit.
@@ -346,15 +346,17 @@ fn quantities(study: &Study, design: &Design) -> Vec<(Heading, String)> {
         let objective = Objective::PrimaryRestTime;
         rows.push((column(objective), cell(objective.value(design))));
     }
-    let plain = |text: &'static str, latex: &'static str| Heading { text, latex };
-    rows.push((plain("gamma", "$\\gamma$"), decimal(design.model.gamma)));
-    rows.push((plain("mu/gamma", "$\\mu/\\gamma$"), decimal(design.model.mu / design.model.gamma)));
+    rows.push((("gamma", "$\\gamma$").into(), decimal(design.model.gamma)));
+    rows.push((
+        ("mu/gamma", "$\\mu/\\gamma$").into(),
+        decimal(design.model.mu / design.model.gamma),
+    ));
     let restitution = design.hardest.and_then(|contact| contact.restitution);
-    rows.push((plain("restitution", "restitution"), cell(restitution)));
+    rows.push(("restitution".into(), cell(restitution)));
     if let Some(limit) = study.question.yield_limit(design) {
         let pressure = Objective::PeakPressure.value(design);
         rows.push((
-            plain("pressure/(1.6 Y)", "pressure/(1.6 Y)"),
+            "pressure/(1.6 Y)".into(),
             cell(pressure.map(|pressure| pressure / (crate::impact::FIRST_YIELD * limit))),
         ));
     }
@@ -397,21 +399,19 @@ fn best_design(study: &Study) -> Vec<Block<'_>> {
             String::new(),
         ]);
     }
-    let mut blocks = vec![
+    let mut blocks =
+        vec![
         Block::Heading(
             "The best design, and the paper's Table 5 under the same assumptions, both integrated"
                 .to_owned(),
         ),
-        Block::Table {
-            head: head(&[
+        Block::table([
                 ("", ""),
                 ("best", "best"),
                 ("Table 5", "Table 5"),
                 ("limit from", "limit from"),
                 ("to", "to"),
-            ]),
-            rows,
-        },
+            ], rows),
     ];
     if route(study) != "integration" {
         let judged = match study.finalists.len() {
@@ -468,8 +468,8 @@ fn agreement(study: &Study) -> Vec<Block<'_>> {
             study.objective().unit(),
             route(study)
         )),
-        Block::Table {
-            head: head(&[
+        Block::table(
+            [
                 ("search", "search"),
                 ("evaluations", "evaluations"),
                 ("best", "best"),
@@ -477,20 +477,16 @@ fn agreement(study: &Study) -> Vec<Block<'_>> {
                 ("median", "median"),
                 ("upper quartile", "upper quartile"),
                 ("worst", "worst"),
-            ]),
+            ],
             rows,
-        },
+        ),
         Block::Note(with_value),
-        Block::Table {
-            head: head(&[
-                ("generation", "generation"),
-                ("best so far, median", "best so far, median"),
-            ]),
-            rows: shown
+        Block::table(
+            [("generation", "generation"), ("best so far, median", "best so far, median")],
+            shown
                 .into_iter()
-                .map(|generation| vec![generation.to_string(), number(curve[generation])])
-                .collect(),
-        },
+                .map(|generation| vec![generation.to_string(), number(curve[generation])]),
+        ),
     ]
 }
 
@@ -512,8 +508,7 @@ fn decision(study: &Study) -> Option<Vec<Block<'_>>> {
     };
     let mut blocks = vec![
         Block::Heading("What decides: every variable alone, the others held at the best design".to_owned()),
-        Block::Table {
-            head: head(&[
+        Block::table([
                 ("variable", "variable"),
                 ("best", "best"),
                 ("elasticity", "elasticity"),
@@ -522,9 +517,7 @@ fn decision(study: &Study) -> Option<Vec<Block<'_>>> {
                 ("least", "least"),
                 ("greatest", "greatest"),
                 ("role", "role"),
-            ]),
-            rows: decision.sensitivities.iter().map(row).collect(),
-        },
+            ], decision.sensitivities.iter().map(row)),
         Block::Note(
             "elasticity: change of the objective in % for 1 % of the variable; as good: no more than 1 % worse"
                 .to_owned(),
@@ -536,16 +529,10 @@ fn decision(study: &Study) -> Option<Vec<Block<'_>>> {
     ];
     if decision.materials.len() > 1 {
         let rows = study.question.materials.iter().zip(&decision.materials);
-        blocks.push(Block::Table {
-            head: vec![
-                Heading {
-                    text: "material, the rest as it is best",
-                    latex: "material, the rest as it is best",
-                },
-                column(study.objective()),
-            ],
-            rows: rows.map(|(material, value)| vec![material.name.clone(), cell(*value)]).collect(),
-        });
+        blocks.push(Block::table(
+            ["material, the rest as it is best".into(), column(study.objective())],
+            rows.map(|(material, value)| vec![material.name.clone(), cell(*value)]),
+        ));
     }
     Some(blocks)
 }
@@ -560,11 +547,11 @@ fn front(study: &Study) -> Vec<Block<'_>> {
             Parameter::Length => ("L, m", "$L$, m"),
             _ => ("E, Pa", "$E$, Pa"),
         };
-        Heading { text, latex }
+        Heading::from((text, latex))
     });
     names.extend(variables);
     let materials = !question.materials.is_empty();
-    names.extend(materials.then_some(Heading { text: "material", latex: "material" }));
+    names.extend(materials.then_some(Heading::from("material")));
     let row = |values: Vec<String>, design: &Design| {
         let numbers =
             question.variables.iter().map(|variable| cell(design.case.get(variable.parameter)));
@@ -582,16 +569,13 @@ fn front(study: &Study) -> Vec<Block<'_>> {
             "The front: {count} designs none of which is better than another in everything, integrated{}",
             if shown.len() < count { format!(", {} of them", shown.len()) } else { String::new() }
         )),
-        Block::Table {
-            head: names,
-            rows: shown
-                .into_iter()
-                .map(|index| {
-                    let finalist = &study.finalists[index];
-                    row(finalist.values.iter().map(number).collect(), &finalist.design)
-                })
-                .collect(),
-        },
+        Block::table(
+            names,
+            shown.into_iter().map(|index| {
+                let finalist = &study.finalists[index];
+                row(finalist.values.iter().map(number).collect(), &finalist.design)
+            }),
+        ),
     ];
     if let Some(papers) = &study.default_design {
         let values: Vec<String> = question

@@ -2,7 +2,7 @@
 //! damper is worth.
 
 use super::trajectory::{Doubt, TRUSTED};
-use super::{Block, Document, Heading};
+use super::{Block, Document, cell};
 use crate::decimal::{decimal, significant};
 use crate::impact::Units;
 use crate::impact::primary::{Alone, PrimaryMotion, PrimaryParameter, PrimaryRow};
@@ -118,10 +118,6 @@ fn values<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     blocks
 }
 
-fn headings<const N: usize>(texts: [&'static str; N]) -> Vec<Heading> {
-    texts.map(|text| Heading { text, latex: text }).into()
-}
-
 fn impacts<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     let impacts = &report.motion.impacts;
     let count = impacts.len();
@@ -142,8 +138,8 @@ fn impacts<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     let or_none = |value: Option<f64>| value.map_or_else(String::new, decimal);
     let row = |impact: &crate::impact::primary::PrimaryImpact| {
         vec![
-            decimal(impact.entry),
-            or_none(impact.exit.map(|exit| exit - impact.entry)),
+            decimal(impact.entry_time),
+            or_none(impact.exit_time.map(|exit| exit - impact.entry_time)),
             impact.side.name().to_owned(),
             decimal(impact.speed_in),
             or_none(impact.speed_out),
@@ -152,18 +148,10 @@ fn impacts<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
         ]
     };
     if count > 0 {
-        blocks.push(Block::Table {
-            head: headings([
-                "touch",
-                "duration",
-                "side",
-                "speed in",
-                "speed out",
-                "depth",
-                "energy lost",
-            ]),
-            rows: impacts.iter().take(MOST_IMPACTS).map(row).collect(),
-        });
+        blocks.push(Block::table(
+            ["touch", "duration", "side", "speed in", "speed out", "depth", "energy lost"],
+            impacts.iter().take(MOST_IMPACTS).map(row),
+        ));
     }
     blocks
 }
@@ -228,14 +216,14 @@ fn rest_times<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     };
     let mut blocks = vec![
         Block::Heading(heading.to_owned()),
-        Block::Table {
-            head: headings(head),
-            rows: vec![
+        Block::table(
+            head,
+            vec![
                 own.into(),
                 alone("damper locked", &others.locked),
                 alone("without", &others.without),
             ],
-        },
+        ),
     ];
     if let (false, Err(reason)) = (driven, motion.rest_time()) {
         blocks.push(Block::Note(format!("with its damper: {reason}")));
@@ -253,10 +241,7 @@ fn samples<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
         let state = report.motion.at(*time)?;
         Some([*time, state.x, state.velocity, state.y, state.speed].map(decimal).into())
     };
-    vec![Block::Table {
-        head: headings(["t", "x", "x'", "y", "y'"]),
-        rows: report.samples.iter().filter_map(row).collect(),
-    }]
+    vec![Block::table(["t", "x", "x'", "y", "y'"], report.samples.iter().filter_map(row))]
 }
 
 /// A sweep of a main mass to be reported.
@@ -305,7 +290,6 @@ impl PrimarySweepReport<'_> {
 /// ```
 pub fn primary_sweep<'a>(report: &PrimarySweepReport) -> Document<'a> {
     let driven = report.is_driven();
-    let or_none = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), decimal);
     let row = |(number, (row, units)): (usize, (&PrimaryRow, &Units))| {
         let (length, time, begun) = (units.length, units.time(), row.is_begun());
         let others = [row.others.locked, row.others.without];
@@ -317,7 +301,7 @@ pub fn primary_sweep<'a>(report: &PrimarySweepReport) -> Document<'a> {
         };
         let impacts = if driven { row.impacts } else { row.all_impacts };
         let mut cells: Vec<String> = report.values(number).into_iter().map(decimal).collect();
-        cells.extend(results.map(or_none));
+        cells.extend(results.map(cell));
         cells.push(match begun {
             true => impacts.to_string(),
             false => "-".to_owned(),
@@ -326,7 +310,7 @@ pub fn primary_sweep<'a>(report: &PrimarySweepReport) -> Document<'a> {
     };
     let names = report.parameters.iter().map(|parameter| parameter.name());
     let results = ["with its damper", "damper locked", "without", "impacts"];
-    let head = names.chain(results).map(|text| Heading { text, latex: text });
+    let head = names.chain(results);
     let meanings = report.parameters.iter().map(|parameter| {
         let unit = parameter.unit();
         let comma = if unit.is_empty() { "" } else { ", " };
@@ -342,9 +326,6 @@ pub fn primary_sweep<'a>(report: &PrimarySweepReport) -> Document<'a> {
     };
     let mut blocks = vec![Block::Heading(heading.to_owned())];
     blocks.extend(meanings);
-    blocks.push(Block::Table {
-        head: head.collect(),
-        rows: report.rows.iter().zip(report.units).enumerate().map(row).collect(),
-    });
+    blocks.push(Block::table(head, report.rows.iter().zip(report.units).enumerate().map(row)));
     Document { sections: vec![blocks] }
 }

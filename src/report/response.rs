@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use super::{Block, Document, Heading};
+use super::{Block, Document};
 use crate::decimal::{decimal, significant};
 use crate::derivation::Line;
 use crate::expr::Expr;
@@ -136,10 +136,6 @@ fn numbers(values: &Values) -> impl Iterator<Item = (Symbol, f64)> {
     values.numbers().into_iter()
 }
 
-fn heads(names: &[&'static str]) -> Vec<Heading> {
-    names.iter().map(|name| Heading { text: name, latex: name }).collect()
-}
-
 /// The indices of the rows: the ends, equal steps between, and the points beside every change of
 /// stability.
 fn rows(points: &[Point]) -> Vec<usize> {
@@ -184,10 +180,7 @@ fn branch(response: &Response, index: usize, branch: &Branch) -> Vec<Block<'stat
     };
     let mut blocks = vec![
         Block::Heading(format!("branch {}: {}", index + 1, extent_in_words(response, branch))),
-        Block::Table {
-            head: heads(columns),
-            rows: rows(&branch.points).into_iter().map(row).collect(),
-        },
+        Block::table(columns.iter().copied(), rows(&branch.points).into_iter().map(row)),
     ];
     if branch.mirrored {
         let image = match response.self_excited {
@@ -326,10 +319,7 @@ fn changes(response: &Response) -> Option<Vec<Block<'static>>> {
         blocks.extend(ripple(response));
         return Some(blocks);
     }
-    blocks.push(Block::Table {
-        head: heads(&columns),
-        rows: all.iter().take(MOST_BIFURCATIONS).map(row).collect(),
-    });
+    blocks.push(Block::table(columns, all.iter().take(MOST_BIFURCATIONS).map(row)));
     if all.len() > MOST_BIFURCATIONS {
         blocks.push(Block::Note(format!("and {} more", all.len() - MOST_BIFURCATIONS)));
     }
@@ -380,12 +370,10 @@ fn backbone(response: &Response) -> Option<Vec<Block<'static>>> {
     for curve in &response.backbone {
         let count = curve.len();
         let chosen = (0..FEW).map(|index| &curve[index * (count - 1) / (FEW - 1)]);
-        blocks.push(Block::Table {
-            head: heads(&[name, "amplitude"]),
-            rows: chosen
-                .map(|point| vec![decimal(point.parameter), decimal(point.amplitude)])
-                .collect(),
-        });
+        blocks.push(Block::table(
+            [name, "amplitude"],
+            chosen.map(|point| vec![decimal(point.parameter), decimal(point.amplitude)]),
+        ));
     }
     Some(blocks)
 }
@@ -419,10 +407,7 @@ fn by_slow_equations(response: &Response, slow: &SlowResponse) -> Vec<Block<'sta
         let numbers = [state.parameter, state.amplitude, state.phase].map(decimal);
         Some(numbers.into_iter().chain([stable.to_owned()]).collect())
     };
-    blocks.push(Block::Table {
-        head: heads(&[name, "amplitude", "phase", "stable"]),
-        rows: (0..=steps).filter_map(row).collect(),
-    });
+    blocks.push(Block::table([name, "amplitude", "phase", "stable"], (0..=steps).filter_map(row)));
     let mut facts = vec![(
         "largest error",
         match (slow.error, slow.worst) {

@@ -79,7 +79,9 @@ pub(super) fn law_blocks<'a>(solution: &'a Solution, law: Shown<'a>) -> Vec<Bloc
     match law {
         Shown::Squared(squared) => vec![explicit(&omega * &omega, squared)],
         Shown::Frequency(frequency) => vec![explicit(omega, frequency)],
-        Shown::Relation(relation) => vec![Block::Relation(solution.by_falling_frequency(relation))],
+        Shown::Relation(relation) => {
+            vec![Block::Law { left: Expr::zero(), right: solution.by_falling_frequency(relation) }]
+        }
         Shown::Closed(form) => {
             let left = if form.squared { &omega * &omega } else { omega };
             in_decimals(solution, &form.value, &left)
@@ -91,7 +93,9 @@ pub(super) fn law_blocks<'a>(solution: &'a Solution, law: Shown<'a>) -> Vec<Bloc
         Shown::System(system) => {
             let equations = system.equations.iter();
             let equations = equations.map(|right| Block::Equality { left: Expr::zero(), right });
-            std::iter::once(Block::Unknowns(&system.unknowns)).chain(equations).collect()
+            let names: Vec<&str> = system.unknowns.iter().map(|name| name.written()).collect();
+            let unknowns = Block::Detail(format!("for {}:", names.join(", ")));
+            std::iter::once(unknowns).chain(equations).collect()
         }
     }
 }

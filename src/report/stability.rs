@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use super::{Block, Document, Heading};
+use super::{Block, Document, percent};
 use crate::decimal::{decimal, significant};
 use crate::derivation::Line;
 use crate::expr::Expr;
@@ -121,17 +121,6 @@ fn validity<'a>(curves: &TransitionCurves) -> Vec<Block<'a>> {
     blocks
 }
 
-fn signed_percent(error: f64) -> String {
-    match error.abs() < 1e-9 {
-        true => "< 1e-7 %".to_owned(),
-        false => format!(
-            "{}{} %",
-            if error < 0.0 { "-" } else { "+" },
-            significant(100.0 * error.abs(), 3)
-        ),
-    }
-}
-
 fn verdicts<'a>(
     report: &StabilityReport<'a>,
     at: &'a Values,
@@ -151,7 +140,7 @@ fn verdicts<'a>(
             report.curves.curves[curve.curve].name.clone(),
             number(curve.value),
             number(curve.truth),
-            curve.relative_error.map_or(String::new(), signed_percent),
+            curve.relative_error.map_or(String::new(), percent),
             if curve.passes { "pass" } else { "fail" }.to_owned(),
         ]
     };
@@ -162,10 +151,7 @@ fn verdicts<'a>(
             values.join(", "),
             format_args!("{} %", significant(100.0 * report.tolerance, 3))
         )),
-        Block::Table {
-            head: head.map(|(text, latex)| Heading { text, latex }).to_vec(),
-            rows: judged.iter().map(row).collect(),
-        },
+        Block::table(head, judged.iter().map(row)),
         Block::Note(format!(
             "true: by Hill's determinant, confirmed by Floquet's multipliers of the integrated motion; none: {}",
             match report.curves.unknown.power() {

@@ -132,21 +132,13 @@ pub fn trajectory<'a>(report: &TrajectoryReport<'a>) -> Document<'a> {
 
 fn states<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
     let motion = report.motion;
-    let times = std::iter::once(Heading { text: "t", latex: "$t$" });
-    let names = motion
-        .course
-        .rates
-        .states
-        .iter()
-        .map(|name| Heading { text: name.name(), latex: name.name() });
+    let times = std::iter::once(Heading::from(("t", "$t$")));
+    let names = motion.course.rates.states.iter().map(|name| name.name().into());
     let row = |time: f64| {
         let state = motion.at(time)?;
         Some(std::iter::once(time).chain(state).map(decimal).collect())
     };
-    vec![Block::Table {
-        head: times.chain(names).collect(),
-        rows: report.times().into_iter().filter_map(row).collect(),
-    }]
+    vec![Block::table(times.chain(names), report.times().into_iter().filter_map(row))]
 }
 
 /// The first states on the section.
@@ -171,18 +163,17 @@ fn on_section<'a>(motion: &Trajectory, section: &Section) -> Vec<Block<'a>> {
     if count > MOST_ON_SECTION {
         words.push_str(&format!("; the first {MOST_ON_SECTION}, all of them as CSV or JSON"));
     }
-    let heading = |name: &'static str| Heading { text: name, latex: name };
-    let names = motion.course.rates.states.iter().map(|name| heading(name.name()));
+    let names = motion.course.rates.states.iter().map(|name| name.name());
     let row = |crossing: &Crossing| -> Vec<String> {
         let numbers = std::iter::once(&crossing.time).chain(&crossing.state);
         numbers.map(|number| decimal(*number)).collect()
     };
     let mut blocks = vec![Block::Heading(words)];
     if count > 0 {
-        blocks.push(Block::Table {
-            head: std::iter::once(heading("t")).chain(names).collect(),
-            rows: crossings.iter().take(MOST_ON_SECTION).map(row).collect(),
-        });
+        blocks.push(Block::table(
+            std::iter::once("t").chain(names),
+            crossings.iter().take(MOST_ON_SECTION).map(row),
+        ));
     }
     blocks
 }
@@ -201,18 +192,16 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
     let course = sweep.course;
     let equation =
         |left: &Expr| Block::Line(Cow::Owned(Line::equation(left.clone(), Expr::zero())));
-    let heading = |name: &'static str| Heading { text: name, latex: name };
-    let varied = sweep.names.iter().map(|name| heading(name.name()));
-    let mut head: Vec<Heading> = varied.collect();
+    let mut head: Vec<&str> = sweep.names.iter().map(|name| name.name()).collect();
     let extremes = course
         .coordinates
         .iter()
         .flat_map(|name| [format!("least {name}"), format!("greatest {name}")]);
     // The names of a table live as long as the program.
-    head.extend(extremes.map(|name| heading(Symbol::new(&name).name())));
+    head.extend(extremes.map(|name| Symbol::new(&name).name()));
     let on_section = course.section.is_some();
     if on_section {
-        head.push(heading("section"));
+        head.push("section");
     }
     let rows = sweep.motions.iter().map(|motion| {
         let numbers = motion.values.iter().chain(motion.extremes.iter().flatten());
@@ -233,7 +222,7 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
     Document {
         sections: vec![
             course.equations.iter().map(equation).collect(),
-            vec![Block::Table { head, rows: rows.collect() }],
+            vec![Block::table(head, rows)],
             last,
         ],
     }

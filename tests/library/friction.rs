@@ -6,6 +6,7 @@ use lindstedt::audit::paper::{SPEEDS, Table};
 use lindstedt::export::{friction, text};
 use lindstedt::impact::friction::{DEFAULT_ALPHA, FrictionSetup, FrictionStudy, study, work_share};
 use lindstedt::impact::{Friction, Integrator, Model, Settings, Start, simulate};
+use lindstedt::report;
 
 fn with(alpha: f64) -> FrictionStudy {
     let setup = FrictionSetup { alpha, ..FrictionSetup::default() };
@@ -17,7 +18,7 @@ fn with(alpha: f64) -> FrictionStudy {
 #[test]
 fn the_page_says_what_is_computed() {
     let page = include_str!("../../docs/friction.md");
-    let printed = text::friction(&with(DEFAULT_ALPHA));
+    let printed = text::document(&report::friction(&with(DEFAULT_ALPHA)), usize::MAX);
     let sections: Vec<&str> = printed.trim_end().split("\n\n").skip(1).collect();
     assert_eq!(sections.len(), 6);
     for section in sections {

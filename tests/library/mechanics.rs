@@ -381,7 +381,7 @@ fn the_papers_equations_are_found_right_and_wrong() {
     let wrong: Vec<&str> = findings
         .iter()
         .filter(|finding| finding.agrees == Some(false))
-        .map(|finding| finding.equation)
+        .map(|finding| finding.equation.as_str())
         .collect();
     assert_eq!(wrong, ["(1)", "(5)"]);
     // The built-in mechanism is the one of the example.

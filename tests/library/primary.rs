@@ -66,7 +66,7 @@ fn a_heavy_main_mass_leaves_the_pendulum_alone() {
         );
         assert_eq!(motion.impacts.len(), truth.impacts.len(), "{model:?}");
         for (own, truth) in motion.impacts.iter().zip(&truth.impacts) {
-            assert!((own.entry - truth.entry_time).abs() < 1e-7, "{own:?} {truth:?}");
+            assert!((own.entry_time - truth.entry_time).abs() < 1e-7, "{own:?} {truth:?}");
             assert!((own.speed_in - truth.speed_in).abs() < 1e-7, "{own:?} {truth:?}");
         }
         for index in 0..=400 {
@@ -131,7 +131,7 @@ fn momentum_and_energy_balance_over_every_impact() {
     let motion = follow(case, 60.0);
     assert!(motion.impacts.len() > 20);
     for impact in &motion.impacts {
-        let Some(exit) = impact.exit else { continue };
+        let Some(exit) = impact.exit_time else { continue };
         let at = |t: f64| motion.at(t).expect("a state");
         let momentum = |t: f64| {
             let state = at(t);
@@ -140,9 +140,9 @@ fn momentum_and_energy_balance_over_every_impact() {
         // Simpson over the contact: force of spring, dashpot and excitation; power of the last two.
         const PARTS: u32 = 400;
         let (mut push, mut work) = (0.0, 0.0);
-        let width = (exit - impact.entry) / f64::from(PARTS);
+        let width = (exit - impact.entry_time) / f64::from(PARTS);
         for part in 0..=PARTS {
-            let t = impact.entry + width * f64::from(part);
+            let t = impact.entry_time + width * f64::from(part);
             let state = at(t);
             let weight = match part {
                 0 | PARTS => 1.0,
@@ -154,9 +154,9 @@ fn momentum_and_energy_balance_over_every_impact() {
             push += weight * (drive - primary.stiffness * state.y - primary.damping * state.speed);
             work += weight * (drive * state.speed - primary.damping * state.speed * state.speed);
         }
-        let change = momentum(exit) - momentum(impact.entry);
+        let change = momentum(exit) - momentum(impact.entry_time);
         assert!((change - push).abs() < 1e-9, "{impact:?}: {change} {push}");
-        let energy = case.energy(at(exit)) - case.energy(at(impact.entry));
+        let energy = case.energy(at(exit)) - case.energy(at(impact.entry_time));
         assert!((energy - work + impact.energy_lost).abs() < 1e-9, "{impact:?}: {energy} {work}");
         assert!(impact.speed_out.expect("a release") < impact.speed_in && impact.energy_lost > 0.0);
     }
@@ -176,7 +176,7 @@ fn no_impact_is_missed() {
             let within = motion
                 .impacts
                 .iter()
-                .any(|impact| (impact.entry..=impact.exit.unwrap_or(80.0)).contains(&t));
+                .any(|impact| (impact.entry_time..=impact.exit_time.unwrap_or(80.0)).contains(&t));
             assert!(!deep || within, "{start:?} at {t}: {state:?}");
             inside += usize::from(deep);
         }
@@ -492,8 +492,8 @@ fn a_start_inside_a_barrier_is_a_start_in_contact() {
             }
         }
         let first = motion.impacts[0];
-        assert_eq!((first.entry, first.speed_in), (0.0, velocity));
-        assert!(first.penetration >= 0.05 - 1e-15 && first.exit.is_some());
+        assert_eq!((first.entry_time, first.speed_in), (0.0, velocity));
+        assert!(first.penetration >= 0.05 - 1e-15 && first.exit_time.is_some());
     }
     // Faster outwards than the barrier follows: nothing pushes, as if there were no barrier, until
     // it is out.
@@ -501,7 +501,7 @@ fn a_start_inside_a_barrier_is_a_start_in_contact() {
     let motion = follow(PrimaryCase { primary, model, start }, 1.0);
     let free = Model { right: None, ..model };
     let without = follow(PrimaryCase { primary, model: free, start }, 1.0);
-    let out = motion.impacts[0].exit.expect("an exit");
+    let out = motion.impacts[0].exit_time.expect("an exit");
     for state in [0.5 * out, out].map(|t| [motion.at(t), without.at(t)]) {
         let [own, other] = state.map(|state| state.expect("a state"));
         assert!((own.x - other.x).abs() < 1e-13 && (own.velocity - other.velocity).abs() < 1e-12);

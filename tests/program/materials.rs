@@ -13,6 +13,7 @@ use lindstedt::impact::{
     Start, course, simulate, study_materials,
 };
 use lindstedt::problem::Problem;
+use lindstedt::report;
 
 fn study(text: &str) -> MaterialStudy {
     let file: Problem = text.parse().expect("a file");
@@ -190,7 +191,7 @@ fn a_barrier_beyond_all_hardness_is_a_barrier_still() {
         let Some(first) = row.first else { continue };
         let numbers = [first.duration, first.penetration, first.peak_force, first.peak_pressure];
         assert!(numbers.iter().all(|number| *number > 0.0), "{modulus}: {first:?}");
-        let said = text::materials(&study, 120);
+        let said = text::document(&report::materials(&study), 120);
         assert!(!said.contains(" inf") && !said.contains("NaN"), "{said}");
     }
 }
@@ -205,7 +206,7 @@ fn a_barrier_out_of_reach_has_no_say() {
         let rest = row.course.rest_time.expect("rest");
         assert!((rest / none - 1.0).abs() < 1e-4, "{rest} and {none}");
     }
-    let said = text::materials(&study, 120);
+    let said = text::document(&report::materials(&study), 120);
     assert!(
         said.contains("no barrier is touched") && !said.contains("with these barriers"),
         "{said}"

@@ -182,7 +182,8 @@ fn a_main_mass_and_its_pendulum_have_the_numbers_of_their_own_motion() {
         let seconds = Objective::PrimaryRestTime.value(&design).expect("it rests");
         assert!((seconds / (rest * primary.units.time()) - 1.0).abs() < 1e-9, "{start}: {seconds}");
         let until = motion.pendulum_rest_time().expect("it rests");
-        let impacts: Vec<_> = motion.impacts.iter().filter(|impact| impact.entry < until).collect();
+        let impacts: Vec<_> =
+            motion.impacts.iter().filter(|impact| impact.entry_time < until).collect();
         assert_eq!(
             design.impacts,
             impacts.len(),
@@ -192,11 +193,11 @@ fn a_main_mass_and_its_pendulum_have_the_numbers_of_their_own_motion() {
         assert!(!impacts.is_empty(), "{start}");
         // The force by looking at the states.
         let force = impacts.iter().flat_map(|impact| {
-            let exit = impact.exit.expect("an end");
+            let exit = impact.exit_time.expect("an end");
             let (motion, model, sign) = (&motion, primary.case.model, impact.side.sign());
             let barrier = model.barrier(impact.side).expect("a barrier");
             (0..=400).map(move |step| {
-                let t = impact.entry + (exit - impact.entry) * f64::from(step) / 400.0;
+                let t = impact.entry_time + (exit - impact.entry_time) * f64::from(step) / 400.0;
                 let state = motion.at(t).expect("a state");
                 model.contact(sign * (state.x - barrier), sign * state.velocity)
             })
@@ -290,7 +291,7 @@ fn no_sentence_says_more_than_the_numbers() {
     // The length that is best in seconds lies between the limits.
     let (found, sentences) = said(&format!("[damping]\nviscous = 0.003\n{SHORT}"));
     let ends = found.decision.as_ref().and_then(|decision| decision.ends).expect("both ends");
-    let inside = ends.best.iter().any(|length| !ends.lengths.contains(length));
+    let inside = ends.best_lengths.iter().any(|length| !ends.lengths.contains(length));
     assert!(inside && !sentences.contains("from one end to the other"), "{sentences}");
     // No run stood still.
     assert!(
@@ -592,7 +593,8 @@ fn a_damping_without_say_is_not_said_to_be_held_fixed() {
         assert_eq!(question.holds_contact_damping(), held);
         assert_eq!(question.defaults.contains(&Parameter::Lambda), held);
         let found = study(question);
-        let printed = lindstedt::export::text::optimization(&found, 120);
+        let printed =
+            lindstedt::export::text::document(&lindstedt::report::optimization(&found), 120);
         assert_eq!(printed.contains("lambda"), held, "{printed}");
         let document = lindstedt::export::json::optimization(&found);
         let document = serde_json::to_value(document).expect("JSON");

@@ -11,16 +11,18 @@ use crate::mechanics::dimension::{Dimension, UnitError, check, dimension};
 use crate::mechanics::{Equations, Groups, MechanicsError, Mechanism, MechanismQuestion, NoGroups};
 use crate::symbol::Symbol;
 
-/// A printed equation beside what is derived.
+/// An equation of the paper.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Finding {
-    /// The number of the equation in the paper: `(1)`.
-    pub equation: &'static str,
-    /// The printed equation, in the letters of the mechanism.
+    /// Its number: `(1)`.
+    pub equation: String,
+    /// What is printed.
     pub printed: String,
-    /// Whether it follows as it is printed; nothing where it is put in and not derived.
+    /// Whether it follows as it is printed; null where it is put in and not derived.
     pub agrees: Option<bool>,
-    /// The result of the comparison in words.
+    /// What was found, in words.
     pub words: String,
 }
 
@@ -129,7 +131,7 @@ pub fn findings() -> Result<Vec<Finding>, PaperError> {
     let mut findings = vec![kinetic(&mechanism, &energy, &all)?];
     let potential = check(&read(POTENTIAL), &energy, &all, "potential energy");
     findings.push(Finding {
-        equation: "(2)",
+        equation: "(2)".to_owned(),
         printed: POTENTIAL.to_owned(),
         agrees: Some(potential.is_ok()),
         words: match potential {
@@ -148,7 +150,7 @@ pub fn findings() -> Result<Vec<Finding>, PaperError> {
     ] {
         let found = dimension(&read(printed), &all, "contact")?;
         findings.push(Finding {
-            equation,
+            equation: equation.to_owned(),
             printed: printed.to_owned(),
             agrees: Some(found == Dimension::of(unit)),
             words: format!("{words}: {found}"),
@@ -156,7 +158,7 @@ pub fn findings() -> Result<Vec<Finding>, PaperError> {
     }
     findings.push(equation_of_motion(&equations, &all)?);
     findings.push(Finding {
-        equation: "(6)",
+        equation: "(6)".to_owned(),
         printed: "sgn(x') ~ (2/pi)*atan(100*x')".to_owned(),
         agrees: None,
         words: "an approximation, not derived; `lindstedt friction` judges it".to_owned(),
@@ -176,7 +178,7 @@ fn kinetic(
     let refused = check(&printed, energy, all, "kinetic energy");
     let squared = check(&mechanism.kinetic, energy, all, "kinetic energy").is_ok();
     Ok(Finding {
-        equation: "(1)",
+        equation: "(1)".to_owned(),
         printed: PRINTED_KINETIC.to_owned(),
         agrees: Some(refused.is_ok()),
         words: match (refused, squared) {
@@ -221,7 +223,7 @@ fn equation_of_motion(
         (Err(error), false) => error.to_string(),
     };
     Ok(Finding {
-        equation: "(5)",
+        equation: "(5)".to_owned(),
         printed: format!("{PRINTED_SWING} + H(x - xc)*(F_c + V_c)/(m*L^2)"),
         agrees: Some(difference.is_zero() && contact.is_ok()),
         words: format!("{swing_words}; {contact_words}"),
@@ -235,7 +237,7 @@ fn scaled(groups: &Groups) -> Result<Finding, PaperError> {
     let own = for_small(&groups.left[0], &depth)?.expand()?;
     let difference = (own - printed.expand()?).expand()?;
     Ok(Finding {
-        equation: "(7)",
+        equation: "(7)".to_owned(),
         printed: PRINTED_SCALED.to_owned(),
         agrees: Some(difference.is_zero()),
         words: match difference.is_zero() {
@@ -262,7 +264,7 @@ fn definitions(groups: &Groups) -> Result<Finding, PaperError> {
     let printed: Vec<String> =
         PRINTED_GROUPS.iter().map(|(name, definition)| format!("{name} = {definition}")).collect();
     Ok(Finding {
-        equation: "(8)",
+        equation: "(8)".to_owned(),
         printed: printed.join(", "),
         agrees: Some(differing.is_empty()),
         words: match differing.as_slice() {

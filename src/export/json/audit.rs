@@ -5,32 +5,30 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
-use crate::audit::{Audit, Computed, Finding, Tried as TriedClaim, Verdict};
+use super::number::texts;
+use crate::audit::{Audit, Computed, Finding, Tried, Verdict};
 use crate::report::{audit_computed, audit_entry, audit_printed};
 
 /// Claims of a publication, computed again, with a verdict each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct AuditDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Audit.schema())))]
     pub schema: String,
     /// The publication; empty where the file names none.
     pub title: String,
     /// How many claims have each verdict.
-    pub counts: Counts,
+    pub counts: AuditCounts,
     /// Whether every verdict is the expected one: the exit code is 0 then, and 3 if not.
     pub passes: bool,
     /// The claims, in the order of the file.
-    pub claims: Vec<Claim>,
+    pub claims: Vec<AuditClaim>,
 }
 
 /// How many claims have each verdict.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditCounts"))]
-pub struct Counts {
+pub struct AuditCounts {
     /// Reproduced to every printed digit.
     pub reproduced: usize,
     /// Reproduced by something that the publication does not say.
@@ -44,8 +42,7 @@ pub struct Counts {
 /// One claim.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditClaim"))]
-pub struct Claim {
+pub struct AuditClaim {
     /// Its name in the file.
     pub id: String,
     /// Where it is printed.
@@ -72,11 +69,11 @@ pub struct Claim {
     /// Whether the verdict is the expected one.
     pub as_expected: bool,
     /// What is printed, entry by entry, beside what is computed.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<AuditEntry>,
     /// What was supposed in turn, the claim alone first.
-    pub tried: Vec<Tried>,
+    pub tried: Vec<AuditTried>,
     /// What the claim asks of a number that is not printed; null where none was solved for.
-    pub unknown: Option<Unknown>,
+    pub unknown: Option<AuditUnknown>,
     /// What the file says beside it; null where it says nothing.
     pub note: Option<String>,
 }
@@ -84,8 +81,7 @@ pub struct Claim {
 /// One thing that is printed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditEntry"))]
-pub struct Entry {
+pub struct AuditEntry {
     /// As it is printed.
     pub printed: String,
     /// What is computed, in words; null where nothing is.
@@ -99,8 +95,7 @@ pub struct Entry {
 /// The claim under some suppositions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditTried"))]
-pub struct Tried {
+pub struct AuditTried {
     /// What is supposed; empty for the claim alone.
     pub supposing: Vec<String>,
     /// How many entries come out.
@@ -112,8 +107,7 @@ pub struct Tried {
 /// What a claim asks of a number that is not printed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "AuditUnknown"))]
-pub struct Unknown {
+pub struct AuditUnknown {
     /// Its name.
     pub name: String,
     /// A value that makes the claim come out.
@@ -146,7 +140,7 @@ pub fn audit(audit: &Audit) -> AuditDocument {
     AuditDocument {
         schema: Kind::Audit.schema().to_owned(),
         title: audit.title.clone(),
-        counts: Counts {
+        counts: AuditCounts {
             reproduced: audit.count(Verdict::Reproduced),
             reproduced_under_assumption: audit.count(Verdict::UnderAssumption),
             not_reproducible: audit.count(Verdict::NotReproducible),
@@ -161,23 +155,23 @@ fn number(found: &Result<Computed, crate::audit::Lack>) -> Option<f64> {
     found.as_ref().ok()?.number().filter(|number| number.is_finite())
 }
 
-fn claim(finding: &Finding) -> Claim {
+fn claim(finding: &Finding) -> AuditClaim {
     let own = &finding.claim;
     let shown = finding.shown();
-    let entry = |(index, printed): (usize, &crate::audit::Entry)| Entry {
+    let entry = |(index, printed): (usize, &crate::audit::Entry)| AuditEntry {
         printed: printed.printed.clone(),
         computed: shown.and_then(|tried| audit_entry(finding, tried, index)),
         value: shown.and_then(|tried| number(tried.computed.get(index)?)),
         reproduced: shown
             .is_some_and(|tried| tried.reproduced.get(index).is_some_and(|entry| *entry)),
     };
-    let tried = |tried: &TriedClaim| Tried {
-        supposing: tried.supposing.iter().map(ToString::to_string).collect(),
+    let tried = |tried: &Tried| AuditTried {
+        supposing: texts(&tried.supposing),
         reproduced: tried.reproduced.iter().filter(|entry| **entry).count(),
         values: tried.computed.iter().map(number).collect(),
     };
     let assumption = finding.assumption();
-    Claim {
+    AuditClaim {
         id: own.id.clone(),
         place: own.place.clone(),
         says: own.says.clone(),
@@ -191,7 +185,7 @@ fn claim(finding: &Finding) -> Claim {
         as_expected: finding.is_as_expected(),
         entries: own.entries.iter().enumerate().map(entry).collect(),
         tried: finding.tried.iter().map(tried).collect(),
-        unknown: finding.demand.map(|demand| Unknown {
+        unknown: finding.demand.map(|demand| AuditUnknown {
             name: demand.unknown.name.name().to_owned(),
             value: demand.value,
             range: demand.range,

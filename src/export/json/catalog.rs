@@ -10,10 +10,8 @@ use crate::catalog;
 /// The classical oscillators that the program knows by name.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct CatalogDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Catalog.schema())))]
     pub schema: String,
     /// The oscillators, in the order of the listing.
     pub entries: Vec<Entry>,
@@ -22,7 +20,6 @@ pub struct CatalogDocument {
 /// A classical oscillator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Entry {
     /// The name on the command line.
     pub name: String,
@@ -42,7 +39,6 @@ pub struct Entry {
 /// Whether a method applies to an oscillator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Applicability {
     /// The method, by its name on the command line.
     #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]

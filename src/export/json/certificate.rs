@@ -9,7 +9,7 @@ use num_traits::Zero as _;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::number::expression;
+use super::number::{expression, texts};
 use super::schema::check_kind;
 use super::{JsonError, Kind, unexpected};
 use crate::certificate::{
@@ -34,7 +34,6 @@ const LONGEST_FORCE: usize = 2000;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct CertificateDocument {
     /// The kind of document.
     #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Certificate.schema())))]
@@ -43,7 +42,7 @@ pub struct CertificateDocument {
     #[cfg_attr(feature = "schema", schemars(extend("const" = EQUATION)))]
     pub ode: String,
     /// The force: the coefficients of a polynomial by rising power of x, or an expression in x.
-    pub f: ForceDocument,
+    pub f: CertificateForce,
     /// x(0), a fraction, exact; x'(0) = 0.
     #[serde(rename = "A")]
     pub start: String,
@@ -73,7 +72,7 @@ pub struct CertificateDocument {
     /// The radius that is claimed: the true mu and c are so near in the norm.
     pub claim_r: String,
     /// The formula that is judged; null where none is.
-    pub formula: Option<FormulaDocument>,
+    pub formula: Option<CertificateFormula>,
 }
 
 /// What `ode` has.
@@ -83,8 +82,7 @@ const EQUATION: &str = "x''+f(x)=0";
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(untagged)]
-#[cfg_attr(feature = "schema", schemars(rename = "CertificateForce"))]
-pub enum ForceDocument {
+pub enum CertificateForce {
     /// The coefficients of a polynomial, fractions, that of x^0 first.
     Polynomial(Vec<String>),
     /// An expression in x; `sin` is short for `sin(x)`.
@@ -96,8 +94,7 @@ pub enum ForceDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CertificateFormula"))]
-pub struct FormulaDocument {
+pub struct CertificateFormula {
     /// The law as it was derived: `omega = ...` or `omega^2 = ...` with definitions of letters
     /// behind commas, which has to give `omega` at `values` to its last digits. What is of another
     /// form is words: nothing is checked against them.
@@ -105,7 +102,7 @@ pub struct FormulaDocument {
     /// The letters of the answer in the law, where the equation has the usual ones, `A` or `omega`,
     /// for something of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub letters: Option<LettersDocument>,
+    pub letters: Option<CertificateLetters>,
     /// The values of the letters in the law, such as `A = 3/2, k = pi/5`; A is x(0) less a place of
     /// rest.
     #[serde(default, skip_serializing_if = "String::is_empty")]
@@ -126,8 +123,8 @@ pub struct FormulaDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "LettersOfLaw"))]
-pub struct LettersDocument {
+#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
+pub struct CertificateLetters {
     /// That of the amplitude, whose value is x(0) less a place of rest.
     pub amplitude: String,
     /// That of the frequency, on the left side of the law.
@@ -160,17 +157,12 @@ pub fn certificate(certificate: &Certificate) -> CertificateDocument {
         c: texts(&certificate.coefficients),
         highest: certificate.highest,
         inverse_bits: certificate.inverse_bits,
-        inverse: certificate.inverse.iter().map(|row| texts(row)).collect(),
+        inverse: certificate.inverse.iter().map(texts).collect(),
         sigma_log2: certificate.sigma,
         nu: "1".to_owned(),
         claim_r: claim(&certificate.claim),
         formula: certificate.formula.as_ref().map(formula),
     }
-}
-
-/// The numbers as text.
-pub(super) fn texts(numbers: &[Integer]) -> Vec<String> {
-    numbers.iter().map(ToString::to_string).collect()
 }
 
 /// An upper claim as text: as it is, or rounded up to three digits.
@@ -204,8 +196,8 @@ pub(super) fn read_values(text: &str) -> Result<Values, JsonError> {
 }
 
 /// The letters of a law as text, where they are not the usual ones.
-pub(super) fn letters(letters: LettersOfLaw) -> Option<LettersDocument> {
-    let document = LettersDocument {
+pub(super) fn letters(letters: LettersOfLaw) -> Option<CertificateLetters> {
+    let document = CertificateLetters {
         amplitude: letters.amplitude.name().to_owned(),
         frequency: letters.frequency.name().to_owned(),
     };
@@ -213,8 +205,10 @@ pub(super) fn letters(letters: LettersOfLaw) -> Option<LettersDocument> {
 }
 
 /// The letters of a law that are said; the usual ones if none are.
-pub(super) fn read_letters(document: Option<&LettersDocument>) -> Result<LettersOfLaw, JsonError> {
-    let Some(LettersDocument { amplitude, frequency }) = document else {
+pub(super) fn read_letters(
+    document: Option<&CertificateLetters>,
+) -> Result<LettersOfLaw, JsonError> {
+    let Some(CertificateLetters { amplitude, frequency }) = document else {
         return Ok(LettersOfLaw::default());
     };
     LettersOfLaw::of_names(amplitude, frequency).map_or_else(
@@ -224,8 +218,8 @@ pub(super) fn read_letters(document: Option<&LettersDocument>) -> Result<Letters
 }
 
 /// The document of a formula that is judged.
-fn formula(formula: &JudgedFormula) -> FormulaDocument {
-    FormulaDocument {
+fn formula(formula: &JudgedFormula) -> CertificateFormula {
+    CertificateFormula {
         law: formula.law.clone(),
         letters: letters(formula.letters),
         values: values(&formula.values),
@@ -238,7 +232,7 @@ fn formula(formula: &JudgedFormula) -> FormulaDocument {
 }
 
 /// The coefficients of a polynomial, or the text of another force.
-pub(super) fn force(force: &Expr) -> ForceDocument {
+pub(super) fn force(force: &Expr) -> CertificateForce {
     let x = coordinate();
     let of_x_alone = force.symbols().iter().all(|name| *name == x);
     let polynomial = force.to_polynomial(&mut |_| None).ok().flatten();
@@ -253,12 +247,10 @@ pub(super) fn force(force: &Expr) -> ForceDocument {
         Some(coefficients)
     });
     match coefficients {
-        Some(coefficients) => {
-            ForceDocument::Polynomial(coefficients.iter().map(ToString::to_string).collect())
-        }
+        Some(coefficients) => CertificateForce::Polynomial(texts(&coefficients)),
         None => match force.to_string() {
-            text if text == "sin(x)" => ForceDocument::Expression("sin".to_owned()),
-            text => ForceDocument::Expression(text),
+            text if text == "sin(x)" => CertificateForce::Expression("sin".to_owned()),
+            text => CertificateForce::Expression(text),
         },
     }
 }
@@ -286,7 +278,7 @@ impl CertificateDocument {
             inverse: matrix(&self.inverse)?,
             sigma: self.sigma_log2,
             claim: decimal(&self.claim_r, "claim_r")?,
-            formula: self.formula.as_ref().map(FormulaDocument::read).transpose()?,
+            formula: self.formula.as_ref().map(CertificateFormula::read).transpose()?,
         })
     }
 }
@@ -316,7 +308,7 @@ pub(super) fn matrix(rows: &[Vec<String>]) -> Result<Vec<Vec<Integer>>, JsonErro
     rows.iter().map(|row| integers(row, "A_block")).collect()
 }
 
-impl FormulaDocument {
+impl CertificateFormula {
     fn read(&self) -> Result<JudgedFormula, JsonError> {
         Ok(JudgedFormula {
             law: self.law.clone(),
@@ -338,7 +330,7 @@ pub(super) fn range(ends: &[String; 2], key: &str) -> Result<[Rational; 2], Json
     Ok([decimal(&ends[0], key)?, decimal(&ends[1], key)?])
 }
 
-impl ForceDocument {
+impl CertificateForce {
     pub(super) fn read(&self, key: &str) -> Result<Expr, JsonError> {
         let x = Expr::from(coordinate());
         match self {

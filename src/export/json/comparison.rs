@@ -4,8 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::number::finite;
-use super::verification::{numbers, values};
+use super::number::{constants, finite, named, text};
 use super::{Constant, Kind, Map};
 use crate::solution::Degrees;
 use crate::verify::comparison::{Comparison, Refused, Row};
@@ -15,10 +14,8 @@ use crate::verify::{Verdict, validity};
 /// typed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ComparisonDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Comparison.schema())))]
     pub schema: String,
     /// The equation of motion as it was understood, `... = 0`; time is its own, so frequencies are
     /// in radians per unit of it.
@@ -51,7 +48,6 @@ pub enum MethodRow {
 /// A method that applies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ApplyingRow {
     /// The method, by its name on the command line.
     #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
@@ -91,7 +87,6 @@ pub struct ApplyingRow {
 /// A method that does not apply.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct RefusedRow {
     /// The method, by its name on the command line.
     #[cfg_attr(feature = "schema", schemars(schema_with = "super::generated_schema::methods"))]
@@ -120,7 +115,6 @@ pub struct RefusedRow {
 /// How far a formula is good.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Reach {
     /// The size of the amplitude from which on the error stays within the tolerance, for motions
     /// over several wells, which begin at the separatrix; null for those that begin at rest.
@@ -150,9 +144,9 @@ pub fn comparison(comparison: &Comparison) -> ComparisonDocument {
     ComparisonDocument {
         schema: Kind::Comparison.schema().to_owned(),
         equation: comparison.equation.to_string(),
-        at: values(&comparison.at),
+        at: constants(&comparison.at),
         true_frequency: finite(comparison.true_frequency),
-        reason: comparison.reason.as_ref().map(ToString::to_string),
+        reason: text(comparison.reason.as_ref()),
         tolerance: comparison.tolerance,
         methods: applying.chain(comparison.refused.iter().map(refused)).collect(),
         validity: comparison.validity.clone(),
@@ -165,8 +159,8 @@ fn applying(row: &Row) -> MethodRow {
         order: row.solution.order,
         degrees: row.solution.degrees.map(Degrees::list),
         applies: true,
-        reason: row.reason.as_ref().map(ToString::to_string),
-        chosen: numbers(&row.chosen),
+        reason: text(row.reason.as_ref()),
+        chosen: named(row.chosen.iter().copied()),
         formula: row.solution.formula(),
         frequency: finite(row.frequency),
         relative_error: finite(row.relative_error),

@@ -9,9 +9,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::certificate::{
-    ForceDocument, LettersDocument, check_sizes, claim, claims, decimal, force, fraction, integer,
-    integers, letters, matrix, range, read_letters, read_values, texts, values,
+    CertificateForce, CertificateLetters, check_sizes, claim, claims, decimal, force, fraction,
+    integer, integers, letters, matrix, range, read_letters, read_values, values,
 };
+use super::number::texts;
 use super::schema::check_kind;
 use super::{JsonError, Kind, unexpected};
 use crate::certificate::{DampedCertificate, Drive, JudgedFormula};
@@ -30,7 +31,6 @@ pub const EQUATION_WITH_DRIVE: &str = "x''+g(x)*x'+h(x,c,s)=0";
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct DampedCertificateDocument {
     /// The kind of document.
     #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Certificate.schema())))]
@@ -40,13 +40,13 @@ pub struct DampedCertificateDocument {
     pub ode: String,
     /// The damping by velocity: the coefficients of a polynomial by rising power of x, or an
     /// expression in x.
-    pub g: ForceDocument,
+    pub g: CertificateForce,
     /// The restoring force, likewise; with a drive an expression in x, c = cos(Omega t) and s =
     /// sin(Omega t).
-    pub h: ForceDocument,
+    pub h: CertificateForce,
     /// What drives the motion; not there for a limit cycle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub drive: Option<DriveDocument>,
+    pub drive: Option<CertificateDrive>,
     /// Whether g is even, h odd and the motion of odd harmonics alone, and so the block, and the
     /// only one within claim_r among those; with a drive h is odd in x and in what of c and s
     /// changes its sign after half a period of the motion.
@@ -85,15 +85,14 @@ pub struct DampedCertificateDocument {
     pub claim_r: String,
     /// The formula that is judged, of a limit cycle turned until its first harmonic is a positive
     /// cosine; null where none is.
-    pub formula: Option<DampedFormulaDocument>,
+    pub formula: Option<CertificateFormulaOfCycle>,
 }
 
 /// What drives a motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CertificateDrive"))]
-pub struct DriveDocument {
+pub struct CertificateDrive {
     /// The driving frequency, a positive fraction, exact.
     #[serde(rename = "Omega")]
     pub frequency: String,
@@ -109,8 +108,7 @@ pub struct DriveDocument {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CertificateFormulaOfCycle"))]
-pub struct DampedFormulaDocument {
+pub struct CertificateFormulaOfCycle {
     /// The law as it was derived: of a cycle `omega = ...` or `omega^2 = ...`, with a drive
     /// `x = ...` in t, with definitions of letters behind commas; it has to give `omega`, with a
     /// drive `c` and `s`, at `values` to the last digits. What is of another form is words: nothing
@@ -119,7 +117,7 @@ pub struct DampedFormulaDocument {
     /// The letters of the answer in the law, where the equation has the usual ones, `A` or `omega`,
     /// for something of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub letters: Option<LettersDocument>,
+    pub letters: Option<CertificateLetters>,
     /// The values of the letters in the law.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub values: String,
@@ -170,7 +168,7 @@ pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateD
         },
         g: force(&certificate.damping),
         h: force(&certificate.force),
-        drive: certificate.drive.as_ref().map(|drive| DriveDocument {
+        drive: certificate.drive.as_ref().map(|drive| CertificateDrive {
             frequency: drive.frequency.to_string(),
             periods: drive.periods,
             harmonic: drive.harmonic,
@@ -182,7 +180,7 @@ pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateD
         s: texts(&certificate.sines),
         highest: certificate.highest,
         inverse_bits: certificate.inverse_bits,
-        inverse: certificate.inverse.iter().map(|row| texts(row)).collect(),
+        inverse: certificate.inverse.iter().map(texts).collect(),
         sigma_log2: certificate.sigma,
         nu: "1".to_owned(),
         claim_r: claim(&certificate.claim),
@@ -193,8 +191,8 @@ pub fn damped_certificate(certificate: &DampedCertificate) -> DampedCertificateD
     }
 }
 
-fn formula(formula: &JudgedFormula, is_driven: bool) -> DampedFormulaDocument {
-    DampedFormulaDocument {
+fn formula(formula: &JudgedFormula, is_driven: bool) -> CertificateFormulaOfCycle {
+    CertificateFormulaOfCycle {
         law: formula.law.clone(),
         letters: letters(formula.letters),
         values: values(&formula.values),
@@ -208,7 +206,7 @@ fn formula(formula: &JudgedFormula, is_driven: bool) -> DampedFormulaDocument {
     }
 }
 
-impl DampedFormulaDocument {
+impl CertificateFormulaOfCycle {
     fn read(&self, is_driven: bool) -> Result<JudgedFormula, JsonError> {
         let of_cycle = [self.omega.is_some(), self.frequency_error.is_some(), self.drift.is_some()];
         if of_cycle != [!is_driven; 3] || self.amplitude_error.is_some() != is_driven {
@@ -236,7 +234,7 @@ impl DampedFormulaDocument {
     }
 }
 
-impl DriveDocument {
+impl CertificateDrive {
     fn read(&self) -> Result<Drive, JsonError> {
         Ok(Drive {
             frequency: fraction(&self.frequency, "drive.Omega")?,
@@ -265,7 +263,7 @@ impl DampedCertificateDocument {
         Ok(DampedCertificate {
             damping: self.g.read("g")?,
             force: self.h.read("h")?,
-            drive: self.drive.as_ref().map(DriveDocument::read).transpose()?,
+            drive: self.drive.as_ref().map(CertificateDrive::read).transpose()?,
             odd: self.odd,
             bits: self.bits,
             reciprocal: integer(self.p.as_deref().unwrap_or("0"), "p")?,

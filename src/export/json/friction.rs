@@ -5,19 +5,18 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
+use super::number::text;
 use crate::audit::paper::{Entry, Table};
 use crate::impact::STEEPNESS;
-use crate::impact::friction::FrictionStudy;
+use crate::impact::friction::{CreepSample, FirstCycle, FrictionStudy};
 
 /// The paper's equation (6), (2/pi) atan(100 x') in place of Coulomb's sgn(x'), beside that law:
 /// Table 1 of the paper, and a swing near rest. Angles are in radians, time is in units of 1/omega
 /// of small swings, sqrt(L/g).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct FrictionDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Friction.schema())))]
     pub schema: String,
     /// The friction alpha, the torque in units of m g L.
     pub alpha: f64,
@@ -35,7 +34,7 @@ pub struct FrictionDocument {
     /// none does.
     pub pi_range: Option<[f64; 2]>,
     /// Every value of pi that was tried.
-    pub readings: Vec<Reading>,
+    pub readings: Vec<PiReading>,
     /// The first cycle of the swing by the arctangent.
     pub first_cycle: FirstCycle,
     /// Where Coulomb's law stops the swing for good.
@@ -49,7 +48,6 @@ pub struct FrictionDocument {
 /// The two laws at one speed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Speed {
     /// The speed, in radians per unit of time.
     pub speed: f64,
@@ -68,7 +66,6 @@ pub struct Speed {
 /// A number that the paper prints, and how its digits come out with the best value of pi.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Printed {
     /// The number as it is printed.
     pub text: String,
@@ -81,8 +78,7 @@ pub struct Printed {
 /// How many of the printed entries come out with one value of pi.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PiReading"))]
-pub struct Reading {
+pub struct PiReading {
     /// The value as it is written, such as `22/7`.
     pub pi: String,
     /// The value.
@@ -100,31 +96,9 @@ pub struct Reading {
     pub exceeds_from: Option<f64>,
 }
 
-/// The first cycle by the arctangent.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct FirstCycle {
-    /// When it ends, in units of time.
-    pub until: f64,
-    /// The largest error of the force, as a fraction of alpha: all of it, where the motion turns
-    /// back.
-    pub largest_error: f64,
-    /// The part of the time in which the force errs by more than 1 % of alpha.
-    pub over_one_percent: f64,
-    /// The part of the time in which it errs by more than 10 %.
-    pub over_ten_percent: f64,
-    /// The work of the arctangent along this motion over that of Coulomb's law.
-    pub work_share: f64,
-    /// The same by the formula of a harmonic swing, (sqrt(1 + k^2) - 1)/k with k = 100 times the
-    /// greatest speed.
-    pub work_share_formula: f64,
-}
-
 /// Where Coulomb's law stops the swing for good.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Stop {
     /// When, in units of time.
     pub t: f64,
@@ -141,7 +115,6 @@ pub struct Stop {
 /// The motion by the arctangent near rest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Creep {
     /// The linear damping c near rest, x'' + c x' + x = 0: 200 alpha/pi.
     pub damping: f64,
@@ -155,26 +128,12 @@ pub struct Creep {
     /// move.
     pub rate: Option<f64>,
     /// Some states.
-    pub samples: Vec<Sample>,
-}
-
-/// A state after the stop.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "CreepSample"))]
-pub struct Sample {
-    /// The time since both were at rest where Coulomb's law stops the swing, in units of time.
-    pub t: f64,
-    /// Where the arctangent has taken it, in radians; Coulomb's law leaves it where it is.
-    pub x: f64,
-    /// The same by the formula without inertia, in radians; null where it swings.
-    pub formula: Option<f64>,
+    pub samples: Vec<CreepSample>,
 }
 
 /// Rest times by either law, in units of time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct RestTime {
     /// By Coulomb's law; null where there is none.
     pub coulomb: Option<f64>,
@@ -212,7 +171,7 @@ pub fn friction(study: &FrictionStudy) -> FrictionDocument {
             printed_error: error,
         }
     });
-    let readings = table.readings.iter().map(|reading| Reading {
+    let readings = table.readings.iter().map(|reading| PiReading {
         pi: reading.name.to_owned(),
         value: reading.value,
         rounded: reading.rounded,
@@ -221,13 +180,7 @@ pub fn friction(study: &FrictionStudy) -> FrictionDocument {
         limit: reading.limit(),
         exceeds_from: reading.exceeds_from(),
     });
-    let cycle = near_rest.first_cycle;
     let creep = &near_rest.creep;
-    let samples = creep.samples.iter().map(|sample| Sample {
-        t: sample.t,
-        x: sample.x,
-        formula: sample.formula,
-    });
     let times = near_rest.rest_times;
     FrictionDocument {
         schema: Kind::Friction.schema().to_owned(),
@@ -239,14 +192,7 @@ pub fn friction(study: &FrictionStudy) -> FrictionDocument {
         pi: table.best().name.to_owned(),
         pi_range: table.pi_range,
         readings: readings.collect(),
-        first_cycle: FirstCycle {
-            until: cycle.until,
-            largest_error: cycle.largest_error,
-            over_one_percent: cycle.over_one_percent,
-            over_ten_percent: cycle.over_ten_percent,
-            work_share: cycle.work_share,
-            work_share_formula: cycle.work_share_formula,
-        },
+        first_cycle: near_rest.first_cycle,
         stop: Stop {
             t: near_rest.stop.t,
             x: near_rest.stop.x,
@@ -260,13 +206,13 @@ pub fn friction(study: &FrictionStudy) -> FrictionDocument {
             rate_overdamped: creep.rate_overdamped,
             rate_linear: creep.rate_linear,
             rate: creep.rate,
-            samples: samples.collect(),
+            samples: creep.samples.clone(),
         },
         rest_time: RestTime {
             coulomb: times.coulomb.ok(),
-            coulomb_reason: times.coulomb.err().map(|reason| reason.to_string()),
+            coulomb_reason: text(times.coulomb.err()),
             arctangent: times.arctangent.ok(),
-            arctangent_reason: times.arctangent.err().map(|reason| reason.to_string()),
+            arctangent_reason: text(times.arctangent.err()),
             difference: times.difference(),
         },
     }

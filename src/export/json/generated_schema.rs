@@ -43,7 +43,10 @@ impl Kind {
         };
         schema.insert("title".to_owned(), self.schema().into());
         let mut schema = head_first(schema.to_value());
-        in_one_line(&mut schema);
+        if let Some(Value::Object(key)) = schema.pointer_mut("/properties/schema") {
+            key.insert("const".to_owned(), self.schema().into());
+        }
+        complete(&mut schema);
         schema
     }
 }
@@ -80,18 +83,23 @@ fn head_first(schema: Value) -> Value {
     ordered.into()
 }
 
-/// Descriptions are wrapped where they are written, in lines of the source.
-fn in_one_line(schema: &mut Value) {
+/// Sets each description in one line, which is wrapped where it is written, and closes each object
+/// to keys that its type has not.
+fn complete(schema: &mut Value) {
     match schema {
         Value::Object(map) => {
+            if map.contains_key("properties") && !map.contains_key("additionalProperties") {
+                let behind = map.keys().position(|key| key == "type").map_or(0, |place| place + 1);
+                map.shift_insert(behind, "additionalProperties".to_owned(), false.into());
+            }
             for (key, entry) in map.iter_mut() {
                 match entry {
                     Value::String(text) if key == "description" => *text = text.replace('\n', " "),
-                    _ => in_one_line(entry),
+                    _ => complete(entry),
                 }
             }
         }
-        Value::Array(list) => list.iter_mut().for_each(in_one_line),
+        Value::Array(list) => list.iter_mut().for_each(complete),
         _ => {}
     }
 }

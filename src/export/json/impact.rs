@@ -7,6 +7,7 @@ use num_complex::Complex64;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::number::text;
 use super::solution::{SolutionDocument, solution};
 use super::{JsonError, Kind, check_kind};
 use crate::audit::paper;
@@ -22,10 +23,8 @@ use crate::verify::Verdict;
 /// its units.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ImpactDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Impact.schema())))]
     pub schema: String,
     /// The equation of motion that is judged, `... = 0`, its force on the barrier included.
     pub equation: String,
@@ -60,7 +59,7 @@ pub struct ImpactDocument {
     /// turning point after it.
     pub period: Quantity,
     /// What Runge-Kutta says of the phases.
-    pub verification: Verification,
+    pub verification: ImpactVerification,
     /// The same quantities in SI units: of the pendulum with the contact of Hertz, where gamma
     /// follows from the design or mass, length and gravity are given; null elsewhere, and where a
     /// number would be beyond the range of floating point.
@@ -70,7 +69,6 @@ pub struct ImpactDocument {
 /// The numbers of an impact in SI units: m L^2 x'' + m g L sin x + k L (L (x - x_c))^(3/2) = 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Si {
     /// The mass m, in kg.
     pub mass: f64,
@@ -123,7 +121,6 @@ pub struct Si {
 /// The contact time that the paper prints, compared with and never computed from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct PrintedContactTime {
     /// As printed, in s.
     pub value: f64,
@@ -140,7 +137,6 @@ pub struct PrintedContactTime {
 /// A contact time over the printed one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct OverPrinted {
     /// The contact time of this reading over the printed one.
     pub ratio: f64,
@@ -152,7 +148,6 @@ pub struct OverPrinted {
 /// A yield limit that is stated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct YieldLimit {
     /// Whose it is.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ["sphere", "barrier"])))]
@@ -169,7 +164,6 @@ pub struct YieldLimit {
 /// The law of the derived phases.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct DerivedLaw {
     /// The answer of the method; where `sign` is -1 it is that of the equation of -x.
     pub law: SolutionDocument,
@@ -184,7 +178,6 @@ pub struct DerivedLaw {
 /// The numbers of an impact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Parameters {
     /// The distance of the turning point from the equilibrium, in radians.
     pub amplitude: f64,
@@ -227,7 +220,6 @@ pub struct Parameters {
 /// One phase of the motion. Its closed form counts the time s = t - clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Phase {
     /// Which phase it is.
     pub name: PhaseName,
@@ -247,15 +239,14 @@ pub struct Phase {
     /// The numbers of the closed form; null in derived phases, which have more than one wave.
     pub coefficients: Option<Coefficients>,
     /// The same motion as a sum of harmonics, whatever its form.
-    pub displacement: Displacement,
+    pub displacement: PhaseDisplacement,
 }
 
 /// x = centre + parabola * s * (duration - s) + the sum of cos * cos(harmonic * frequency * s) +
 /// sin * sin(harmonic * frequency * s), with s = t - clock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PhaseDisplacement"))]
-pub struct Displacement {
+pub struct PhaseDisplacement {
     /// What does not oscillate, in radians.
     pub centre: f64,
     /// What the force at the touch bends the motion by: zero in flight, in radians per unit of time
@@ -267,14 +258,13 @@ pub struct Displacement {
     /// it is short.
     pub duration: f64,
     /// The harmonics.
-    pub harmonics: Vec<Harmonic>,
+    pub harmonics: Vec<PhaseHarmonic>,
 }
 
 /// A harmonic of a phase, in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PhaseHarmonic"))]
-pub struct Harmonic {
+pub struct PhaseHarmonic {
     /// Its number.
     pub harmonic: u32,
     /// The factor of the cosine, in radians.
@@ -299,7 +289,6 @@ pub enum PhaseName {
 /// A state of the pendulum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct State {
     /// The displacement, in radians.
     pub x: f64,
@@ -321,7 +310,6 @@ pub enum Coefficients {
 /// x = centre + re cos(frequency s) - im sin(frequency s), s = t - start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Oscillation {
     /// The point oscillated about, in radians.
     pub centre: f64,
@@ -334,7 +322,6 @@ pub struct Oscillation {
 /// A complex amplitude.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Amplitude {
     /// The factor of cos(frequency s), in radians.
     pub re: f64,
@@ -345,7 +332,6 @@ pub struct Amplitude {
 /// x = amplitude cos(frequency s + phase), s = t - start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Cosine {
     /// The amplitude with its sign, in radians.
     pub amplitude: f64,
@@ -358,7 +344,6 @@ pub struct Cosine {
 /// The numbers of the contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Contact {
     /// The speed at the touch, in radians per unit of time.
     pub speed: Quantity,
@@ -371,7 +356,6 @@ pub struct Contact {
 /// A number and its error.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Judged {
     /// The number.
     pub value: f64,
@@ -382,7 +366,6 @@ pub struct Judged {
 /// A contact that loses energy: its force is gamma F(d) (1 + lambda d').
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ContactDamping {
     /// The damping, in units of time per radian.
     pub lambda: f64,
@@ -403,7 +386,6 @@ pub struct ContactDamping {
 /// One law of the contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ContactLawRow {
     /// Its name, as in a problem file.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ContactLaw::ALL.map(ContactLaw::name))))]
@@ -427,7 +409,6 @@ pub struct ContactLawRow {
 /// One number by each closed form and by Runge-Kutta; null for a reading that does not apply.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Quantity {
     /// By `phases`.
     pub paper: Option<f64>,
@@ -448,8 +429,7 @@ pub struct Quantity {
 /// The closed forms beside the true motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "ImpactVerification"))]
-pub struct Verification {
+pub struct ImpactVerification {
     /// The size of the relative error up to which a verdict is `pass`.
     pub tolerance: f64,
     /// How well Runge-Kutta keeps the energy, as a fraction of the kinetic energy at the touch.
@@ -468,7 +448,6 @@ pub struct Verification {
 /// The judgement of three phases.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Column {
     /// The jump of the velocity at either end of the contact, in radians per unit of time.
     pub velocity_jump: f64,
@@ -490,7 +469,6 @@ pub struct Column {
 /// The line slope * x + constant that replaces (x - barrier)^(3/2), per unit of gamma.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Line {
     /// The slope.
     pub slope: f64,
@@ -564,7 +542,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
         contact_laws: impact.setup.every_contact_law.then(|| contact_laws.collect()),
         time_to_contact,
         period,
-        verification: Verification {
+        verification: ImpactVerification {
             tolerance,
             energy_drift: impact.truth.energy_drift,
             paper,
@@ -656,7 +634,7 @@ impl Parameters {
                 Side::Right => "right",
             }
             .to_owned(),
-            force: setup.force.as_ref().map(ToString::to_string),
+            force: text(setup.force.as_ref()),
             values: setup
                 .values
                 .numbers()
@@ -700,7 +678,7 @@ impl ContactLawRow {
         Self {
             law: row.law.name().to_owned(),
             applies: row.outcome.is_ok(),
-            reason: row.outcome.as_ref().err().map(ToString::to_string),
+            reason: text(row.outcome.as_ref().err()),
             duration: judged(&|motion, errors| [motion.duration, errors.duration]),
             penetration: judged(&|motion, errors| [motion.depth, errors.depth]),
             peak_force: judged(&|motion, errors| [motion.peak_force, errors.peak_force]),
@@ -794,7 +772,7 @@ impl Phase {
                 }
                 Form::Harmonics { .. } | Form::Contact { .. } => None,
             },
-            displacement: Displacement {
+            displacement: PhaseDisplacement {
                 centre: phase.form.centre(),
                 parabola: phase.form.parabola(),
                 frequency: phase.form.frequency(),
@@ -806,7 +784,7 @@ impl Phase {
                     .form
                     .harmonics()
                     .into_iter()
-                    .map(|(harmonic, Complex64 { re, im })| Harmonic {
+                    .map(|(harmonic, Complex64 { re, im })| PhaseHarmonic {
                         harmonic,
                         cos: re,
                         sin: -im,
@@ -854,7 +832,7 @@ impl Phase {
     }
 }
 
-impl Displacement {
+impl PhaseDisplacement {
     /// The depth in contact that these harmonics are.
     fn read_depth(&self) -> SineSeries {
         let sines = |rest: u32| -> Vec<f64> {

@@ -14,10 +14,8 @@ use crate::verify::Verdict;
 /// document of kind `impact`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ImpactComparisonDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::ImpactComparison.schema())))]
     pub schema: String,
     /// The equation of motion that is judged, `... = 0`, its force on the barrier included.
     pub equation: String,
@@ -28,13 +26,12 @@ pub struct ImpactComparisonDocument {
     /// The size of the relative error up to which a verdict is `pass`.
     pub tolerance: f64,
     /// The rows: the paper's readings and the methods that apply, then those that do not.
-    pub methods: Vec<Row>,
+    pub methods: Vec<ImpactMethodRow>,
 }
 
 /// The numbers of the true motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct TrueNumbers {
     /// The time from the release to the touch, in units of time.
     pub time_to_contact: f64,
@@ -51,8 +48,7 @@ pub struct TrueNumbers {
 /// A row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "ImpactMethodRow"))]
-pub struct Row {
+pub struct ImpactMethodRow {
     /// The method, by its name on the command line; `paper` and `energy` are the paper's readings.
     pub method: String,
     /// The order that was chosen; null for a method without one.
@@ -96,7 +92,7 @@ pub struct Row {
 pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> ImpactComparisonDocument {
     let [time_to_contact, speed, penetration, duration, period] = table.truth.quantities();
     let applying = table.rows.iter().map(|row| applying(row, tolerance));
-    let refused = table.refused.iter().map(|(method, reason)| Row {
+    let refused = table.refused.iter().map(|(method, reason)| ImpactMethodRow {
         method: method.name().to_owned(),
         order: None,
         degrees: None,
@@ -125,11 +121,11 @@ pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> ImpactComp
     }
 }
 
-fn applying(row: &ImpactRow, tolerance: f64) -> Row {
+fn applying(row: &ImpactRow, tolerance: f64) -> ImpactMethodRow {
     let (values, errors) = (row.phases.quantities(), row.errors);
     let [time_to_contact, speed, penetration, duration, period] =
         std::array::from_fn(|index| Some(Judged { value: values[index], error: errors[index] }));
-    Row {
+    ImpactMethodRow {
         method: row.method.name().to_owned(),
         order: row.order,
         degrees: row.degrees.map(Degrees::list),

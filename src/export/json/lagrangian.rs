@@ -5,19 +5,17 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
-use super::number::Map;
+use super::number::{Map, named, text, texts};
 use crate::audit::paper::Finding;
-use crate::mechanics::{Group, MechanismStudy, Mode, Place, RestStudy};
+use crate::mechanics::{self, MechanismStudy, Place, RestStudy};
 
 /// A mechanism, its equations of motion by Lagrange, its places of rest and the dimensionless
 /// groups on which its motion depends. Formulas are text of the grammar; `q'` is the velocity of
 /// `q`. Numbers are in the units of the values that were given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct LagrangianDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Lagrangian.schema())))]
     pub schema: String,
     /// The generalised coordinates, in the order of the equations.
     pub coordinates: Vec<String>,
@@ -52,7 +50,7 @@ pub struct LagrangianDocument {
     /// likewise.
     pub rank: Option<usize>,
     /// The dimensionless numbers on which the motion depends; null likewise.
-    pub groups: Option<Vec<GroupDocument>>,
+    pub groups: Option<Vec<Group>>,
     /// The equations in these units and groups; null likewise.
     pub dimensionless: Option<Vec<String>>,
     /// Why there are no groups; null where there are, and without units.
@@ -61,19 +59,18 @@ pub struct LagrangianDocument {
     pub values: Map<f64>,
     /// Places of rest that were found; others are not ruled out. Contacts and terms in the time are
     /// left out.
-    pub equilibria: Vec<EquilibriumDocument>,
+    pub equilibria: Vec<Equilibrium>,
     /// The modes at each of them, in the same order; an empty list where not every parameter has a
     /// value.
-    pub modes: Vec<Vec<ModeDocument>>,
+    pub modes: Vec<Vec<Mode>>,
     /// The paper's equations beside these; empty for any other mechanism.
-    pub findings: Vec<FindingDocument>,
+    pub findings: Vec<Finding>,
 }
 
 /// A dimensionless number.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Group"))]
-pub struct GroupDocument {
+pub struct Group {
     /// Its name in `dimensionless`.
     pub name: String,
     /// What it is in the parameters.
@@ -87,8 +84,7 @@ pub struct GroupDocument {
 /// A place of rest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Equilibrium"))]
-pub struct EquilibriumDocument {
+pub struct Equilibrium {
     /// The place of each coordinate; null for one that may be anywhere.
     pub places: Map<Option<String>>,
     /// What lies between -1 and 1 where the place exists; null where it always does.
@@ -102,8 +98,7 @@ pub struct EquilibriumDocument {
 /// A mode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Mode"))]
-pub struct ModeDocument {
+pub struct Mode {
     /// Angular frequency; 0 where it does not swing.
     pub frequency: f64,
     /// The exponent of growth, negative for decay, per unit of time.
@@ -113,22 +108,7 @@ pub struct ModeDocument {
     pub shape: Option<Vec<f64>>,
 }
 
-/// An equation of the paper.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Finding"))]
-pub struct FindingDocument {
-    /// Its number: `(1)`.
-    pub equation: String,
-    /// What is printed.
-    pub printed: String,
-    /// Whether it follows as it is printed; null where it is put in and not derived.
-    pub agrees: Option<bool>,
-    /// What was found, in words.
-    pub words: String,
-}
-
-/// The document of kind `lagrangian`; the paper's equations are put into it by [`findings`].
+/// The document of kind `lagrangian`; the paper's equations are put into it as its `findings`.
 ///
 /// ```
 /// use lindstedt::{audit::paper, mechanics::study};
@@ -143,7 +123,6 @@ pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
     let coordinates = &mechanism.coordinates;
     let groups = study.groups.as_ref().and_then(|groups| groups.as_ref().ok());
     let zero = |left: &crate::expr::Expr| format!("{left} = 0");
-    let names = coordinates.iter().map(ToString::to_string);
     let accelerations = study.equations.accelerations().unwrap_or_default();
     let equilibrium = |rest: &RestStudy| {
         let place = |place: &Place| match place {
@@ -151,15 +130,15 @@ pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
             Place::Anywhere => None,
         };
         let places = rest.rest.places.iter().map(place);
-        EquilibriumDocument {
-            places: coordinates.iter().map(ToString::to_string).zip(places).collect(),
-            cosine: rest.rest.condition.as_ref().map(ToString::to_string),
-            frequency_squared: rest.modes.square().ok().flatten().map(|square| square.to_string()),
+        Equilibrium {
+            places: named(coordinates.iter().zip(places)),
+            cosine: text(rest.rest.condition.as_ref()),
+            frequency_squared: text(rest.modes.square().ok().flatten()),
         }
     };
     let modes = |rest: &RestStudy| {
         let known = rest.numbers.as_ref().and_then(|numbers| numbers.as_ref().ok());
-        let mode = |mode: &Mode| ModeDocument {
+        let mode = |mode: &mechanics::Mode| Mode {
             frequency: mode.frequency,
             growth: mode.growth,
             shape: mode.shape.clone(),
@@ -168,72 +147,38 @@ pub fn lagrangian(study: &MechanismStudy) -> LagrangianDocument {
     };
     LagrangianDocument {
         schema: Kind::Lagrangian.schema().to_owned(),
-        coordinates: names.clone().collect(),
+        coordinates: texts(coordinates),
         kinetic: mechanism.kinetic.to_string(),
         potential: mechanism.potential.to_string(),
         dissipation: mechanism.dissipation.to_string(),
-        forces: mechanism
-            .forces
-            .iter()
-            .map(|(on, force)| (on.to_string(), force.to_string()))
-            .collect(),
+        forces: named(mechanism.forces.iter().map(|(on, force)| (on, force.to_string()))),
         equations: study.equations.left.iter().map(zero).collect(),
-        divisors: study.equations.divisors.iter().map(ToString::to_string).collect(),
-        accelerations: names.zip(accelerations.iter().map(ToString::to_string)).collect(),
+        divisors: texts(&study.equations.divisors),
+        accelerations: named(coordinates.iter().zip(texts(&accelerations))),
         units_checked: study.question.units.is_some(),
-        units: groups.map(|groups| groups.units.iter().map(ToString::to_string).collect()),
+        units: groups.map(|groups| texts(&groups.units)),
         combinations: groups.map(|groups| {
             let combinations = groups.combinations.iter();
-            combinations
-                .map(|combination| (combination.name.to_string(), combination.meaning.to_string()))
-                .collect()
+            named(combinations.map(|own| (own.name, own.meaning.to_string())))
         }),
         time_unit: groups.map(|groups| groups.time.to_string()),
         parameter_count: groups.map(|groups| groups.parameters),
         rank: groups.map(|groups| groups.rank),
         groups: groups.map(|groups| groups.groups.iter().map(group).collect()),
         dimensionless: groups.map(|groups| groups.left.iter().map(zero).collect()),
-        no_groups: study
-            .groups
-            .as_ref()
-            .and_then(|groups| groups.as_ref().err())
-            .map(ToString::to_string),
-        values: study
-            .question
-            .values
-            .iter()
-            .map(|(name, value)| (name.to_string(), *value))
-            .collect(),
+        no_groups: text(study.groups.as_ref().and_then(|groups| groups.as_ref().err())),
+        values: named(study.question.values.iter().map(|(name, value)| (name, *value))),
         equilibria: study.rests.iter().map(equilibrium).collect(),
         modes: study.rests.iter().map(modes).collect(),
         findings: Vec::new(),
     }
 }
 
-fn group(group: &Group) -> GroupDocument {
-    GroupDocument {
+fn group(group: &mechanics::Group) -> Group {
+    Group {
         name: group.name.to_string(),
         definition: group.definition.to_string(),
         dimension: group.dimension.to_string(),
         meaning: group.meaning.clone(),
     }
-}
-
-/// The paper's equations as the `findings` of a document.
-///
-/// ```
-/// use lindstedt::audit::paper;
-///
-/// let found = lindstedt::export::json::lagrangian::findings(&paper::findings()?);
-/// assert_eq!(found.len(), 8);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn findings(findings: &[Finding]) -> Vec<FindingDocument> {
-    let finding = |finding: &Finding| FindingDocument {
-        equation: finding.equation.to_owned(),
-        printed: finding.printed.clone(),
-        agrees: finding.agrees,
-        words: finding.words.clone(),
-    };
-    findings.iter().map(finding).collect()
 }

@@ -5,28 +5,27 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
+use super::number::text;
 use super::simulation::{Barrier, Dissipation, ROUTES};
-use crate::impact::{self, ContactDamping, MaterialStudy, Parameter};
+use crate::impact::{self, ContactDamping, FirstContact, MaterialStudy, Parameter};
 use crate::report::material_sentences;
 
 /// The same swing against barriers of several materials. Angles are in radians, time is in units of
 /// 1/omega of small swings, sqrt(L/g), energies in units of m g L, unless another unit is given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct MaterialsDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Materials.schema())))]
     pub schema: String,
     /// The pendulum and the run.
-    pub parameters: Parameters,
+    pub parameters: MaterialsParameters,
     /// What damps the design at its own modulus, in every form.
     pub dissipation: Dissipation,
     /// The dampings that nobody gave, by their keys in a file: their numbers are not the paper's,
     /// which prints none.
     pub defaults: Vec<String>,
     /// The materials, in the order in which they were given.
-    pub materials: Vec<Row>,
+    pub materials: Vec<MaterialRow>,
     /// The materials under each form of the damping of the contact, the given one first; empty
     /// where the contact loses nothing or no barrier is touched.
     pub held_fixed: Vec<HeldFixed>,
@@ -39,8 +38,7 @@ pub struct MaterialsDocument {
 /// The pendulum and the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "MaterialsParameters"))]
-pub struct Parameters {
+pub struct MaterialsParameters {
     /// Where the barriers stand.
     pub barrier: Barrier,
     /// The displacement at t = 0, in radians.
@@ -73,7 +71,6 @@ pub struct Parameters {
 /// A rest time, or why there is none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct RestTime {
     /// The rest time, in units of time; null where there is none.
     pub rest_time: Option<f64>,
@@ -86,8 +83,7 @@ pub struct RestTime {
 /// A material.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "MaterialRow"))]
-pub struct Row {
+pub struct MaterialRow {
     /// Its name.
     pub name: String,
     /// The modulus of its contact with the sphere, in Pa.
@@ -109,33 +105,13 @@ pub struct Row {
     /// When it rests where the contact loses nothing, mu = 0.
     pub lossless: RestTime,
     /// Stated yield limits beside the pressure of the first contact.
-    pub yield_checks: Vec<YieldCheck>,
-}
-
-/// The first contact of a barrier.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct FirstContact {
-    /// The speed at the touch, in m/s.
-    pub speed: f64,
-    /// How long it lasts, in seconds.
-    pub duration: f64,
-    /// How deep it goes, in m.
-    pub penetration: f64,
-    /// The greatest force, that of the damping included, in N.
-    pub peak_force: f64,
-    /// The pressure of Hertz in the middle of the contact at the greatest depth, in Pa.
-    pub peak_pressure: f64,
-    /// The coefficient of restitution, dimensionless.
-    pub restitution: f64,
+    pub yield_checks: Vec<MaterialYieldCheck>,
 }
 
 /// A stated yield limit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "MaterialYieldCheck"))]
-pub struct YieldCheck {
+pub struct MaterialYieldCheck {
     /// The body: `sphere` or `barrier`.
     pub body: String,
     /// Its yield limit Y, in Pa.
@@ -149,7 +125,6 @@ pub struct YieldCheck {
 /// The materials under one form of the damping of the contact.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct HeldFixed {
     /// The form, by its key in a file.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ContactDamping::FORMS.map(Parameter::name))))]
@@ -185,22 +160,15 @@ pub fn materials(study: &MaterialStudy) -> MaterialsDocument {
     let rest = |time: Result<f64, impact::NoRest>| RestTime {
         rest_time: time.ok(),
         rest_time_in_seconds: time.ok().map(|time| study.seconds(time)),
-        rest_reason: time.err().map(|reason| reason.to_string()),
+        rest_reason: text(time.err()),
     };
-    let row = |row: &impact::MaterialRow| Row {
+    let row = |row: &impact::MaterialRow| MaterialRow {
         name: row.material.name.clone(),
         modulus: row.material.modulus.value(),
         gamma: row.gamma,
         own_damping: row.material.damping.is_some(),
         dissipation: Dissipation::from(&row.dissipation),
-        first_contact: row.first.map(|first| FirstContact {
-            speed: first.speed,
-            duration: first.duration,
-            penetration: first.penetration,
-            peak_force: first.peak_force,
-            peak_pressure: first.peak_pressure,
-            restitution: first.restitution,
-        }),
+        first_contact: row.first,
         impacts: row.course.impacts.len(),
         energies: row.course.energies.clone(),
         rest: rest(row.course.rest_time),
@@ -211,7 +179,7 @@ pub fn materials(study: &MaterialStudy) -> MaterialsDocument {
     let settings = &study.question.settings;
     MaterialsDocument {
         schema: Kind::Materials.schema().to_owned(),
-        parameters: Parameters {
+        parameters: MaterialsParameters {
             barrier: Barrier { left: study.model.left, right: study.model.right },
             start: study.start.x,
             speed: study.start.velocity,
@@ -235,8 +203,8 @@ pub fn materials(study: &MaterialStudy) -> MaterialsDocument {
     }
 }
 
-fn yield_check(check: &impact::YieldCheck) -> YieldCheck {
-    YieldCheck {
+fn yield_check(check: &impact::YieldCheck) -> MaterialYieldCheck {
+    MaterialYieldCheck {
         body: check.body.to_owned(),
         limit: check.limit,
         onset: check.onset,

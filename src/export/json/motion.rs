@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
-use super::number::Map;
+use super::number::{Map, named, texts};
 use crate::report::MotionSweep;
 use crate::report::TrajectoryReport;
 use crate::system::{End, Integrator};
@@ -15,10 +15,8 @@ use crate::trajectory::{Course, Crossing, Section, in_words};
 /// are those of the values given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct MotionDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Motion.schema())))]
     pub schema: String,
     /// The coordinates.
     pub coordinates: Vec<String>,
@@ -59,7 +57,6 @@ pub struct MotionDocument {
 /// A state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct MotionSample {
     /// The time.
     pub t: f64,
@@ -67,10 +64,20 @@ pub struct MotionSample {
     pub state: Map<f64>,
 }
 
+/// Coordinates and velocities by their names.
+fn states(course: &Course, state: &[f64]) -> Map<f64> {
+    named(course.rates.states.iter().zip(state.iter().copied()))
+}
+
+impl MotionSample {
+    fn of(course: &Course, t: f64, state: &[f64]) -> Self {
+        Self { t, state: states(course, state) }
+    }
+}
+
 /// Poincare's section.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Section"))]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "Section"))]
 pub struct SectionDocument {
     /// The time between two states, a formula; null where it is the zeros of `rising` that count.
     pub every: Option<String>,
@@ -88,7 +95,6 @@ pub struct SectionDocument {
 /// h = sum q' dL/dq' - L, the energy where nothing depends on the time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct EnergyAccount {
     /// At the start.
     pub start: f64,
@@ -120,17 +126,13 @@ pub struct EnergyAccount {
 pub fn motion(report: &TrajectoryReport) -> MotionDocument {
     let motion = report.motion;
     let course = &motion.course;
-    let named = |state: &[f64]| {
-        let names = course.rates.states.iter().map(ToString::to_string);
-        names.zip(state.iter().copied()).collect()
-    };
-    let sample = |t: f64| Some(MotionSample { t, state: named(&motion.at(t)?) });
-    let start = MotionSample { t: 0.0, state: named(&course.start) };
+    let sample = |t: f64| Some(MotionSample::of(course, t, &motion.at(t)?));
+    let start = MotionSample::of(course, 0.0, &course.start);
     MotionDocument {
         schema: Kind::Motion.schema().to_owned(),
-        coordinates: course.coordinates.iter().map(ToString::to_string).collect(),
+        coordinates: texts(&course.coordinates),
         equations: course.equations.iter().map(|left| format!("{left} = 0")).collect(),
-        parameters: course.values.iter().map(|(name, value)| (name.to_string(), *value)).collect(),
+        parameters: named(course.values.iter().map(|(name, value)| (name, *value))),
         start: start.state.clone(),
         integrator: match motion.integrator {
             Integrator::Taylor => "taylor",
@@ -138,7 +140,7 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
         }
         .to_owned(),
         section: course.section.as_ref().map(|section| {
-            section_document(course, section, (motion.crossings(), motion.touches()), &named)
+            section_document(course, section, (motion.crossings(), motion.touches()))
         }),
         samples: report.times().into_iter().filter_map(sample).collect(),
         final_state: sample(motion.end()).unwrap_or(start),
@@ -161,14 +163,12 @@ fn section_document(
     course: &Course,
     section: &Section,
     (crossings, touches): (&[Crossing], &[f64]),
-    named: &dyn Fn(&[f64]) -> Map<f64>,
 ) -> SectionDocument {
     let [every, rising] = match section {
         Section::Every(period) => [Some(period.to_string()), None],
         Section::Rising(expression) => [None, Some(expression.to_string())],
     };
-    let state =
-        |crossing: &Crossing| MotionSample { t: crossing.time, state: named(&crossing.state) };
+    let state = |crossing: &Crossing| MotionSample::of(course, crossing.time, &crossing.state);
     SectionDocument {
         every,
         rising,
@@ -182,10 +182,8 @@ fn section_document(
 /// parameters or starts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct MotionSweepDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::MotionSweep.schema())))]
     pub schema: String,
     /// The coordinates.
     pub coordinates: Vec<String>,
@@ -207,8 +205,7 @@ pub struct MotionSweepDocument {
 
 /// One of many motions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SweptMotion"))]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "SweptMotion"))]
 pub struct SweptMotionDocument {
     /// The values of what is varied.
     pub values: Map<f64>,
@@ -227,43 +224,30 @@ pub struct SweptMotionDocument {
 /// The document of kind `motion-sweep`.
 pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
     let course = sweep.course;
-    let states: Vec<String> = course.rates.states.iter().map(ToString::to_string).collect();
-    let named =
-        |state: &[f64]| -> Map<f64> { states.iter().cloned().zip(state.iter().copied()).collect() };
     let is_varied = |name: &str| sweep.names.iter().any(|varied| varied.name() == name);
     let rest = |all: Map<f64>| -> Map<f64> {
         all.into_iter().filter(|(name, _)| !is_varied(name)).collect()
     };
-    let parameters = course.values.iter().map(|(name, value)| (name.to_string(), *value));
     let motions = sweep.motions.iter().map(|motion| SweptMotionDocument {
-        values: sweep
-            .names
-            .iter()
-            .map(ToString::to_string)
-            .zip(motion.values.iter().copied())
-            .collect(),
-        final_state: MotionSample { t: motion.end, state: named(&motion.state) },
-        extremes: course
-            .coordinates
-            .iter()
-            .map(ToString::to_string)
-            .zip(motion.extremes.iter().copied())
-            .collect(),
-        section: course.section.as_ref().map(|section| {
-            section_document(course, section, (&motion.crossings, &motion.touches), &named)
-        }),
+        values: named(sweep.names.iter().zip(motion.values.iter().copied())),
+        final_state: MotionSample::of(course, motion.end, &motion.state),
+        extremes: named(course.coordinates.iter().zip(motion.extremes.iter().copied())),
+        section: course
+            .section
+            .as_ref()
+            .map(|section| section_document(course, section, (&motion.crossings, &motion.touches))),
         stopped: in_words(motion.reason).to_owned(),
         complete: motion.reason == End::Reached,
     });
     MotionSweepDocument {
         schema: Kind::MotionSweep.schema().to_owned(),
-        coordinates: course.coordinates.iter().map(ToString::to_string).collect(),
+        coordinates: texts(&course.coordinates),
         equations: course.equations.iter().map(|left| format!("{left} = 0")).collect(),
-        parameters: rest(parameters.collect()),
-        start: rest(named(&course.start)),
+        parameters: rest(named(course.values.iter().map(|(name, value)| (name, *value)))),
+        start: rest(states(course, &course.start)),
         duration: course.duration,
         after: course.after,
-        varied: sweep.names.iter().map(ToString::to_string).collect(),
+        varied: texts(sweep.names),
         motions: motions.collect(),
     }
 }

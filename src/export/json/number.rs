@@ -11,9 +11,10 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
 use crate::exact::{self, Rational};
 use crate::expr::{Expr, parse_expression};
-use crate::solution::{Solution, Sum};
+use crate::solution::{Definition, Solution, Sum};
 use crate::symbol::Symbol;
 use crate::symbol::letters::Letters;
+use crate::values::Values;
 
 /// What stands under names that the equation or the program chose, in their order.
 pub type Map<T> = IndexMap<String, T>;
@@ -26,7 +27,6 @@ pub(super) fn is_nothing(count: &usize) -> bool {
 /// An exact constant beside its decimal value.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Constant {
     /// The exact value as text: a fraction such as `-1/8`, or an expression such as `pi/3`.
     pub exact: String,
@@ -38,7 +38,6 @@ pub struct Constant {
 /// is none.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Polynomial {
     /// The terms that are added up.
     pub terms: Vec<Term>,
@@ -47,7 +46,6 @@ pub struct Polynomial {
 /// A term: its coefficient times a product of powers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Term {
     /// The power of each symbol in it, negative ones too; `verification.values` has the value of
     /// every symbol.
@@ -121,6 +119,31 @@ impl Polynomial {
         }
         Ok(polynomial)
     }
+}
+
+/// Each value as it is written.
+pub(super) fn texts<T: ToString>(values: impl IntoIterator<Item = T>) -> Vec<String> {
+    values.into_iter().map(|value| value.to_string()).collect()
+}
+
+/// A value as it is written, where there is one.
+pub(super) fn text<T: ToString>(value: Option<T>) -> Option<String> {
+    value.map(|value| value.to_string())
+}
+
+/// Values under names.
+pub(super) fn named<N: ToString, T>(entries: impl IntoIterator<Item = (N, T)>) -> Map<T> {
+    entries.into_iter().map(|(name, value)| (name.to_string(), value)).collect()
+}
+
+/// Exact values under their names.
+pub(super) fn constants(values: &Values) -> Map<Constant> {
+    named(values.iter().map(|(name, value)| (name, Constant::of(value))))
+}
+
+/// The meaning of each symbol.
+pub(super) fn meanings(definitions: &[Definition]) -> Map<String> {
+    named(definitions.iter().map(|own| (own.symbol, own.meaning.to_string())))
 }
 
 /// What the names in a document stand for: the letters of an answer give way to the names of its

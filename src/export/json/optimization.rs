@@ -11,21 +11,19 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::Kind;
-use super::number::{Map, finite};
+use super::number::{Map, finite, text};
 use super::simulation::Barrier;
 use crate::genetic::{Coding, Crossover, Mutation, Penalty, StallTest, Stop};
 use crate::impact::{self, ContactDamping, Friction, Parameter, REST_FRACTION, SpeedUnit};
-use crate::optimize::{self, Objective, Question, Role, SearchRun, Study, WITHIN};
+use crate::optimize::{self, Found, Objective, Question, Role, SearchRun, Study, WITHIN};
 use crate::report::optimization_sentences;
 
 /// A search for the best damper. Angles are in radians, everything else in SI units, unless another
 /// unit is given; units of time are 1/omega of small swings, sqrt(L/g).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct OptimizationDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Optimization.schema())))]
     pub schema: String,
     /// What was asked.
     pub asked: Asked,
@@ -54,18 +52,17 @@ pub struct OptimizationDocument {
 /// What was asked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Asked {
     /// What is to be small, by its key in a file.
     #[cfg_attr(feature = "schema", schemars(extend("items" = {"enum": Objective::ALL.map(Objective::name)})))]
     pub objectives: Vec<String>,
     /// What varies, in the order in which points have it.
-    pub variables: Vec<Variable>,
+    pub variables: Vec<SearchVariable>,
     /// The materials that are tried; a point has their number from 0 up, its fraction is left out,
     /// behind the variables where there are two or more.
-    pub materials: Vec<Material>,
+    pub materials: Vec<SearchMaterial>,
     /// What must not be larger.
-    pub limits: Vec<Limit>,
+    pub limits: Vec<SearchLimit>,
     /// The density of the sphere, in kg/m^3, where its mass is that of its radius; null where it is
     /// not.
     pub density: Option<f64>,
@@ -78,7 +75,7 @@ pub struct Asked {
     /// The main mass that carries the pendulum; null where its rest does not count.
     pub main_mass: Option<MainMassDocument>,
     /// What is held fixed.
-    pub held_fixed: HeldFixed,
+    pub held_fixed: SearchHeldFixed,
     /// The dampings that nobody gave, by their keys in a file: their numbers are not the paper's,
     /// which prints none.
     pub defaults: Vec<String>,
@@ -101,8 +98,7 @@ pub struct Asked {
 /// A number of the design that varies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchVariable"))]
-pub struct Variable {
+pub struct SearchVariable {
     /// Its key in a file.
     pub name: String,
     /// Its unit.
@@ -116,8 +112,7 @@ pub struct Variable {
 /// A material that is tried.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchMaterial"))]
-pub struct Material {
+pub struct SearchMaterial {
     /// Its name.
     pub name: String,
     /// The modulus of its contact, in Pa.
@@ -131,7 +126,6 @@ pub struct Material {
 /// A damping of the contact in the form in which it is given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ContactForm {
     /// The form, by its key in a file.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = ContactDamping::FORMS.map(Parameter::name))))]
@@ -149,8 +143,7 @@ pub struct ContactForm {
 /// What must not be larger.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchLimit"))]
-pub struct Limit {
+pub struct SearchLimit {
     /// What, by its name as an objective.
     pub objective: String,
     /// The largest value, in `unit`.
@@ -162,8 +155,7 @@ pub struct Limit {
 /// What is held fixed; null where it varies or is not given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchHeldFixed"))]
-pub struct HeldFixed {
+pub struct SearchHeldFixed {
     /// The release from rest, in radians.
     pub amplitude: f64,
     /// The displacement at t = 0, in radians, where it is not that.
@@ -201,7 +193,6 @@ pub struct HeldFixed {
 /// and budget of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Genetic {
     /// Individuals.
     pub population: usize,
@@ -248,9 +239,8 @@ pub struct Genetic {
 
 /// A run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "SearchRun"))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SearchRun"))]
 pub struct Run {
     /// Its number, from 0.
     pub number: usize,
@@ -271,23 +261,9 @@ pub struct Run {
     pub stop: String,
 }
 
-/// A design that a run found, as the search has it: by closed forms, by integration where there are
-/// none.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct Found {
-    /// The values of the variables in their order, then the number of the material.
-    pub point: Vec<f64>,
-    /// The objectives in their order.
-    pub values: Vec<f64>,
-}
-
 /// The best values of the runs of one search.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Search {
     /// Which: the genetic algorithm first.
     pub name: String,
@@ -310,7 +286,6 @@ pub struct Search {
 /// A design that was judged again.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Finalist {
     /// The number of the run that found it.
     pub run: usize,
@@ -327,7 +302,6 @@ pub struct Finalist {
 /// A design that was followed until it rests.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Design {
     /// The values of the variables by their names.
     pub variables: Map<f64>,
@@ -358,8 +332,7 @@ pub struct Design {
 
 /// A main mass on spring and dashpot that carries the pendulum.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "MainMass"))]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "MainMass"))]
 pub struct MainMassDocument {
     /// Its mass without the pendulum, in kg.
     pub mass: f64,
@@ -376,7 +349,6 @@ pub struct MainMassDocument {
 /// What decides the best design.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Decision {
     /// The variables, each moved alone.
     pub sensitivities: Vec<Sensitivity>,
@@ -391,7 +363,7 @@ pub struct Decision {
     pub active: Vec<String>,
     /// The rest times with the length at its limits, in both units; null where the length does not
     /// vary or no rest time is the objective.
-    pub unit: Option<Unit>,
+    pub unit: Option<optimize::Ends>,
     /// The objective with each material, the rest as it is best; null where it does not rest.
     pub materials: Vec<Option<f64>>,
 }
@@ -399,7 +371,6 @@ pub struct Decision {
 /// A variable moved alone.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Sensitivity {
     /// Its key in a file.
     pub name: String,
@@ -417,22 +388,6 @@ pub struct Sensitivity {
     /// lost on either side.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = Role::ALL.map(Role::name))))]
     pub role: String,
-}
-
-/// What the unit of the rest time does.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct Unit {
-    /// The limits of the length, in m.
-    pub lengths: [f64; 2],
-    /// The rest times there, in seconds.
-    pub seconds: [f64; 2],
-    /// The same in units of time of each length.
-    pub dimensionless: [f64; 2],
-    /// The best lengths of those that were tried between the limits, the rest as it is best, in m:
-    /// by the rest time in seconds, and by that in units of time.
-    pub best_lengths: [f64; 2],
 }
 
 /// The document of kind `optimization`.
@@ -508,7 +463,7 @@ fn design(study: &Study, design: &optimize::Design) -> Design {
         material: material.map(|material| material.name.clone()),
         rest_time: design.rest_time.ok(),
         rest_time_in_seconds: Objective::RestTime.value(design),
-        rest_reason: design.rest_time.err().map(|reason| reason.to_string()),
+        rest_reason: text(design.rest_time.err()),
         impacts: design.impacts,
         peak_force: design.hardest.map(|contact| contact.force),
         peak_pressure: design.hardest.map(|contact| contact.pressure),
@@ -537,12 +492,7 @@ fn decision(decision: &optimize::Decision) -> Decision {
         share: decision.share,
         extents: decision.extents.clone(),
         active: decision.active.clone(),
-        unit: decision.ends.map(|ends| Unit {
-            lengths: ends.lengths,
-            seconds: ends.seconds,
-            dimensionless: ends.dimensionless,
-            best_lengths: ends.best,
-        }),
+        unit: decision.ends,
         materials: decision.materials.clone(),
     }
 }
@@ -559,7 +509,7 @@ impl Asked {
             variables: question
                 .variables
                 .iter()
-                .map(|variable| Variable {
+                .map(|variable| SearchVariable {
                     name: variable.parameter.name().to_owned(),
                     unit: variable.parameter.unit().to_owned(),
                     lower: variable.lower,
@@ -569,12 +519,12 @@ impl Asked {
             materials: question
                 .materials
                 .iter()
-                .map(|material| Material::of(material, question.case.speed_unit))
+                .map(|material| SearchMaterial::of(material, question.case.speed_unit))
                 .collect(),
             limits: question
                 .limits
                 .iter()
-                .map(|limit| Limit {
+                .map(|limit| SearchLimit {
                     objective: limit.objective.name().to_owned(),
                     at_most: limit.at_most,
                     unit: limit.objective.unit().to_owned(),
@@ -591,7 +541,7 @@ impl Asked {
                 displacement: of.displacement,
                 speed: of.speed,
             }),
-            held_fixed: HeldFixed::of(question),
+            held_fixed: SearchHeldFixed::of(question),
             defaults: question.defaults.iter().map(|key| key.name().to_owned()).collect(),
             duration: question.settings.duration,
             rest_fraction: REST_FRACTION,
@@ -615,7 +565,7 @@ impl ContactForm {
     }
 }
 
-impl Material {
+impl SearchMaterial {
     fn of(material: &impact::Material, unit: SpeedUnit) -> Self {
         let damping = material.damping;
         Self {
@@ -627,7 +577,7 @@ impl Material {
     }
 }
 
-impl HeldFixed {
+impl SearchHeldFixed {
     fn of(question: &Question) -> Self {
         let case = &question.case;
         let fixed = |parameter: Parameter| {
@@ -714,11 +664,7 @@ impl Run {
     fn of(run: &SearchRun) -> Self {
         Self {
             number: run.number,
-            found: run
-                .found
-                .iter()
-                .map(|found| Found { point: found.point.clone(), values: found.values.clone() })
-                .collect(),
+            found: run.found.clone(),
             curve: run.curve.iter().map(|value| finite(Some(*value))).collect(),
             generations: run.generations,
             evaluations: run.evaluations,
@@ -728,13 +674,9 @@ impl Run {
     }
 
     fn read(self) -> Option<SearchRun> {
-        let found = self
-            .found
-            .into_iter()
-            .map(|found| optimize::Found { point: found.point, values: found.values });
         Some(SearchRun {
             number: self.number,
-            found: found.collect(),
+            found: self.found,
             curve: self.curve.into_iter().map(|value| value.unwrap_or(f64::INFINITY)).collect(),
             generations: self.generations,
             evaluations: self.evaluations,

@@ -7,7 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::Kind;
 use super::sweep::Axis;
 use crate::impact::Units;
-use crate::impact::primary::{Alone, Others, PrimaryImpact, PrimaryRow, PrimaryStop};
+use crate::impact::primary::{
+    Alone, Others, PrimaryEnergy, PrimaryImpact, PrimaryRow, PrimaryStop,
+};
 use crate::report::{PrimaryReport, PrimarySweepReport};
 
 /// A main mass on spring and dashpot with a pendulum and its barriers. Time is in units of 1/omega,
@@ -15,10 +17,8 @@ use crate::report::{PrimaryReport, PrimarySweepReport};
 /// radians.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct PrimaryDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Primary.schema())))]
     pub schema: String,
     /// The numbers of both bodies.
     pub parameters: PrimaryParameters,
@@ -31,9 +31,9 @@ pub struct PrimaryDocument {
     /// The state at the end.
     pub final_state: PrimarySample,
     /// Every impact on a barrier.
-    pub impacts: Vec<PrimaryImpactDocument>,
+    pub impacts: Vec<PrimaryImpact>,
     /// What became of the energy.
-    pub energy: PrimaryEnergyDocument,
+    pub energy: PrimaryEnergy,
     /// When the envelope of the main mass has fallen to a tenth, for good; null where it never
     /// does, and where a force drives it.
     pub rest_time: Option<f64>,
@@ -42,9 +42,9 @@ pub struct PrimaryDocument {
     /// The largest displacement of the main mass in the last quarter of the run.
     pub long_run: f64,
     /// The same main mass without its damper, in closed form.
-    pub without: AloneDocument,
+    pub without: Alone,
     /// The same with the damper locked, in closed form.
-    pub locked: AloneDocument,
+    pub locked: Alone,
     /// Why the run ended.
     pub stopped: String,
     /// Whether it was followed as long as asked, and its energy is accounted for.
@@ -54,7 +54,6 @@ pub struct PrimaryDocument {
 /// The numbers of main mass and pendulum, dimensionless.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct PrimaryParameters {
     /// R = M/m.
     pub mass: f64,
@@ -85,7 +84,6 @@ pub struct PrimaryParameters {
 /// Both bodies at a time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct PrimarySample {
     /// The time.
     pub t: f64,
@@ -99,75 +97,12 @@ pub struct PrimarySample {
     pub speed: f64,
 }
 
-/// An impact.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "PrimaryImpact"))]
-pub struct PrimaryImpactDocument {
-    /// The barrier: `left` or `right`.
-    pub side: String,
-    /// When it is touched; 0 where the motion starts inside it.
-    pub entry_time: f64,
-    /// When it is left; null where the run ends before.
-    pub exit_time: Option<f64>,
-    /// The speed of the pendulum towards the barrier at the touch; where the motion starts inside
-    /// it, the speed inwards then.
-    pub speed_in: f64,
-    /// Its speed away from it at the release; null where the run ends before.
-    pub speed_out: Option<f64>,
-    /// The greatest depth, in radians.
-    pub penetration: f64,
-    /// The energy that the contact took.
-    pub energy_lost: f64,
-}
-
-/// The account of the energy.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct PrimaryEnergyDocument {
-    /// At the start.
-    pub start: f64,
-    /// At the end.
-    pub end: f64,
-    /// Taken by the viscous damping of the pendulum.
-    pub viscous: f64,
-    /// Taken by its dry friction.
-    pub friction: f64,
-    /// Taken by the contacts.
-    pub contact: f64,
-    /// Taken by the dashpot of the main mass.
-    pub dashpot: f64,
-    /// Put in by the force.
-    pub force: f64,
-    /// What is not accounted for, over the largest energy.
-    pub residual: f64,
-}
-
-/// A main mass alone, in closed form.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "Alone"))]
-pub struct AloneDocument {
-    /// Its mass, in units of the mass of the pendulum.
-    pub mass: f64,
-    /// Its angular frequency, damped; 0 where it creeps.
-    pub frequency: f64,
-    /// When its envelope has fallen to a tenth; null where it never does, creeps, or a force drives
-    /// it.
-    pub rest_time: Option<f64>,
-    /// Its amplitude in the long run; null where no force drives it.
-    pub amplitude: Option<f64>,
-}
-
 /// Many runs of a main mass with its pendulum, over every combination of the values of some
 /// parameters. Units as in kind `primary`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct PrimarySweepDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::PrimarySweep.schema())))]
     pub schema: String,
     /// The parameters that are varied, in SI units unless they are numbers of equation (7); the
     /// last varies fastest.
@@ -183,7 +118,6 @@ pub struct PrimarySweepDocument {
 /// One run of a main mass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct PrimarySweepRow {
     /// The values of the parameters, in the order of the axes.
     pub values: Vec<f64>,
@@ -235,7 +169,7 @@ pub struct PrimarySweepRow {
 pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
     let motion = report.motion;
     let case = &motion.case;
-    let (own, model, energy) = (&case.primary, &case.model, &motion.energy);
+    let (own, model) = (&case.primary, &case.model);
     let sample = |t: f64| {
         let state = motion.at(t)?;
         Some(PrimarySample {
@@ -271,17 +205,8 @@ pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
         length_unit: report.units.length,
         samples: report.samples.iter().filter_map(|t| sample(*t)).collect(),
         final_state: sample(motion.end).unwrap_or(start),
-        impacts: motion.impacts.iter().map(impact).collect(),
-        energy: PrimaryEnergyDocument {
-            start: energy.start,
-            end: energy.end,
-            viscous: energy.viscous,
-            friction: energy.friction,
-            contact: energy.contact,
-            dashpot: energy.dashpot,
-            force: energy.force,
-            residual: energy.residual,
-        },
+        impacts: motion.impacts.clone(),
+        energy: motion.energy,
         rest_time: rest.as_ref().ok().copied().filter(|_| !driven),
         rest_reason: match (driven, rest) {
             (true, _) => Some("a force drives it".to_owned()),
@@ -289,31 +214,10 @@ pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
             (false, Ok(_)) => None,
         },
         long_run: motion.largest_since(0.75 * motion.end),
-        without: alone(&others.without),
-        locked: alone(&others.locked),
+        without: others.without,
+        locked: others.locked,
         stopped: motion.stop.to_string(),
         complete: report.is_complete(),
-    }
-}
-
-fn impact(impact: &PrimaryImpact) -> PrimaryImpactDocument {
-    PrimaryImpactDocument {
-        side: impact.side.name().to_owned(),
-        entry_time: impact.entry,
-        exit_time: impact.exit,
-        speed_in: impact.speed_in,
-        speed_out: impact.speed_out,
-        penetration: impact.penetration,
-        energy_lost: impact.energy_lost,
-    }
-}
-
-fn alone(alone: &Alone) -> AloneDocument {
-    AloneDocument {
-        mass: alone.mass,
-        frequency: alone.frequency,
-        rest_time: alone.rest_time,
-        amplitude: alone.amplitude,
     }
 }
 

@@ -6,9 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
-use super::number::{Constant, Map, is_nothing};
+use super::number::{Constant, Map, constants, is_nothing, meanings};
 use crate::report::motion_frequency;
-use crate::response::bifurcation::BifurcationKind;
 use crate::response::slow::SlowResponse;
 use crate::response::{self, Response};
 use crate::verify::Verdict;
@@ -17,10 +16,8 @@ use crate::verify::Verdict;
 /// of the equation and the values given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ResponseDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Response.schema())))]
     pub schema: String,
     /// The equation of motion.
     pub equation: String,
@@ -53,21 +50,21 @@ pub struct ResponseDocument {
     /// branch that nothing holds.
     pub stuck: Vec<Vec<f64>>,
     /// Where branches change.
-    pub bifurcations: Vec<ResponseBifurcation>,
+    pub bifurcations: Vec<response::Bifurcation>,
     /// Folds of the balance that are none of the true motion and not among those places. Left out
     /// where there are none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub ripple: Option<RippleDocument>,
+    pub ripple: Option<response::Ripple>,
     /// The free motion without damping, a list of points for each stable place of rest; empty where
     /// the frequency of the drive does not vary.
-    pub backbone: Vec<Vec<BackbonePoint>>,
+    pub backbone: Vec<Vec<response::backbone::BackbonePoint>>,
     /// The steady motions by slow equations of amplitude and phase, where a method with such
     /// equations was asked for; else null.
     pub modulation: Option<SlowDocument>,
     /// Simulations that were let go beside stable points and have settled.
-    pub simulated: Vec<SimulatedPoint>,
+    pub simulated: Vec<response::Simulated>,
     /// Simulations that have settled on something that is not among the branches.
-    pub elsewhere: Vec<ElsewherePoint>,
+    pub elsewhere: Vec<response::Elsewhere>,
     /// The judgement of all points.
     pub verification: ResponseVerification,
     /// Whether it was followed to its end.
@@ -77,7 +74,6 @@ pub struct ResponseDocument {
 /// A steady state.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ResponsePoint {
     /// The value of the parameter that varies.
     pub parameter: f64,
@@ -104,8 +100,7 @@ pub struct ResponsePoint {
 
 /// Steady motions by slow equations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "SlowResponse"))]
+#[cfg_attr(feature = "schema", derive(JsonSchema), schemars(rename = "SlowResponse"))]
 pub struct SlowDocument {
     /// The method: `multiple-scales`.
     pub method: String,
@@ -118,7 +113,7 @@ pub struct SlowDocument {
     /// What stands for what in them.
     pub definitions: Map<String>,
     /// The steady motions, by the parameter.
-    pub states: Vec<SlowPoint>,
+    pub states: Vec<response::slow::SlowState>,
     /// The largest error of the amplitude at the stable points of the branches, over the amplitude;
     /// null where there is none.
     pub largest_error: Option<f64>,
@@ -134,46 +129,19 @@ pub struct SlowDocument {
     pub verdict: String,
 }
 
-/// A steady motion by slow equations.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct SlowPoint {
-    /// The value of the parameter that varies.
-    pub parameter: f64,
-    /// The amplitude of the first harmonic.
-    pub amplitude: f64,
-    /// Its phase, in radians.
-    pub phase: f64,
-    /// Whether small disturbances die out, by the slow equations.
-    pub stable: bool,
-}
-
 fn slow(slow: &SlowResponse) -> SlowDocument {
     let solution = &slow.solution;
     let rates = solution.modulation.as_ref().map(|modulation| {
         [&modulation.amplitude_rate, &modulation.phase_rate].map(ToString::to_string)
     });
     let [amplitude_rate, phase_rate] = rates.unwrap_or_default();
-    let definitions = solution.definitions.iter();
     SlowDocument {
         method: solution.method.name().to_owned(),
         order: solution.order,
         amplitude_rate,
         phase_rate,
-        definitions: definitions
-            .map(|definition| (definition.symbol.to_string(), definition.meaning.to_string()))
-            .collect(),
-        states: slow
-            .states
-            .iter()
-            .map(|state| SlowPoint {
-                parameter: state.parameter,
-                amplitude: state.amplitude,
-                phase: state.phase,
-                stable: state.stable,
-            })
-            .collect(),
+        definitions: meanings(&solution.definitions),
+        states: slow.states.clone(),
         largest_error: slow.error,
         missing: slow.missing,
         spurious: slow.spurious.map_or(0, |spurious| spurious.count),
@@ -181,94 +149,9 @@ fn slow(slow: &SlowResponse) -> SlowDocument {
     }
 }
 
-/// A place where a branch changes.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct ResponseBifurcation {
-    /// What happens: the branch turns back, another one crosses, motions of twice the period come
-    /// off, a second frequency comes in, a self-excited motion is born from rest, motions of every
-    /// amplitude at one value of the parameter.
-    #[cfg_attr(feature = "schema", schemars(extend("enum" = KINDS)))]
-    pub kind: String,
-    /// The branch, counted from 0.
-    pub branch: usize,
-    /// The value of the parameter that varies.
-    pub parameter: f64,
-    /// The frequency of the motion.
-    pub frequency: f64,
-    /// The amplitude of the first harmonic.
-    pub amplitude: f64,
-    /// Half of peak to peak.
-    pub peak: f64,
-}
-
-/// The names of the kinds of bifurcations.
-const KINDS: [&str; 6] = [
-    BifurcationKind::Fold.name(),
-    BifurcationKind::BranchPoint.name(),
-    BifurcationKind::PeriodDoubling.name(),
-    BifurcationKind::NeimarkSacker.name(),
-    BifurcationKind::Hopf.name(),
-    BifurcationKind::Centre.name(),
-];
-
-/// A free motion without damping.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct BackbonePoint {
-    /// The value of the parameter at which it has the frequency of the drive over `periods`.
-    pub parameter: f64,
-    /// The amplitude of its first harmonic.
-    pub amplitude: f64,
-}
-
-/// A simulation that has settled.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct SimulatedPoint {
-    /// The value of the parameter that varies.
-    pub parameter: f64,
-    /// Its frequency.
-    pub frequency: f64,
-    /// The amplitude of its first harmonic.
-    pub amplitude: f64,
-    /// Half of peak to peak.
-    pub peak: f64,
-    /// The error of the point of the branch against it, over its peak; or that of the frequency, if
-    /// it is larger.
-    pub error: f64,
-}
-
-/// Folds of the balance alone.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "ResponseRipple"))]
-pub struct RippleDocument {
-    /// How many they are.
-    pub folds: usize,
-    /// The lowest and the highest value of the parameter at which they are.
-    pub range: [f64; 2],
-}
-
-/// A simulation that has settled elsewhere.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct ElsewherePoint {
-    /// The value of the parameter that varies.
-    pub parameter: f64,
-    /// After how many periods of the motion it repeats itself, 1 where harmonic balance has not
-    /// come to it; null where it does not within eight.
-    pub periods: Option<usize>,
-}
-
 /// How far the branches are from true motions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ResponseVerification {
     /// The largest error of all points and simulations; null where no true motion was found.
     pub error: Option<f64>,
@@ -295,17 +178,6 @@ fn point(point: &response::Point) -> ResponsePoint {
     }
 }
 
-fn bifurcation(found: &response::Bifurcation) -> ResponseBifurcation {
-    ResponseBifurcation {
-        kind: found.kind.name().to_owned(),
-        branch: found.branch,
-        parameter: found.parameter,
-        frequency: found.frequency,
-        amplitude: found.amplitude,
-        peak: found.peak,
-    }
-}
-
 /// The part of a period that each point of a branch sticks; nothing for one that never does.
 fn stuck(branch: &response::Branch) -> Vec<f64> {
     match branch.points.iter().any(|point| point.stuck > 0.0) {
@@ -329,11 +201,7 @@ pub fn response(response: &Response) -> ResponseDocument {
     ResponseDocument {
         schema: Kind::Response.schema().to_owned(),
         equation: asked.oscillator.equation().to_string(),
-        parameters: asked
-            .values
-            .iter()
-            .map(|(name, value)| (name.to_string(), Constant::of(value)))
-            .collect(),
+        parameters: constants(&asked.values),
         parameter: asked.parameter.to_string(),
         range: asked.range,
         method: match response.by_map {
@@ -353,40 +221,12 @@ pub fn response(response: &Response) -> ResponseDocument {
             .collect(),
         mirrored: response.branches.iter().map(|branch| branch.mirrored).collect(),
         stuck: response.branches.iter().map(stuck).collect(),
-        bifurcations: response.bifurcations.iter().map(bifurcation).collect(),
-        ripple: response
-            .ripple
-            .map(|ripple| RippleDocument { folds: ripple.folds, range: ripple.range }),
-        backbone: response
-            .backbone
-            .iter()
-            .map(|curve| {
-                let points = curve.iter();
-                points
-                    .map(|point| BackbonePoint {
-                        parameter: point.parameter,
-                        amplitude: point.amplitude,
-                    })
-                    .collect()
-            })
-            .collect(),
+        bifurcations: response.bifurcations.clone(),
+        ripple: response.ripple,
+        backbone: response.backbone.clone(),
         modulation: response.slow.as_ref().map(slow),
-        simulated: response
-            .simulated
-            .iter()
-            .map(|found| SimulatedPoint {
-                parameter: found.parameter,
-                frequency: found.frequency,
-                amplitude: found.amplitude,
-                peak: found.peak,
-                error: found.error,
-            })
-            .collect(),
-        elsewhere: response
-            .elsewhere
-            .iter()
-            .map(|found| ElsewherePoint { parameter: found.parameter, periods: found.periods })
-            .collect(),
+        simulated: response.simulated.clone(),
+        elsewhere: response.elsewhere.clone(),
         verification: ResponseVerification {
             error: response.error,
             tolerance: asked.tolerance,

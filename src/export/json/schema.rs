@@ -69,29 +69,44 @@ impl Kind {
         Self::Certificate,
     ];
 
-    /// What a document of this kind has under `schema`.
-    pub const fn schema(self) -> &'static str {
+    /// The name of the schema, and its file.
+    const fn entry(self) -> [&'static str; 2] {
         match self {
-            Self::Solution => "lindstedt/solution/1",
-            Self::Comparison => "lindstedt/comparison/1",
-            Self::Impact => "lindstedt/impact/1",
-            Self::ImpactComparison => "lindstedt/impact-comparison/1",
-            Self::Simulation => "lindstedt/simulation/1",
-            Self::Motion => "lindstedt/motion/1",
-            Self::MotionSweep => "lindstedt/motion-sweep/1",
-            Self::Primary => "lindstedt/primary/1",
-            Self::PrimarySweep => "lindstedt/primary-sweep/1",
-            Self::Sweep => "lindstedt/sweep/1",
-            Self::Response => "lindstedt/response/1",
-            Self::Friction => "lindstedt/friction/1",
-            Self::Lagrangian => "lindstedt/lagrangian/1",
-            Self::Materials => "lindstedt/materials/1",
-            Self::Optimization => "lindstedt/optimization/1",
-            Self::Stability => "lindstedt/stability/1",
-            Self::Audit => "lindstedt/audit/1",
-            Self::Catalog => "lindstedt/catalog/1",
-            Self::Certificate => "lindstedt/certificate/1",
+            Self::Solution => ["lindstedt/solution/1", include_str!("schemas/solution.json")],
+            Self::Comparison => ["lindstedt/comparison/1", include_str!("schemas/comparison.json")],
+            Self::Impact => ["lindstedt/impact/1", include_str!("schemas/impact.json")],
+            Self::ImpactComparison => {
+                ["lindstedt/impact-comparison/1", include_str!("schemas/impact-comparison.json")]
+            }
+            Self::Simulation => ["lindstedt/simulation/1", include_str!("schemas/simulation.json")],
+            Self::Motion => ["lindstedt/motion/1", include_str!("schemas/motion.json")],
+            Self::MotionSweep => {
+                ["lindstedt/motion-sweep/1", include_str!("schemas/motion-sweep.json")]
+            }
+            Self::Primary => ["lindstedt/primary/1", include_str!("schemas/primary.json")],
+            Self::PrimarySweep => {
+                ["lindstedt/primary-sweep/1", include_str!("schemas/primary-sweep.json")]
+            }
+            Self::Sweep => ["lindstedt/sweep/1", include_str!("schemas/sweep.json")],
+            Self::Response => ["lindstedt/response/1", include_str!("schemas/response.json")],
+            Self::Friction => ["lindstedt/friction/1", include_str!("schemas/friction.json")],
+            Self::Lagrangian => ["lindstedt/lagrangian/1", include_str!("schemas/lagrangian.json")],
+            Self::Materials => ["lindstedt/materials/1", include_str!("schemas/materials.json")],
+            Self::Optimization => {
+                ["lindstedt/optimization/1", include_str!("schemas/optimization.json")]
+            }
+            Self::Stability => ["lindstedt/stability/1", include_str!("schemas/stability.json")],
+            Self::Audit => ["lindstedt/audit/1", include_str!("schemas/audit.json")],
+            Self::Catalog => ["lindstedt/catalog/1", include_str!("schemas/catalog.json")],
+            Self::Certificate => {
+                ["lindstedt/certificate/1", include_str!("schemas/certificate.json")]
+            }
         }
+    }
+
+    /// The text that a document of this kind has under `schema`.
+    pub const fn schema(self) -> &'static str {
+        self.entry()[0]
     }
 
     /// The name on the command line: `solution`.
@@ -117,27 +132,7 @@ impl Kind {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub const fn json_schema(self) -> &'static str {
-        match self {
-            Self::Solution => include_str!("schemas/solution.json"),
-            Self::Comparison => include_str!("schemas/comparison.json"),
-            Self::Impact => include_str!("schemas/impact.json"),
-            Self::ImpactComparison => include_str!("schemas/impact-comparison.json"),
-            Self::Simulation => include_str!("schemas/simulation.json"),
-            Self::Motion => include_str!("schemas/motion.json"),
-            Self::MotionSweep => include_str!("schemas/motion-sweep.json"),
-            Self::Primary => include_str!("schemas/primary.json"),
-            Self::PrimarySweep => include_str!("schemas/primary-sweep.json"),
-            Self::Sweep => include_str!("schemas/sweep.json"),
-            Self::Response => include_str!("schemas/response.json"),
-            Self::Friction => include_str!("schemas/friction.json"),
-            Self::Lagrangian => include_str!("schemas/lagrangian.json"),
-            Self::Materials => include_str!("schemas/materials.json"),
-            Self::Optimization => include_str!("schemas/optimization.json"),
-            Self::Stability => include_str!("schemas/stability.json"),
-            Self::Audit => include_str!("schemas/audit.json"),
-            Self::Catalog => include_str!("schemas/catalog.json"),
-            Self::Certificate => include_str!("schemas/certificate.json"),
-        }
+        self.entry()[1]
     }
 }
 

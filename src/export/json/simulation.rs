@@ -5,17 +5,18 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
+use super::number::text;
 use crate::export::simulation::{COMPARED, Report, friction, notes, phases};
-use crate::impact::{self, ClosedForm, Friction, Integrator, Piece, Regime, Side};
+use crate::impact::{
+    self, ClosedForm, ContactDeviation, Friction, Geometry, Integrator, Piece, Regime, Side,
+};
 
 /// One run of the paper's equation (7), event by event. Angles are in radians, time is in units of
 /// 1/omega of small swings, sqrt(L/g), energies in units of m g L.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct SimulationDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Simulation.schema())))]
     pub schema: String,
     /// The numbers of the problem.
     pub parameters: Parameters,
@@ -82,7 +83,6 @@ pub struct SimulationDocument {
 /// times the duration of the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Baseline {
     /// Without a barrier.
     pub no_barrier: Option<f64>,
@@ -94,24 +94,9 @@ pub struct Baseline {
     pub geometry: Option<Geometry>,
 }
 
-/// By how much sooner a swing cut at the barrier rests under viscous damping:
-/// ln(first_swing/at_rest)/(2 zeta).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct Geometry {
-    /// The action of the first swing without a barrier over that of the swing cut at it.
-    pub first_swing: f64,
-    /// The same at a tenth of the amplitude; 1 where the barrier is out of reach.
-    pub at_rest: f64,
-    /// The gain, in units of time.
-    pub gain: f64,
-}
-
 /// The numbers of a run: dimensionless unless another unit is given.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Parameters {
     /// Where the barriers stand.
     pub barrier: Barrier,
@@ -149,7 +134,6 @@ pub struct Parameters {
 /// What damps, each damping in every form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Dissipation {
     /// The damping of the contact.
     pub contact: ContactDissipation,
@@ -162,7 +146,6 @@ pub struct Dissipation {
 /// The damping of a contact, in every form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ContactDissipation {
     /// The form in which it is given and held fixed, by its key in a file.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = impact::ContactDamping::FORMS.map(impact::Parameter::name))))]
@@ -194,7 +177,6 @@ pub struct ContactDissipation {
 /// A viscous damping, in every form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ViscousDissipation {
     /// The form in which it is given and held fixed, by its key in a file.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = [impact::Parameter::Zeta.name(), impact::Parameter::Viscous.name()])))]
@@ -209,7 +191,6 @@ pub struct ViscousDissipation {
 /// A dry friction, in every form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct FrictionDissipation {
     /// The form in which it is given and held fixed, by its key in a file.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = [impact::Parameter::Alpha.name(), impact::Parameter::Torque.name()])))]
@@ -255,7 +236,6 @@ impl From<&impact::Dissipation> for Dissipation {
 /// The places of the barriers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Barrier {
     /// The left one, in radians; null where there is none.
     pub left: Option<f64>,
@@ -266,7 +246,6 @@ pub struct Barrier {
 /// A state at the end of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct State {
     /// The time, in units of time.
     pub t: f64,
@@ -279,7 +258,6 @@ pub struct State {
 /// A state that was asked for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Sample {
     /// The time, in units of time.
     pub t: f64,
@@ -292,7 +270,6 @@ pub struct Sample {
 /// One contact with a barrier.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Impact {
     /// When the barrier is touched, in units of time.
     pub entry_time: f64,
@@ -315,30 +292,12 @@ pub struct Impact {
     pub side: String,
     /// How far it is from the same contact by integration; null unless it is of a chain that was
     /// judged, and the integration has it.
-    pub error: Option<ImpactError>,
-}
-
-/// How far a contact of a chain is from the same one by integration.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct ImpactError {
-    /// The difference of the times of touch, in units of time.
-    pub entry_time: f64,
-    /// The error of the speed of touch, as a fraction of it; null where it is zero.
-    pub speed_in: Option<f64>,
-    /// The error of the greatest depth, as a fraction of it; null where a run ends before.
-    pub penetration: Option<f64>,
-    /// The error of the duration, as a fraction of it; null where a run ends before.
-    pub duration: Option<f64>,
-    /// The error of the speed of release, as a fraction of it; null where a run ends before.
-    pub speed_out: Option<f64>,
+    pub error: Option<ContactDeviation>,
 }
 
 /// A phase of a chain: a stretch of time with one formula.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ChainPhase {
     /// What happens: `swing`, `contact`, `rest` where dry friction holds the pendulum, or
     /// `integrated` where there is no formula.
@@ -361,7 +320,6 @@ pub struct ChainPhase {
 /// parameter k^2.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct SwingForm {
     /// 1 or -1.
     pub sign: f64,
@@ -380,7 +338,6 @@ pub struct SwingForm {
 /// x(t) = barrier + the sum over j from 1 of sines_j sin(j pi t/duration).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ContactForm {
     /// Where the barrier stands, in radians.
     pub barrier: f64,
@@ -393,7 +350,6 @@ pub struct ContactForm {
 /// Energies and works over the run, in units of m g L.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Energy {
     /// The energy at the start, in units of m g L.
     pub start: f64,
@@ -412,7 +368,6 @@ pub struct Energy {
 /// The same run by the other integrator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Judge {
     /// The integrator.
     #[cfg_attr(feature = "schema", schemars(extend("enum" = INTEGRATORS.map(integrator))))]
@@ -432,7 +387,6 @@ pub struct Judge {
 /// The largest differences of two motions at the same times.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Difference {
     /// Of the displacements, in radians.
     pub x: f64,
@@ -502,17 +456,13 @@ pub fn simulation(report: &Report) -> SimulationDocument {
         place_of_rest: rest.place,
         rest_time: rest.time.ok(),
         rest_time_in_seconds: report.units.and_then(|units| Some(rest.time.ok()? * units.time())),
-        rest_reason: rest.time.err().map(|reason| reason.to_string()),
+        rest_reason: text(rest.time.err()),
         last_crossing: rest.last_crossing,
         baseline: report.baseline.map(|baseline| Baseline {
             no_barrier: baseline.no_barrier.ok(),
             lossless_barrier: baseline.lossless_barrier.ok(),
             this_barrier: rest.time.ok(),
-            geometry: baseline.geometry.map(|geometry| Geometry {
-                first_swing: geometry.first_swing,
-                at_rest: geometry.at_rest,
-                gain: geometry.gain,
-            }),
+            geometry: baseline.geometry,
         }),
         energy: Energy {
             start: book.start,
@@ -538,15 +488,8 @@ fn impacts(report: &Report) -> Vec<Impact> {
     let judge = report.judge.filter(|_| motion.integrator == Integrator::Chain);
     let errors = judge.map_or_else(Vec::new, |judge| motion.contact_deviations(judge));
     let errors = errors.into_iter().chain(std::iter::repeat(None));
-    let error = |error: impact::ContactDeviation| ImpactError {
-        entry_time: error.entry_time,
-        speed_in: error.speed_in,
-        penetration: error.penetration,
-        duration: error.duration,
-        speed_out: error.speed_out,
-    };
     let impacts = motion.impacts.iter().zip(errors);
-    impacts.map(|(contact, found)| Impact { error: found.map(error), ..impact(contact) }).collect()
+    impacts.map(|(contact, error)| Impact { error, ..impact(contact) }).collect()
 }
 
 fn phase(piece: &Piece) -> ChainPhase {

@@ -5,7 +5,7 @@ use num_traits::Zero;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::number::Names;
+use super::number::{Names, meanings, named, text, texts};
 use super::verification::{Verification, verification as judged};
 use super::{Constant, JsonError, Kind, Map, Polynomial, check_kind, unexpected};
 use crate::derivation::Line;
@@ -25,7 +25,6 @@ use crate::verify;
 /// `by_quadrature`, `system`; that is the one that is judged.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct SolutionDocument {
     /// The kind of document.
     #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Solution.schema())))]
@@ -111,7 +110,6 @@ pub struct SolutionDocument {
 /// variable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Convergence {
     /// What the series runs in: the powers of the small parameter and of the symbols that enter in
     /// step with it, multiplied.
@@ -135,7 +133,6 @@ pub struct Convergence {
 /// A number that was estimated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Estimate {
     /// All digits that the error leaves, as an exact fraction in text.
     pub exact: String,
@@ -168,7 +165,7 @@ impl Convergence {
         let [real, imaginary] = nearest.place.each_ref().map(Estimate::of);
         let powers = convergence.variable.factors().iter();
         Self {
-            variable: powers.map(|(name, power)| (name.to_string(), *power)).collect(),
+            variable: named(powers.map(|(name, power)| (name, *power))),
             highest: convergence.highest,
             radius: Estimate::of(&nearest.radius),
             angle: Estimate::of(&nearest.angle),
@@ -189,7 +186,7 @@ impl Convergence {
                 radius: self.radius.read()?,
                 angle: self.angle.read()?,
                 place: [self.real.read()?, self.imaginary.read()?],
-                exponent: self.exponent.as_ref().map(Estimate::read).transpose()?,
+                exponent: some(&self.exponent, Estimate::read)?,
             },
         })
     }
@@ -198,7 +195,6 @@ impl Convergence {
 /// Algebraic equations for omega and the coefficients of the motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct System {
     /// What is solved for: `omega` and the coefficients; `verification.values` has their values.
     pub unknowns: Vec<String>,
@@ -209,7 +205,6 @@ pub struct System {
 /// A motion as a Fourier series with symbols in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Displacement {
     /// The name of the angle, `theta`, or `phi` where the equation has a `theta` of its own: theta
     /// = omega t + `verification.phase`, in radians.
@@ -224,7 +219,6 @@ pub struct Displacement {
 /// One harmonic of a motion with symbols in it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Harmonic {
     /// The multiple of theta, 0 for the mean.
     pub harmonic: usize,
@@ -237,7 +231,6 @@ pub struct Harmonic {
 /// The limit cycle that is expanded, among those of its equation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct LimitCycle {
     /// Its amplitude, as `amplitude` of the solution says, in the unit of the coordinate; to
     /// leading order where the motion is left out.
@@ -253,7 +246,6 @@ pub struct LimitCycle {
 /// A limit cycle to leading order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Cycle {
     /// Its amplitude where the small parameters vanish, in the unit of the coordinate.
     pub amplitude: Constant,
@@ -269,7 +261,6 @@ pub struct Cycle {
 /// phase)/times_linear.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Modulation {
     /// The symbol of the amplitude, in the unit of the coordinate.
     pub amplitude: String,
@@ -299,7 +290,6 @@ pub struct Modulation {
 /// times_linear * omega0 + detuning.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Resonance {
     /// The driving frequency, a symbol or a number.
     pub driving_frequency: String,
@@ -317,7 +307,6 @@ pub struct Resonance {
 /// the detuning of `modulation`, the parameters and the definitions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Response {
     /// x(t), an expression in t, the amplitude and the phase of `modulation`.
     pub motion: String,
@@ -354,7 +343,6 @@ pub struct Response {
 /// and the detuning.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct ClosedRelation {
     /// Zero at every steady motion.
     pub relation: String,
@@ -367,7 +355,6 @@ pub struct ClosedRelation {
 /// detuning = centre + sqrt(width_squared) and centre - sqrt(width_squared).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Branches {
     /// The middle of both branches, the backbone.
     pub centre: Polynomial,
@@ -378,7 +365,6 @@ pub struct Branches {
 /// Amplitude and phase at t = 0 of a motion with x = A from the equilibrium and x' = 0 there.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Release {
     /// The amplitude, an expression.
     pub amplitude: String,
@@ -389,7 +375,6 @@ pub struct Release {
 /// A motion from its start in closed form.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Transient {
     /// The symbol of the amplitude at t = 0: A, or one of `definitions`.
     pub start: String,
@@ -419,7 +404,6 @@ pub fn solution(
 ) -> SolutionDocument {
     let _letters = solution.letters().in_force();
     let optional = |law: Option<&exact::Polynomial>| law.map(|law| Polynomial::of(law, solution));
-    let definitions = solution.definitions.iter();
     SolutionDocument {
         schema: Kind::Solution.schema().to_owned(),
         equation: solution.equation.to_string(),
@@ -428,27 +412,25 @@ pub fn solution(
         degrees: solution.degrees.map(Degrees::list),
         small_parameter: solution.small_parameter.to_string(),
         amplitude: solution.amplitude.name().to_owned(),
-        parameters: names(&solution.parameters),
-        definitions: definitions
-            .map(|definition| (definition.symbol.to_string(), definition.meaning.to_string()))
-            .collect(),
+        parameters: texts(&solution.parameters),
+        definitions: meanings(&solution.definitions),
         equilibrium: Constant::of(&solution.equilibrium),
         frequency: optional(solution.law.frequency()),
         frequency_squared: optional(solution.law.frequency_squared()),
         relation: optional(solution.law.relation()),
-        closed_form: solution.law.closed_form().map(ToString::to_string),
+        closed_form: text(solution.law.closed_form()),
         by_quadrature: solution.by_numbers(),
         system: solution.law.system().map(|system| System {
-            unknowns: names(&system.unknowns),
-            equations: system.equations.iter().map(ToString::to_string).collect(),
+            unknowns: texts(&system.unknowns),
+            equations: texts(&system.equations),
         }),
         displacement: displacement(&solution.displacement, solution),
-        closed_motion: solution.closed_motion.as_ref().map(ToString::to_string),
+        closed_motion: text(solution.closed_motion.as_ref()),
         limit_cycle: solution.limit_cycle.as_ref().map(|cycle| limit_cycle(cycle, solution)),
         modulation: solution.modulation.as_ref().map(|slow| modulation(slow, solution)),
         response: solution.response.as_ref().map(|response| self::response(response, solution)),
         numerical: solution.numerical,
-        validity: solution.validity.iter().map(ToString::to_string).collect(),
+        validity: texts(&solution.validity),
         convergence: solution.convergence.as_ref().map(Convergence::of),
         derivation: None,
         verification: verification.map(judged),
@@ -475,7 +457,7 @@ fn limit_cycle(cycle: &solution::LimitCycle, solution: &Solution) -> LimitCycle 
         amplitude: Polynomial::of(&cycle.amplitude, solution),
         number: cycle.number,
         cycles: cycle.cycles.iter().map(self::cycle).collect(),
-        small_with: names(&cycle.small_with),
+        small_with: texts(&cycle.small_with),
     }
 }
 
@@ -483,7 +465,7 @@ fn limit_cycle(cycle: &solution::LimitCycle, solution: &Solution) -> LimitCycle 
 fn cycle(leading: &LeadingCycle) -> Cycle {
     Cycle {
         amplitude: Constant::of(&leading.amplitude),
-        attracts_where_positive: leading.attracts_where.as_ref().map(ToString::to_string),
+        attracts_where_positive: text(leading.attracts_where.as_ref()),
         stability: leading.stability(),
     }
 }
@@ -495,7 +477,7 @@ fn modulation(modulation: &solution::Modulation, solution: &Solution) -> Modulat
         phase: modulation.phase.to_string(),
         amplitude_rate: modulation.amplitude_rate.to_string(),
         phase_rate: modulation.phase_rate.to_string(),
-        small_with: names(&modulation.small_with),
+        small_with: texts(&modulation.small_with),
         resonance: modulation.resonance.as_ref().map(|resonance| Resonance {
             driving_frequency: resonance.driving_frequency.to_string(),
             times_driving: resonance.times_driving,
@@ -510,8 +492,8 @@ fn modulation(modulation: &solution::Modulation, solution: &Solution) -> Modulat
         transient: modulation.transient.as_ref().map(|transient| Transient {
             start: transient.start.to_string(),
             amplitude: transient.amplitude.to_string(),
-            phase: transient.phase.as_ref().map(ToString::to_string),
-            ends: transient.ends.as_ref().map(ToString::to_string),
+            phase: text(transient.phase.as_ref()),
+            ends: text(transient.ends.as_ref()),
         }),
         steady: modulation.steady.iter().map(cycle).collect(),
         motion: modulation.motion.as_ref().map(|motion| displacement(motion, solution)),
@@ -528,8 +510,8 @@ fn response(response: &solution::Response, solution: &Solution) -> Response {
             centre: polynomial(&branches.centre),
             width_squared: polynomial(&branches.width_squared),
         }),
-        peak: response.peak.as_ref().map(ToString::to_string),
-        folds: response.folds.iter().map(ToString::to_string).collect(),
+        peak: text(response.peak.as_ref()),
+        folds: texts(&response.folds),
         jumps: response.jumps.as_ref().map(polynomial),
         closed: response.closed.as_ref().map(|closed| ClosedRelation {
             relation: closed.relation.to_string(),
@@ -551,8 +533,20 @@ fn response(response: &solution::Response, solution: &Solution) -> Response {
     }
 }
 
-fn names(symbols: &[Symbol]) -> Vec<String> {
-    symbols.iter().map(ToString::to_string).collect()
+/// Reads what there is.
+fn some<T, U>(
+    found: &Option<T>,
+    read: impl FnOnce(&T) -> Result<U, JsonError>,
+) -> Result<Option<U>, JsonError> {
+    found.as_ref().map(read).transpose()
+}
+
+/// Reads each of them.
+fn all<T, U>(
+    found: &[T],
+    read: impl FnMut(&T) -> Result<U, JsonError>,
+) -> Result<Vec<U>, JsonError> {
+    found.iter().map(read).collect()
 }
 
 fn symbols(texts: &[String], names: &Names) -> Vec<Symbol> {
@@ -608,16 +602,13 @@ impl SolutionDocument {
             equilibrium: names.expression(&self.equilibrium.exact, "equilibrium")?,
             law: self.law(names)?,
             displacement: self.displacement.read(names)?,
-            closed_motion: match &self.closed_motion {
-                Some(text) => Some(names.expression(text, "closed_motion")?),
-                None => None,
-            },
-            limit_cycle: self.limit_cycle.as_ref().map(|own| own.read(names)).transpose()?,
-            modulation: self.modulation.as_ref().map(|own| own.read(names)).transpose()?,
-            response: self.response.as_ref().map(|own| own.read(names)).transpose()?,
+            closed_motion: some(&self.closed_motion, |own| names.expression(own, "closed_motion"))?,
+            limit_cycle: some(&self.limit_cycle, |own| own.read(names))?,
+            modulation: some(&self.modulation, |own| own.read(names))?,
+            response: some(&self.response, |own| own.read(names))?,
             numerical: self.numerical,
             validity: self.validity.iter().cloned().map(Note::Stated).collect(),
-            convergence: self.convergence.as_ref().map(|own| own.read(names)).transpose()?,
+            convergence: some(&self.convergence, |own| own.read(names))?,
             steps: vec![],
             derivation: vec![],
         })
@@ -625,13 +616,11 @@ impl SolutionDocument {
 
     /// The law, of whose kinds a document holds one.
     fn law(&self, names: &Names) -> Result<Law, JsonError> {
-        let optional = |law: &Option<Polynomial>, key| {
-            law.as_ref().map(|law| names.polynomial(law, key)).transpose()
-        };
+        let optional = |law: &Option<Polynomial>, key| some(law, |law| names.polynomial(law, key));
         let frequency = optional(&self.frequency, "frequency")?;
         let squared = optional(&self.frequency_squared, "frequency_squared")?;
-        let form = self.closed_form.as_deref().map(|text| closed_form(text, names)).transpose()?;
-        let system = self.system.as_ref().map(|own| own.read(names)).transpose()?;
+        let form = some(&self.closed_form, |text| closed_form(text, names))?;
+        let system = some(&self.system, |own| own.read(names))?;
         Ok(match (optional(&self.relation, "relation")?, squared, frequency, form, system) {
             (Some(relation), squared, _, form, _) => Law::Relation {
                 relation,
@@ -662,10 +651,9 @@ fn closed_form(text: &str, names: &Names) -> Result<ClosedForm, JsonError> {
 
 impl System {
     fn read(&self, names: &Names) -> Result<solution::System, JsonError> {
-        let equations = self.equations.iter().map(|text| names.expression(text, "equations"));
         Ok(solution::System {
             unknowns: symbols(&self.unknowns, names),
-            equations: equations.collect::<Result<_, _>>()?,
+            equations: all(&self.equations, |text| names.expression(text, "equations"))?,
         })
     }
 }
@@ -675,11 +663,7 @@ impl LimitCycle {
         Ok(solution::LimitCycle {
             amplitude: names.polynomial(&self.amplitude, "limit_cycle")?,
             number: self.number,
-            cycles: self
-                .cycles
-                .iter()
-                .map(|own| own.read(names))
-                .collect::<Result<_, JsonError>>()?,
+            cycles: all(&self.cycles, |own| own.read(names))?,
             small_with: symbols(&self.small_with, names),
         })
     }
@@ -687,111 +671,87 @@ impl LimitCycle {
 
 impl Cycle {
     fn read(&self, names: &Names) -> Result<LeadingCycle, JsonError> {
-        let attracts_where = self.attracts_where_positive.as_deref();
         Ok(LeadingCycle {
             amplitude: names.expression(&self.amplitude.exact, "amplitude")?,
-            attracts_where: attracts_where
-                .map(|text| names.expression(text, "attracts_where_positive"))
-                .transpose()?,
+            attracts_where: some(&self.attracts_where_positive, |text| {
+                names.expression(text, "attracts_where_positive")
+            })?,
         })
     }
 }
 
 impl Response {
     fn read(&self, names: &Names) -> Result<solution::Response, JsonError> {
-        let polynomial = |value: &Option<Polynomial>, key| {
-            value.as_ref().map(|value| names.polynomial(value, key)).transpose()
-        };
-        let branches = |branches: &Branches| -> Result<_, JsonError> {
-            Ok(solution::response::Branches {
-                centre: names.polynomial(&branches.centre, "centre")?,
-                width_squared: names.polynomial(&branches.width_squared, "width_squared")?,
+        let polynomial = |value: &Polynomial, key| names.polynomial(value, key);
+        let both = |[u, v]: &[Polynomial; 2], key| Ok([polynomial(u, key)?, polynomial(v, key)?]);
+        let expression = |text: &String, key| names.expression(text, key);
+        let plane = |(coordinates, rates): &(&[String; 2], &[Polynomial; 2])| {
+            Ok(solution::response::Plane {
+                coordinates: coordinates.each_ref().map(|name| names.symbol(name)),
+                rates: both(rates, "rates")?,
+                parts: all(&self.parts, |part| all(part, |rates| both(rates, "parts")))?,
             })
         };
-        let closed = |closed: &ClosedRelation| -> Result<_, JsonError> {
-            Ok(solution::response::ClosedRelation {
-                relation: names.expression(&closed.relation, "relation")?,
-                centre: names.expression(&closed.centre, "centre")?,
-                width_squared: names.expression(&closed.width_squared, "width_squared")?,
-            })
-        };
-        let orders = |part: &[[Polynomial; 2]]| -> Result<Vec<_>, JsonError> {
-            let both = |[u, v]: &[Polynomial; 2]| {
-                Ok([names.polynomial(u, "parts")?, names.polynomial(v, "parts")?])
-            };
-            part.iter().map(both).collect()
-        };
-        let plane =
-            |(coordinates, [u, v]): (&[String; 2], &[Polynomial; 2])| -> Result<_, JsonError> {
-                Ok(solution::response::Plane {
-                    coordinates: coordinates.each_ref().map(|name| names.symbol(name)),
-                    rates: [names.polynomial(u, "rates")?, names.polynomial(v, "rates")?],
-                    parts: self.parts.iter().map(|part| orders(part)).collect::<Result<_, _>>()?,
-                })
-            };
         Ok(solution::Response {
-            motion: names.expression(&self.motion, "motion")?,
-            relation: polynomial(&self.relation, "relation")?,
-            branches: self.branches.as_ref().map(branches).transpose()?,
-            peak: self.peak.as_deref().map(|peak| names.expression(peak, "peak")).transpose()?,
-            folds: self
-                .folds
-                .iter()
-                .map(|fold| names.expression(fold, "folds"))
-                .collect::<Result<_, _>>()?,
-            jumps: polynomial(&self.jumps, "jumps")?,
-            closed: self.closed.as_ref().map(closed).transpose()?,
-            plane: self.coordinates.as_ref().zip(self.rates.as_ref()).map(plane).transpose()?,
+            motion: expression(&self.motion, "motion")?,
+            relation: some(&self.relation, |own| polynomial(own, "relation"))?,
+            branches: some(&self.branches, |own| {
+                Ok(solution::response::Branches {
+                    centre: polynomial(&own.centre, "centre")?,
+                    width_squared: polynomial(&own.width_squared, "width_squared")?,
+                })
+            })?,
+            peak: some(&self.peak, |own| expression(own, "peak"))?,
+            folds: all(&self.folds, |own| expression(own, "folds"))?,
+            jumps: some(&self.jumps, |own| polynomial(own, "jumps"))?,
+            closed: some(&self.closed, |own| {
+                Ok(solution::response::ClosedRelation {
+                    relation: expression(&own.relation, "relation")?,
+                    centre: expression(&own.centre, "centre")?,
+                    width_squared: expression(&own.width_squared, "width_squared")?,
+                })
+            })?,
+            plane: some(&self.coordinates.as_ref().zip(self.rates.as_ref()), plane)?,
         })
     }
 }
 
 impl Modulation {
     fn read(&self, names: &Names) -> Result<solution::Modulation, JsonError> {
-        let optional = |text: &Option<String>, key| {
-            text.as_deref().map(|text| names.expression(text, key)).transpose()
-        };
-        let resonance = |resonance: &Resonance| -> Result<_, JsonError> {
-            Ok(modulation::Resonance {
-                driving_frequency: names
-                    .expression(&resonance.driving_frequency, "driving_frequency")?,
-                times_driving: resonance.times_driving,
-                times_linear: resonance.times_linear,
-                detuning: Definition {
-                    symbol: names.symbol(&resonance.detuning),
-                    meaning: names.expression(&resonance.detuning_means, "detuning_means")?,
-                },
-            })
-        };
-        let release = |release: &Release| -> Result<_, JsonError> {
-            Ok(modulation::Release {
-                amplitude: names.expression(&release.amplitude, "amplitude")?,
-                phase: names.expression(&release.phase, "phase")?,
-            })
-        };
-        let transient = |transient: &Transient| -> Result<_, JsonError> {
-            Ok(modulation::Transient {
-                start: names.symbol(&transient.start),
-                amplitude: names.expression(&transient.amplitude, "amplitude")?,
-                phase: optional(&transient.phase, "phase")?,
-                ends: optional(&transient.ends, "ends")?,
-            })
-        };
+        let expression = |text: &String, key| names.expression(text, key);
         Ok(solution::Modulation {
             amplitude: names.symbol(&self.amplitude),
             phase: names.symbol(&self.phase),
-            amplitude_rate: names.expression(&self.amplitude_rate, "amplitude_rate")?,
-            phase_rate: names.expression(&self.phase_rate, "phase_rate")?,
+            amplitude_rate: expression(&self.amplitude_rate, "amplitude_rate")?,
+            phase_rate: expression(&self.phase_rate, "phase_rate")?,
             small_with: symbols(&self.small_with, names),
-            resonance: self.resonance.as_ref().map(resonance).transpose()?,
-            release: self.release.as_ref().map(release).transpose()?,
-            transient: self.transient.as_ref().map(transient).transpose()?,
-            steady: self
-                .steady
-                .iter()
-                .map(|own| own.read(names))
-                .collect::<Result<_, JsonError>>()?,
-            motion: self.motion.as_ref().map(|own| own.read(names)).transpose()?,
+            resonance: some(&self.resonance, |own| {
+                Ok(modulation::Resonance {
+                    driving_frequency: expression(&own.driving_frequency, "driving_frequency")?,
+                    times_driving: own.times_driving,
+                    times_linear: own.times_linear,
+                    detuning: Definition {
+                        symbol: names.symbol(&own.detuning),
+                        meaning: expression(&own.detuning_means, "detuning_means")?,
+                    },
+                })
+            })?,
+            release: some(&self.release, |own| {
+                Ok(modulation::Release {
+                    amplitude: expression(&own.amplitude, "amplitude")?,
+                    phase: expression(&own.phase, "phase")?,
+                })
+            })?,
+            transient: some(&self.transient, |own| {
+                Ok(modulation::Transient {
+                    start: names.symbol(&own.start),
+                    amplitude: expression(&own.amplitude, "amplitude")?,
+                    phase: some(&own.phase, |text| expression(text, "phase"))?,
+                    ends: some(&own.ends, |text| expression(text, "ends"))?,
+                })
+            })?,
+            steady: all(&self.steady, |own| own.read(names))?,
+            motion: some(&self.motion, |own| own.read(names))?,
         })
     }
 }

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Kind;
-use super::number::{Constant, Map, Polynomial, finite};
+use super::number::{Constant, Map, Polynomial, constants, finite, texts};
 use crate::expr::Expr;
 use crate::report::StabilityReport;
 
@@ -13,10 +13,8 @@ use crate::report::StabilityReport;
 /// unstable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct StabilityDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Stability.schema())))]
     pub schema: String,
     /// The equation as it was understood.
     pub equation: String,
@@ -33,7 +31,7 @@ pub struct StabilityDocument {
     /// The angular frequency of the coefficients, a formula.
     pub frequency: String,
     /// The curves, by the number of their tongue.
-    pub curves: Vec<CurveDocument>,
+    pub curves: Vec<TransitionCurve>,
     /// The curves at values beside the truth; null without values.
     pub verification: Option<StabilityVerification>,
 }
@@ -41,8 +39,7 @@ pub struct StabilityDocument {
 /// A transition curve: `curve + sign*sqrt(under_root)`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "TransitionCurve"))]
-pub struct CurveDocument {
+pub struct TransitionCurve {
     /// `a1`, `b1` for motions of cosines and of sines; `lower1`, `upper1` where they are of both.
     pub name: String,
     /// n: on the curve a motion of the frequency n*Omega/2 exists.
@@ -60,14 +57,13 @@ pub struct CurveDocument {
 /// The curves at values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct StabilityVerification {
     /// The values.
     pub at: Map<Constant>,
     /// The relative error up to which a curve passes.
     pub tolerance: f64,
     /// The curves, in the same order.
-    pub curves: Vec<JudgedCurveDocument>,
+    pub curves: Vec<JudgedCurve>,
     /// Whether all of them pass: `pass` or `fail`.
     pub verdict: String,
 }
@@ -75,8 +71,7 @@ pub struct StabilityVerification {
 /// A curve at the values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields, rename = "JudgedCurve"))]
-pub struct JudgedCurveDocument {
+pub struct JudgedCurve {
     /// Its name.
     pub name: String,
     /// The unknown by the formula; null where it is not real.
@@ -117,13 +112,13 @@ pub fn stability(report: &StabilityReport) -> StabilityDocument {
         gives: Expr::from(&curves.unknown.given()).to_string(),
         unknown,
         order: curves.order,
-        small_parameters: curves.small.iter().map(ToString::to_string).collect(),
-        parameters: curves.parameters.iter().map(ToString::to_string).collect(),
+        small_parameters: texts(&curves.small),
+        parameters: texts(&curves.parameters),
         frequency: curves.driving_frequency().to_string(),
         curves: curves
             .curves
             .iter()
-            .map(|curve| CurveDocument {
+            .map(|curve| TransitionCurve {
                 name: curve.name.clone(),
                 tongue: curve.tongue,
                 multiplier: if curve.tongue.is_multiple_of(2) { 1 } else { -1 },
@@ -137,11 +132,11 @@ pub fn stability(report: &StabilityReport) -> StabilityDocument {
             })
             .collect(),
         verification: report.judged.map(|(at, judged)| StabilityVerification {
-            at: at.iter().map(|(name, value)| (name.to_string(), Constant::of(value))).collect(),
+            at: constants(at),
             tolerance: report.tolerance,
             curves: judged
                 .iter()
-                .map(|judged| JudgedCurveDocument {
+                .map(|judged| JudgedCurve {
                     name: curves.curves[judged.curve].name.clone(),
                     value: finite(judged.value),
                     true_value: finite(judged.truth),

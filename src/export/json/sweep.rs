@@ -8,17 +8,15 @@ use serde::{Deserialize, Serialize, Serializer};
 
 use super::Kind;
 use super::simulation::State;
-use crate::export::simulation::{SweepReport, columns};
+use crate::export::simulation::{Column, SweepReport, columns};
 use crate::impact::sweep::{Spacing, Summary};
 
 /// Many runs of the paper's equation (7), over every combination of the values of some parameters;
 /// units as in a document of kind `simulation`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct SweepDocument<Rows = Vec<Row>> {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Sweep.schema())))]
     pub schema: String,
     /// The parameters that are varied; the last varies fastest.
     pub axes: Vec<Axis>,
@@ -32,7 +30,6 @@ pub struct SweepDocument<Rows = Vec<Row>> {
 /// A parameter and its values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Axis {
     /// The parameter, by its name in problem files, whose unit its values have.
     pub name: String,
@@ -64,24 +61,9 @@ impl From<&crate::impact::sweep::Axis> for Axis {
     }
 }
 
-/// What one number, text or truth value of a row means.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct Column {
-    /// Its name: that of a parameter, whose value stands in `values`, or the key of a row; `t`, `x`
-    /// and `velocity` stand in `final_state`.
-    pub name: String,
-    /// Its unit, as it is typed, 1 for a number without dimension; null for what is no number.
-    pub unit: Option<String>,
-    /// What it means, in words.
-    pub meaning: String,
-}
-
 /// What is kept of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Row {
     /// The values of the parameters, in the order of the axes.
     pub values: Vec<f64>,
@@ -142,15 +124,10 @@ impl Serialize for Streamed<'_> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
-    let columns = columns(report.axes, report.has_baseline()).into_iter().map(|column| Column {
-        name: column.name,
-        unit: column.unit.map(str::to_owned),
-        meaning: column.meaning.to_owned(),
-    });
     let document = SweepDocument {
         schema: Kind::Sweep.schema().to_owned(),
         axes: report.axes.iter().map(Axis::from).collect(),
-        columns: columns.collect(),
+        columns: columns(report.axes, report.has_baseline()),
         rows: Streamed(report),
     };
     super::write(&document, to)

@@ -5,19 +5,17 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::number::{finite, is_nothing};
+use super::number::{constants, finite, is_nothing, named, text};
 use super::{Constant, Map};
 use crate::exact::Doubles;
 use crate::export::rounding_noise;
 use crate::series::FourierSeries;
-use crate::symbol::Symbol;
-use crate::values::Values;
-use crate::verify;
+use crate::verify::validity::Range;
+use crate::verify::{self, Followed};
 
 /// A formula at given values, beside the true motion of the equation as it was typed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct Verification {
     /// The values that were given.
     pub at: Map<Constant>,
@@ -88,40 +86,9 @@ pub struct Verification {
     pub verdict: String,
 }
 
-/// A motion that is not periodic, followed from its release at rest at x = A. Frequencies are those
-/// of its crossings of the equilibrium: pi over the mean time between successive ones;
-/// `max_deviation` is over the whole time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct Followed {
-    /// How long it was followed, in the time of the equation.
-    pub until: f64,
-    /// Why no longer, in words.
-    pub reason: String,
-    /// How many crossings of the formula and of the true motion were compared.
-    pub crossings: usize,
-    /// The largest error of the turning points, as a fraction of the amplitude at the start; null
-    /// where it is not known.
-    pub amplitude_error: Option<f64>,
-    /// The exponent with which that error vanishes as the small parameter does, over times that
-    /// grow as it becomes less; null where rounding hides it.
-    #[serde(default)]
-    pub amplitude_slope: Option<f64>,
-    /// When the amplitude is a tenth of that at the start, by the formula; null where it was not
-    /// seen.
-    pub tenth: Option<f64>,
-    /// The same by the action, which viscous damping drains at one rate whatever the force; null
-    /// for any other damping.
-    pub tenth_by_action: Option<f64>,
-    /// The same in truth, between turning points on the logarithm; null where it was not seen.
-    pub true_tenth: Option<f64>,
-}
-
 /// A steady motion in numbers, by the slow equations and in truth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct SteadyState {
     /// The amplitude by the slow equations, in the unit of the coordinate.
     pub amplitude: f64,
@@ -145,7 +112,6 @@ pub struct SteadyState {
 /// One harmonic of a motion in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct HarmonicValue {
     /// The multiple of theta, 0 for the mean.
     pub harmonic: usize,
@@ -153,17 +119,6 @@ pub struct HarmonicValue {
     pub cos: f64,
     /// The coefficient of the sine, in the unit of the coordinate.
     pub sin: f64,
-}
-
-/// A place where the formula stops to hold, or another remark on its range.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(JsonSchema))]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
-pub struct Range {
-    /// The range in words and numbers.
-    pub text: String,
-    /// Whether the given values lie outside of it.
-    pub outside: bool,
 }
 
 /// The verdict on a formula.
@@ -179,11 +134,10 @@ pub struct Range {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn verification(verification: &verify::Verification) -> Verification {
-    let ranges = verification.ranges.iter();
     Verification {
-        at: values(&verification.at),
+        at: constants(&verification.at),
         frequency: finite(verification.frequency),
-        reason: verification.reason.as_ref().map(ToString::to_string),
+        reason: text(verification.reason.as_ref()),
         true_frequency: verification.true_frequency,
         relative_error: finite(verification.relative_error),
         judged_on: verification.judged_on.to_owned(),
@@ -192,25 +146,14 @@ pub fn verification(verification: &verify::Verification) -> Verification {
         no_deviation: verification.no_deviation.clone(),
         residual: finite(verification.residual),
         slope: finite(verification.slope),
-        ranges: ranges
-            .map(|range| Range { text: range.text.clone(), outside: range.outside })
-            .collect(),
-        chosen: numbers(&verification.chosen),
-        values: numbers(&verification.values),
+        ranges: verification.ranges.clone(),
+        chosen: named(verification.chosen.iter().copied()),
+        values: named(verification.values.iter().copied()),
         phase: verification.phase,
         motion: verification.motion.as_ref().and_then(motion),
         steady_states: verification.steady_states.iter().map(steady_state).collect(),
         spurious: verification.spurious,
-        followed: verification.followed.as_ref().map(|followed| Followed {
-            until: followed.until,
-            reason: followed.reason.to_owned(),
-            crossings: followed.crossings,
-            amplitude_error: finite(followed.amplitude_error),
-            amplitude_slope: finite(followed.amplitude_slope),
-            tenth: finite(followed.tenth),
-            tenth_by_action: finite(followed.tenth_by_action),
-            true_tenth: finite(followed.true_tenth),
-        }),
+        followed: verification.followed.clone(),
         verdict: verification.verdict.name().to_owned(),
     }
 }
@@ -245,15 +188,4 @@ fn motion(motion: &FourierSeries<Doubles>) -> Option<Vec<HarmonicValue>> {
         .filter(|entry| size(entry) > noise || !size(entry).is_finite())
         .map(|entry| size(&entry).is_finite().then_some(entry))
         .collect()
-}
-
-/// Exact values by their names.
-pub(super) fn values(values: &Values) -> Map<Constant> {
-    values.iter().map(|(name, value)| (name.to_string(), Constant::of(value))).collect()
-}
-
-/// Numbers by their names.
-pub(super) fn numbers(numbers: &[(Symbol, f64)]) -> Map<f64> {
-    let numbers = numbers.iter();
-    numbers.map(|(name, value)| (name.to_string(), *value)).collect()
 }

@@ -27,7 +27,7 @@ impl Table {
     }
 
     /// As it stands in an article.
-    pub(super) fn written(&self) -> String {
+    pub(in crate::export) fn written(&self) -> String {
         let line = |cells: &Vec<String>| cells.join(" & ") + " \\\\\n";
         let frame = if self.framed { "\\hline\n" } else { "" };
         let (places, head) = (&self.places, line(&self.head));

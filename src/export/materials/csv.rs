@@ -1,7 +1,6 @@
 //! A row for each material, to go on with.
 
-use std::fmt::Write as _;
-
+use crate::export::csv::{cell, line, quoted};
 use crate::impact::MaterialStudy;
 
 /// Names and units of the columns: a first line of comment has the units.
@@ -40,7 +39,7 @@ pub fn materials(study: &MaterialStudy) -> String {
     let names = COLUMNS.map(|(name, _)| name).join(",");
     let mut text = format!("# {units}\n{names}\n");
     for row in &study.rows {
-        let optional = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+        let (damping, course) = (&row.dissipation, &row.course);
         let first = row.first.map(|first| {
             [
                 first.speed,
@@ -51,34 +50,23 @@ pub fn materials(study: &MaterialStudy) -> String {
                 first.restitution,
             ]
         });
-        let first: Vec<String> =
-            (0..6).map(|place| optional(first.map(|first| first[place]))).collect();
-        let rest = row.course.rest_time.ok();
-        let energies: Vec<String> = row.course.energies.iter().map(f64::to_string).collect();
-        let _ = writeln!(
-            text,
-            "{},{},{},{},{},{},{},{},{},{},{},{}",
-            quoted(&row.material.name),
-            row.material.modulus.value(),
-            row.gamma,
-            row.dissipation.mu,
-            row.dissipation.mu_over_gamma,
-            optional(row.dissipation.lambda),
-            first.join(","),
-            row.course.impacts.len(),
-            optional(rest),
-            optional(rest.map(|rest| study.seconds(rest))),
-            optional(row.lossless.ok()),
-            energies.join(";")
+        let mut cells = vec![quoted(&row.material.name)];
+        cells.extend(
+            [row.material.modulus.value(), row.gamma, damping.mu, damping.mu_over_gamma]
+                .map(|value| value.to_string()),
         );
+        cells.push(cell(damping.lambda));
+        cells.extend((0..6).map(|place| cell(first.map(|first| first[place]))));
+        let rest = course.rest_time.ok();
+        let energies: Vec<String> = course.energies.iter().map(f64::to_string).collect();
+        cells.extend([
+            course.impacts.len().to_string(),
+            cell(rest),
+            cell(rest.map(|rest| study.seconds(rest))),
+            cell(row.lossless.ok()),
+            energies.join(";"),
+        ]);
+        text += &line(cells);
     }
     text
-}
-
-/// A field as it may stand between commas (RFC 4180).
-pub(in crate::export) fn quoted(text: &str) -> String {
-    match text.contains([',', '"', '\n', '\r']) {
-        true => format!("\"{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
-    }
 }

@@ -1,8 +1,10 @@
 //! The paper's Figure 4 with its answer: the swing against every barrier, and its decay under two
 //! things held fixed.
 
-use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure};
 use crate::decimal::{decimal, significant};
+use crate::export::figure::{
+    Curve, CurveStyle, FigureError, Guide, Panel, Points, Scale, curve, figure, panel,
+};
 use crate::impact::{
     ContactDamping, HeldFixed, MaterialStudy, MaterialsError, Parameter, REST_FRACTION, Simulation,
 };
@@ -37,9 +39,6 @@ pub enum MaterialsFigureError {
     #[error(transparent)]
     Study(#[from] MaterialsError),
 }
-
-/// Points of one curve.
-type Points = Vec<(f64, f64)>;
 
 /// The swing against every barrier from 1 to 2.5 s, as in the paper's Figure 4, and the decay of
 /// its amplitude: as asked for, and beside it with the contact damping held fixed in the form under
@@ -99,26 +98,18 @@ pub fn materials(study: &MaterialStudy) -> Result<String, MaterialsFigureError> 
     let titles: Vec<[String; 2]> =
         sides.iter().map(|held| ["Swing", "Decay"].map(|what| title(what, held))).collect();
     let barriers: Vec<f64> = [study.model.left, study.model.right].into_iter().flatten().collect();
-    let swings = motions.iter().zip(&titles).map(|([swings, _], [title, _])| Panel {
-        title,
-        x_label: "time t (s)",
-        y_label: "displacement x (rad)",
-        curves: of_materials(study, swings),
-        guides: barriers.iter().map(|barrier| Guide::Y(*barrier, "barrier x_c")).collect(),
-        ..Panel::default()
+    let swings = motions.iter().zip(&titles).map(|([swings, _], [title, _])| {
+        let guides = barriers.iter().map(|barrier| Guide::Y(*barrier, "barrier x_c")).collect();
+        let labels = ["time t (s)", "displacement x (rad)"];
+        panel(title, labels, of_materials(study, swings), guides)
     });
     let decays = motions.iter().zip(&titles).map(|([_, decays], [_, title])| {
         let beside = beside.iter().filter(|(_, points, _)| points.len() > 1);
         let beside = beside.map(|(label, points, style)| curve(label, points, *style));
-        Panel {
-            title,
-            x_label: "time t (s)",
-            y_label: "amplitude (% of the first swing)",
-            y_scale: Scale::Logarithmic,
-            curves: beside.chain(of_materials(study, decays)).collect(),
-            guides: vec![Guide::Y(100.0 * REST_FRACTION, "rest, 10 %")],
-            ..Panel::default()
-        }
+        let labels = ["time t (s)", "amplitude (% of the first swing)"];
+        let curves = beside.chain(of_materials(study, decays)).collect();
+        let guides = vec![Guide::Y(100.0 * REST_FRACTION, "rest, 10 %")];
+        Panel { y_scale: Scale::Logarithmic, ..panel(title, labels, curves, guides) }
     });
     let panels: Vec<Panel> = swings.chain(decays).collect();
     Ok(figure(&panels, &caption(study, contrast, drawn))?)
@@ -149,10 +140,6 @@ fn of_materials<'a>(study: &'a MaterialStudy, points: &'a [Points]) -> Vec<Curve
     rows.filter(|((_, points), _)| points.len() > 1)
         .map(|((row, points), style)| curve(&row.material.name, points, style))
         .collect()
-}
-
-fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
-    Curve { label, points, style }
 }
 
 /// The displacement in this window of time, the time in seconds.

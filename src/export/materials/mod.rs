@@ -2,8 +2,6 @@
 //! is a document of [`report`](crate::report), in JSON one of `export::json`.
 
 mod csv;
-#[cfg(feature = "plot")]
 pub mod figure;
 
 pub use csv::materials as csv;
-pub(super) use csv::quoted;

@@ -1,7 +1,6 @@
 //! A row for each run, or for each design of a front, to go on with.
 
-use std::fmt::Write as _;
-
+use crate::export::csv::{cell, line, quoted};
 use crate::optimize::{Finalist, Objective, Question, SearchRun, Study};
 
 /// The table: for one objective the best design of every run as it has it, for several the front by
@@ -26,9 +25,7 @@ pub fn optimization(study: &Study) -> String {
         1 => study.runs.iter().map(|run| best_of(run, question)).collect(),
         _ => study.finalists.iter().map(|one| compromise(one, question)).collect(),
     };
-    for row in rows {
-        let _ = writeln!(text, "{}", row.join(","));
-    }
+    text.extend(rows.into_iter().map(line));
     text
 }
 
@@ -112,11 +109,10 @@ fn compromise(finalist: &Finalist, question: &Question) -> Vec<String> {
 }
 
 fn number(value: Option<f64>) -> String {
-    let finite = value.filter(|value| value.is_finite());
-    finite.map_or(String::new(), |value| value.to_string())
+    cell(value.filter(|value| value.is_finite()))
 }
 
 fn name_of(material: Option<usize>, question: &Question) -> String {
     let material = material.and_then(|number| question.materials.get(number));
-    super::super::materials::quoted(material.map_or("", |material| &material.name))
+    quoted(material.map_or("", |material| &material.name))
 }

@@ -1,12 +1,11 @@
 //! How the runs of a search come down, where in the box the good designs lie, and the front of
 //! several objectives.
 
-use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure};
 use crate::decimal::{decimal, significant};
+use crate::export::figure::{
+    Curve, CurveStyle, FigureError, Guide, Panel, Points, Scale, curve, figure, panel,
+};
 use crate::optimize::{Objective, Study, Variable, WITHIN};
-
-/// Points of one curve.
-type Points = Vec<(f64, f64)>;
 
 /// The most runs that are drawn.
 const DRAWN: usize = 200;
@@ -52,14 +51,8 @@ fn search(study: &Study) -> Result<String, FigureError> {
     let curves = convergence.curves(study);
     let mut panels = Vec::new();
     if !curves.is_empty() {
-        panels.push(Panel {
-            title: "Convergence",
-            x_label: "evaluations of a run",
-            y_label: axis(objective),
-            x_scale: Scale::Linear,
-            curves,
-            ..Panel::default()
-        });
+        let labels = ["evaluations of a run", axis(objective)];
+        panels.push(panel("Convergence", labels, curves, vec![]));
     }
     panels.extend(designs.panels(study));
     let best = study.best().map_or(String::new(), |best| {
@@ -245,14 +238,11 @@ fn front(study: &Study) -> Result<String, FigureError> {
                 false => Scale::Linear,
             }
         };
+        let labels = [axis(objectives[0]), axis(objectives[*index])];
         panels.push(Panel {
-            title: "Front",
-            x_label: axis(objectives[0]),
-            y_label: axis(objectives[*index]),
             x_scale: spread(|point| point.0),
             y_scale: spread(|point| point.1),
-            curves,
-            guides: vec![],
+            ..panel("Front", labels, curves, vec![])
         });
     }
     let names: Vec<&str> = objectives.iter().map(|objective| objective.meaning()).collect();
@@ -264,8 +254,4 @@ fn front(study: &Study) -> Result<String, FigureError> {
         study.question.seed
     );
     figure(&panels, &caption)
-}
-
-fn curve<'a>(label: &'a str, points: &'a [(f64, f64)], style: CurveStyle) -> Curve<'a> {
-    Curve { label, points, style }
 }

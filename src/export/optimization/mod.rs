@@ -2,7 +2,6 @@
 //! LaTeX it is a document of [`report`](crate::report), in JSON one of `export::json`.
 
 mod csv;
-#[cfg(feature = "plot")]
 pub mod figure;
 
 pub use csv::optimization as csv;

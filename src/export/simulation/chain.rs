@@ -1,67 +1,11 @@
-//! What a chain of closed forms says beyond a simulation: its formulas, and how far each contact is
-//! from the integrated one.
+//! What a chain of closed forms says beyond a simulation: its formulas.
 
 use std::fmt::Write as _;
 
-use super::text::{LISTED, duration};
+use super::text::LISTED;
 use crate::decimal::{decimal, significant};
 use crate::export::text::percent;
-use crate::impact::{ContactDeviation, NoRest, Piece, Regime, Simulation};
-
-/// The contacts, each with its errors.
-pub(super) fn impacts(text: &mut String, motion: &Simulation, judge: &Simulation) {
-    let count = motion.impacts.len();
-    let _ = writeln!(
-        text,
-        "\nImpacts: {count}, {} by integration; below each number its error",
-        judge.impacts.len()
-    );
-    if count == 0 {
-        return;
-    }
-    let _ = writeln!(
-        text,
-        "  {:>4}  {:5}  {:>12}  {:>12}  {:>11}  {:>11}  {:>12}  {:>11}",
-        "", "side", "entry", "duration", "speed in", "speed out", "penetration", "restitution"
-    );
-    let optional = |value: Option<f64>| value.map_or("-".to_owned(), decimal);
-    for (index, (impact, error)) in
-        motion.impacts.iter().zip(motion.contact_deviations(judge)).enumerate()
-    {
-        if index == LISTED && index + 1 < count {
-            let _ = writeln!(text, "   ... {} more, all of them in --format json", count - index);
-            break;
-        }
-        let _ = writeln!(
-            text,
-            "  {:>4}  {:5}  {:>12}  {:>12}  {:>11}  {:>11}  {:>12}  {:>11}",
-            index + 1,
-            impact.side.name(),
-            significant(impact.entry_time, 8),
-            duration(impact),
-            decimal(impact.speed_in),
-            optional(impact.speed_out),
-            decimal(impact.penetration),
-            optional(impact.restitution)
-        );
-        let _ = match error {
-            Some(ContactDeviation { entry_time, speed_in, penetration, duration, speed_out }) => {
-                writeln!(
-                    text,
-                    "  {:>4}  {:5}  {:>12}  {:>12}  {:>11}  {:>11}  {:>12}",
-                    "",
-                    "",
-                    format!("{entry_time:+.1e}"),
-                    duration.map_or("-".to_owned(), percent),
-                    speed_in.map_or("-".to_owned(), percent),
-                    speed_out.map_or("-".to_owned(), percent),
-                    penetration.map_or("-".to_owned(), percent)
-                )
-            }
-            None => writeln!(text, "  {:>4}  {:5}  not there by integration", "", ""),
-        };
-    }
-}
+use crate::impact::{NoRest, Piece, Regime, Simulation};
 
 /// The phases of a chain: steps of an integration that follow each other are one, which has no
 /// formula.

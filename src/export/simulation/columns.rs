@@ -3,15 +3,18 @@
 use crate::impact::Parameter;
 use crate::impact::sweep::Axis;
 
-/// A column of the table of a sweep.
+/// What one number, text or truth value of a row means.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "json", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Column {
-    /// Its name, one word.
+    /// Its name: that of a parameter, whose value stands in `values`, or the key of a row; `t`, `x`
+    /// and `velocity` stand in `final_state`.
     pub name: String,
-    /// Its unit, as it is typed; 1 for a number without dimension, nothing for what is no number.
-    pub unit: Option<&'static str>,
+    /// Its unit, as it is typed, 1 for a number without dimension; null for what is no number.
+    pub unit: Option<String>,
     /// What it means, in words.
-    pub meaning: &'static str,
+    pub meaning: String,
 }
 
 /// Name, unit and meaning of what came of each motion.
@@ -57,24 +60,23 @@ const BASELINE: [(&str, Option<&str>, &str); 2] = [
 /// use lindstedt::export::simulation::columns;
 ///
 /// let columns = columns(&["length=0.05:0.3:6".parse()?], false);
-/// assert_eq!((columns[0].name.as_str(), columns[0].unit), ("length", Some("m")));
-/// assert_eq!((columns[2].name.as_str(), columns[2].unit), ("rest_time", Some("1/omega")));
+/// assert_eq!((columns[0].name.as_str(), columns[0].unit.as_deref()), ("length", Some("m")));
+/// assert_eq!((columns[2].name.as_str(), columns[2].unit.as_deref()), ("rest_time", Some("1/omega")));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn columns(axes: &[Axis], baseline: bool) -> Vec<Column> {
     let swept = axes.iter().map(|axis| {
         let parameter = axis.name().parse::<Parameter>().ok();
         let unit = parameter.map(Parameter::unit).filter(|unit| !unit.is_empty());
-        Column {
-            name: axis.name().to_owned(),
-            unit: unit.or(Some("1")),
-            meaning: parameter.map_or("a parameter", Parameter::meaning),
-        }
+        (axis.name(), unit.or(Some("1")), parameter.map_or("a parameter", Parameter::meaning))
     });
     let (to_rest, others) = RESULTS.split_at(2);
     let beside: &[_] = if baseline { &BASELINE } else { &[] };
-    let results = to_rest.iter().chain(beside).chain(others);
-    let results =
-        results.map(|&(name, unit, meaning)| Column { name: name.to_owned(), unit, meaning });
-    swept.chain(results).collect()
+    let results = to_rest.iter().chain(beside).chain(others).copied();
+    let column = |(name, unit, meaning): (&str, Option<&str>, &str)| Column {
+        name: name.to_owned(),
+        unit: unit.map(str::to_owned),
+        meaning: meaning.to_owned(),
+    };
+    swept.chain(results).map(column).collect()
 }

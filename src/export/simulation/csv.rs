@@ -5,7 +5,7 @@ use std::io;
 
 use super::columns::columns;
 use super::{Report, SweepReport};
-use crate::impact::NoRest;
+use crate::export::csv::{cell, head};
 
 /// Points inside each step of the integrator.
 const BETWEEN: usize = 3;
@@ -76,22 +76,18 @@ pub fn simulation(report: &Report) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sweep(report: &SweepReport, to: &mut dyn io::Write) -> io::Result<()> {
-    let columns = columns(report.axes, report.has_baseline());
-    let units: Vec<String> = columns
-        .iter()
-        .map(|column| format!("{} {}", column.name, column.unit.unwrap_or("-")))
+    let columns = columns(report.axes, report.has_baseline()).into_iter();
+    let columns: Vec<(String, String)> = columns
+        .map(|column| (column.name, column.unit.unwrap_or_else(|| "-".to_owned())))
         .collect();
-    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
-    writeln!(to, "# units: {}\n{}", units.join(", "), names.join(","))?;
+    to.write_all(head(&columns).as_bytes())?;
     for (row, summary) in report.rows.iter().enumerate() {
         for value in report.values(row) {
             write!(to, "{value},")?;
         }
-        let written =
-            |time: Result<f64, NoRest>| time.map_or(String::new(), |time| time.to_string());
-        let mut rest = written(summary.rest_time);
+        let mut rest = cell(summary.rest_time.ok());
         if let Some([without, lossless]) = summary.baseline {
-            rest = format!("{rest},{},{}", written(without), written(lossless));
+            rest = format!("{rest},{},{}", cell(without.ok()), cell(lossless.ok()));
         }
         let (complete, stop) = (summary.stop.is_complete(), summary.stop.name());
         match summary.is_begun() {

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 
 use super::{Report, chain};
 use crate::decimal::significant;
-use crate::export::latex::scientific;
-use crate::impact::{ClosedForm, Piece};
+use crate::export::latex::{Table, scientific};
+use crate::impact::{ClosedForm, Contact, Piece};
 
 /// Lines of a block of formulas: a page takes no more, and a block does not break.
 const LINES: usize = 24;
@@ -50,34 +50,30 @@ fn impacts(report: &Report) -> String {
     let motion = report.motion;
     let errors = report.judge.map_or_else(Vec::new, |judge| motion.contact_deviations(judge));
     let judged = !errors.is_empty();
+    let number = |value: f64| format!("${}$", scientific(value));
     let percent = |error: f64| format!("${}\\,\\%$", scientific((1e5 * error).round() / 1e3));
-    let mut text = match judged {
-        true => {
-            "\\begin{tabular}{rrrrrrr}\nimpact & $t$ & error & speed in & error & penetration & error \\\\\n\\hline\n"
-        }
-        false => "\\begin{tabular}{rrrr}\nimpact & $t$ & speed in & penetration \\\\\n\\hline\n",
-    }
-    .to_owned();
-    let mut errors = errors.into_iter();
-    for (number, impact) in (1..).zip(&motion.impacts) {
-        let cell = |value: f64, error: Option<String>| match judged {
-            true => format!(" & ${}$ & {}", scientific(value), error.unwrap_or_default()),
-            false => format!(" & ${}$", scientific(value)),
-        };
-        let error = errors.next().flatten();
-        let _ = writeln!(
-            text,
-            "{number}{}{}{} \\\\",
-            cell(
-                impact.entry_time,
-                error.map(|e| format!("${}$", scientific((1e6 * e.entry_time).round() / 1e6)))
-            ),
-            cell(impact.speed_in, error.and_then(|e| e.speed_in).map(percent)),
-            cell(impact.penetration, error.and_then(|e| e.penetration).map(percent))
-        );
-    }
-    text.push_str("\\end{tabular}\n");
-    text
+    let row = |(index, impact): (usize, &Contact)| {
+        let error = errors.get(index).copied().flatten();
+        let cells = [
+            (impact.entry_time, error.map(|e| number((1e6 * e.entry_time).round() / 1e6))),
+            (impact.speed_in, error.and_then(|e| e.speed_in).map(percent)),
+            (impact.penetration, error.and_then(|e| e.penetration).map(percent)),
+        ];
+        let cells = cells.into_iter().flat_map(|(value, error)| {
+            std::iter::once(number(value)).chain(judged.then(|| error.unwrap_or_default()))
+        });
+        std::iter::once((index + 1).to_string()).chain(cells).collect()
+    };
+    let head = ["impact", "$t$", "error", "speed in", "error", "penetration", "error"].into_iter();
+    let head: Vec<String> =
+        head.filter(|name| judged || *name != "error").map(str::to_owned).collect();
+    let table = Table {
+        places: "r".repeat(head.len()),
+        head,
+        rows: motion.impacts.iter().enumerate().map(row).collect(),
+        framed: false,
+    };
+    table.written()
 }
 
 fn phase(piece: &Piece) -> String {

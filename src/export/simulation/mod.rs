@@ -8,8 +8,9 @@
 mod chain;
 mod columns;
 mod csv;
-#[cfg(feature = "plot")]
 pub mod figure;
+#[cfg(feature = "plot")]
+mod heat_map;
 mod latex;
 mod text;
 

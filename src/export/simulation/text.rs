@@ -5,6 +5,7 @@ use std::io;
 
 use super::{COMPARED, Report, SweepReport, chain, friction, notes};
 use crate::decimal::{decimal, significant};
+use crate::export::text::percent;
 use crate::impact::sweep::Axis;
 use crate::impact::{
     Baseline, Contact, ContactDamping, Dissipation, Geometry, Integrator, Model, NoRest,
@@ -36,11 +37,9 @@ pub fn simulation(report: &Report) -> String {
             report.units,
         ));
     }
-    match (motion.integrator, report.judge) {
-        (Integrator::Chain, Some(judge)) => chain::impacts(&mut text, motion, judge),
-        _ => impacts(&mut text, motion),
-    }
-    if motion.integrator == Integrator::Chain {
+    let is_chain = motion.integrator == Integrator::Chain;
+    text += &impacts(motion, report.judge.filter(|_| is_chain));
+    if is_chain {
         chain::formulas(&mut text, motion);
     }
     rest(&mut text, report);
@@ -238,58 +237,73 @@ fn damping(dissipation: &Dissipation, has_barrier: bool, units: Option<&Units>) 
     text
 }
 
-fn impacts(text: &mut String, motion: &Simulation) {
+/// The impacts: with a judge each with its errors below it, without one with the energy that it
+/// takes.
+fn impacts(motion: &Simulation, judge: Option<&Simulation>) -> String {
     let count = motion.impacts.len();
-    let _ = writeln!(text, "\nImpacts: {count}");
+    let judged = judge.is_some();
+    let beside = judge.map_or_else(String::new, |judge| {
+        format!(", {} by integration; below each number its error", judge.impacts.len())
+    });
+    let mut text = format!("\nImpacts: {count}{beside}\n");
     if count == 0 {
-        return;
+        return text;
     }
-    let _ = writeln!(
-        text,
-        "  {:>4}  {:5}  {:>12}  {:>12}  {:>10}  {:>10}  {:>12}  {:>11}  {:>12}",
-        "",
-        "side",
-        "entry",
-        "duration",
-        "speed in",
-        "speed out",
-        "penetration",
-        "restitution",
-        "energy lost"
-    );
+    let speed = if judged { 11 } else { 10 };
+    let line = |[number, side]: [&str; 2], cells: &[String]| {
+        let cells = cells.iter().zip([12, 12, speed, speed, 12, 11, 12]);
+        let cells: String = cells.map(|(cell, width)| format!("  {cell:>width$}")).collect();
+        format!("  {number:>4}  {side:5}{cells}\n")
+    };
     let optional = |value: Option<f64>| value.map_or("-".to_owned(), decimal);
-    for (index, impact) in motion.impacts.iter().enumerate() {
-        if count > LISTED && index == LISTED - 1 && index + 1 < count {
-            let _ = writeln!(text, "   ... {} more, all of them in --format json", count - LISTED);
-        }
-        if count > LISTED && index >= LISTED - 1 && index + 1 < count {
-            continue;
-        }
-        // What is lost in an elastic contact is rounding.
-        let lost = impact.energy_lost.map(|lost| {
-            let speed = impact.speed_in.abs().max(impact.speed_out.unwrap_or_default());
-            if lost.abs() < 1e-9 * speed * speed { 0.0 } else { lost }
-        });
-        let restitution = impact.restitution.map(|e| if (e - 1.0).abs() < 1e-9 { 1.0 } else { e });
-        let _ = writeln!(
-            text,
-            "  {:>4}  {:5}  {:>12}  {:>12}  {:>10}  {:>10}  {:>12}  {:>11}  {:>12}",
-            index + 1,
-            impact.side.name(),
+    let errors = judge.map_or_else(Vec::new, |judge| motion.contact_deviations(judge));
+    let row = |index: usize| {
+        let impact = &motion.impacts[index];
+        let mut cells = vec![
             significant(impact.entry_time, 8),
             duration(impact),
             decimal(impact.speed_in),
             optional(impact.speed_out),
             decimal(impact.penetration),
-            optional(restitution),
-            optional(lost)
-        );
+            optional(impact.restitution),
+        ];
+        if !judged {
+            // What is lost in an elastic contact is rounding.
+            cells.push(optional(impact.energy_lost.map(|lost| {
+                let speed = impact.speed_in.abs().max(impact.speed_out.unwrap_or_default());
+                if lost.abs() < 1e-9 * speed * speed { 0.0 } else { lost }
+            })));
+        }
+        let own = line([&(index + 1).to_string(), impact.side.name()], &cells);
+        own + &match errors.get(index) {
+            None => String::new(),
+            Some(None) => line(["", ""], &["not there by integration".to_owned()]),
+            Some(Some(error)) => {
+                let time = format!("{:+.1e}", error.entry_time);
+                let parts = [error.duration, error.speed_in, error.speed_out, error.penetration]
+                    .map(|part| part.map_or("-".to_owned(), percent));
+                line(["", ""], &[&[time], &parts[..]].concat())
+            }
+        }
+    };
+    let columns =
+        ["entry", "duration", "speed in", "speed out", "penetration", "restitution", "energy lost"];
+    let columns = columns.map(str::to_owned);
+    text += &line(["", "side"], &columns[..columns.len() - usize::from(judged)]);
+    // Of the errors one more is listed, for no last one stands below.
+    let listed = LISTED + usize::from(judged);
+    let shown = if count <= listed { count } else { listed - 1 };
+    text.extend((0..shown).map(row));
+    if shown < count {
+        text += &format!("   ... {} more, all of them in --format json\n", count - LISTED);
+        text.extend((!judged).then(|| row(count - 1)));
     }
+    text
 }
 
 /// How long an impact lasts, as far as its two times tell: one of a barrier too stiff is shorter
 /// than their last digit.
-pub(super) fn duration(impact: &Contact) -> String {
+fn duration(impact: &Contact) -> String {
     let least = 2.0 * f64::EPSILON * impact.entry_time.abs();
     match impact.exit_time.map(|exit| exit - impact.entry_time) {
         None => "-".to_owned(),

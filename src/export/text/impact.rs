@@ -195,13 +195,3 @@ pub(super) fn verdicts(verdicts: &[(Reading, Verdict)], tolerance: f64) -> Strin
         each.join(", ")
     )
 }
-
-pub(in crate::export) fn shortcoming(
-    reading: Reading,
-    errors: &[(&'static str, f64)],
-    cause: &str,
-) -> String {
-    let errors: Vec<String> =
-        errors.iter().map(|(name, error)| format!("{name} {}", percent(*error))).collect();
-    format!("    {:<8}{}: {cause}\n", reading.name(), errors.join(", "))
-}

@@ -225,10 +225,10 @@ fn the_unit(study: &Study) -> Option<String> {
     let pair = |[short, long]: [f64; 2]| [significant(short, 4), significant(long, 4)];
     let ([short, long], [from, to], [at, until]) =
         (pair(ends.seconds), pair(ends.dimensionless), pair(ends.lengths));
-    let [in_seconds, in_units] = ends.best.map(|length| significant(length, 3));
-    let mut turned = ends.best;
+    let [in_seconds, in_units] = ends.best_lengths.map(|length| significant(length, 3));
+    let mut turned = ends.best_lengths;
     turned.sort_by(f64::total_cmp);
-    let verdict = match ends.best {
+    let verdict = match ends.best_lengths {
         [one, other] if one == other => {
             format!("in both the best length, the rest held, is {in_seconds} m")
         }

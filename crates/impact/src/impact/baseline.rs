@@ -36,15 +36,17 @@ pub struct Baseline {
     pub geometry: Option<Geometry>,
 }
 
-/// The part of the gain that is geometry, by the actions of the swings.
+/// By how much sooner a swing cut at the barrier rests under viscous damping:
+/// ln(first_swing/at_rest)/(2 zeta).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Geometry {
-    /// S(A)/S_c(A): the area of the first swing without a barrier over that of the swing cut at it.
+    /// The action of the first swing without a barrier over that of the swing cut at it.
     pub first_swing: f64,
-    /// S(a)/S_c(a), the same at rest, a = A/10: 1 where the barrier is out of its reach.
+    /// The same at a tenth of the amplitude; 1 where the barrier is out of reach.
     pub at_rest: f64,
-    /// ln(first_swing/at_rest)/(2 zeta), in units of 1/omega: by how much sooner the cut swing
-    /// rests.
+    /// The gain, in units of time.
     pub gain: f64,
 }
 

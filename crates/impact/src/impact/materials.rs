@@ -201,21 +201,23 @@ impl From<&Simulation> for Course {
     }
 }
 
-/// The first contact with a barrier.
+/// The first contact of a barrier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FirstContact {
-    /// The speed at the touch, m/s.
+    /// The speed at the touch, in m/s.
     pub speed: f64,
-    /// How long it lasts, s.
+    /// How long it lasts, in seconds.
     pub duration: f64,
-    /// How deep it goes, m.
+    /// How deep it goes, in m.
     pub penetration: f64,
-    /// The greatest force of the contact, its damping included, N.
+    /// The greatest force, that of the damping included, in N.
     pub peak_force: f64,
-    /// The pressure of Hertz in the middle of the contact at the greatest depth, Pa.
+    /// The pressure of Hertz in the middle of the contact at the greatest depth, in Pa.
     pub peak_pressure: f64,
-    /// The coefficient of restitution.
+    /// The coefficient of restitution, dimensionless.
     pub restitution: f64,
 }
 

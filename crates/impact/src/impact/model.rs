@@ -35,6 +35,8 @@ pub const STEEPNESS: f64 = 100.0;
 
 /// A barrier on one side of the swing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Side {
     /// At negative angles, touched in falling motion.
     Left,

@@ -77,18 +77,20 @@ pub struct Sensitivity {
     pub role: Role,
 }
 
-/// The rest times of the best design with the length at either limit, in both units.
+/// What the unit of the rest time does.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "Unit"))]
 pub struct Ends {
-    /// The lengths, m.
+    /// The limits of the length, in m.
     pub lengths: [f64; 2],
-    /// The rest times in seconds.
+    /// The rest times there, in seconds.
     pub seconds: [f64; 2],
-    /// The same in units of 1/omega.
+    /// The same in units of time of each length.
     pub dimensionless: [f64; 2],
-    /// The best lengths of those that were tried from one limit to the other, m: in seconds and in
-    /// units of 1/omega.
-    pub best: [f64; 2],
+    /// The best lengths of those that were tried between the limits, the rest as it is best, in m:
+    /// by the rest time in seconds, and by that in units of time.
+    pub best_lengths: [f64; 2],
 }
 
 /// What decides the best design.
@@ -456,7 +458,7 @@ impl Probe<'_> {
             lengths,
             seconds: [short[0], long[0]],
             dimensionless: [short[1], long[1]],
-            best: best_lengths,
+            best_lengths,
         })
     }
 }

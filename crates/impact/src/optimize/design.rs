@@ -268,8 +268,8 @@ impl DesignMotion<'_> {
         let motion = simulate_primary(case, &settings).map_err(|error| error.to_string())?;
         let rest = motion.pendulum_rest_time();
         let impacts = motion.impacts.iter();
-        let impacts =
-            impacts.filter(|impact| rest.is_err() || rest.is_ok_and(|rest| impact.entry < rest));
+        let impacts = impacts
+            .filter(|impact| rest.is_err() || rest.is_ok_and(|rest| impact.entry_time < rest));
         let hardest = self.contact.then(|| {
             let contacts = impacts.clone().map(|impact| {
                 let restitution = impact.speed_out.map(|out| out / impact.speed_in);

@@ -16,13 +16,19 @@ use crate::genetic::{
 use crate::impact::hertz;
 use crate::parallel::each;
 
-/// A design that a run found.
+/// A design that a run found, as the search has it: by closed forms, by integration where there are
+/// none.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Found {
-    /// The point of the box.
+    /// The values of the variables in their order, then the number of the material.
     pub point: Vec<f64>,
-    /// The objectives there as the search has them: by closed forms, by integration where there are
-    /// none.
+    /// The objectives in their order.
     pub values: Vec<f64>,
 }
 

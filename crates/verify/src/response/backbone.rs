@@ -18,10 +18,12 @@ use super::driven::Driven;
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
 
-/// A free motion.
+/// A free motion without damping.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BackbonePoint {
-    /// The parameter at which the motion has this frequency.
+    /// The value of the parameter at which it has the frequency of the drive over `periods`.
     pub parameter: f64,
     /// The amplitude of its first harmonic.
     pub amplitude: f64,

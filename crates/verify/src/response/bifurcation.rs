@@ -21,6 +21,8 @@ use crate::numeric::ode::root::{Until, find_root, try_bisect};
 
 /// What happens at a point of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum BifurcationKind {
     /// The branch turns back: beyond it there is no such motion, and it jumps.
     Fold,
@@ -37,6 +39,16 @@ pub enum BifurcationKind {
 }
 
 impl BifurcationKind {
+    /// Every kind.
+    pub const ALL: [Self; 6] = [
+        Self::Fold,
+        Self::BranchPoint,
+        Self::PeriodDoubling,
+        Self::NeimarkSacker,
+        Self::Hopf,
+        Self::Centre,
+    ];
+
     /// Its name in documents: `period-doubling`.
     pub const fn name(self) -> &'static str {
         match self {

@@ -144,12 +144,21 @@ pub struct Branch {
 
 /// A place where a branch changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "ResponseBifurcation")
+)]
 pub struct Bifurcation {
-    /// What happens there.
+    /// What happens: the branch turns back, another one crosses, motions of twice the period come
+    /// off, a second frequency comes in, a self-excited motion is born from rest, motions of every
+    /// amplitude at one value of the parameter.
+    #[cfg_attr(feature = "schema", schemars(with = "String", extend("enum" = BifurcationKind::ALL.map(BifurcationKind::name))))]
     pub kind: BifurcationKind,
     /// The branch, counted from 0.
     pub branch: usize,
-    /// The parameter.
+    /// The value of the parameter that varies.
     pub parameter: f64,
     /// The frequency of the motion.
     pub frequency: f64,
@@ -170,10 +179,12 @@ impl Bifurcation {
     }
 }
 
-/// A simulation that was let go beside a stable point and has settled.
+/// A simulation that has settled.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "SimulatedPoint"))]
 pub struct Simulated {
-    /// The parameter.
+    /// The value of the parameter that varies.
     pub parameter: f64,
     /// Its frequency.
     pub frequency: f64,
@@ -181,18 +192,20 @@ pub struct Simulated {
     pub amplitude: f64,
     /// Half of peak to peak.
     pub peak: f64,
-    /// The error of the point against it: of amplitude or peak, the larger, over its peak, or of
-    /// the frequency.
+    /// The error of the point of the branch against it, over its peak; or that of the frequency, if
+    /// it is larger.
     pub error: f64,
 }
 
-/// A simulation that does not repeat itself after a period of the motion, or does so on no branch.
+/// A simulation that has settled elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "ElsewherePoint"))]
 pub struct Elsewhere {
-    /// The parameter.
+    /// The value of the parameter that varies.
     pub parameter: f64,
-    /// The periods after which it does, one for a motion that could not be followed; nothing where
-    /// it does not within eight.
+    /// After how many periods of the motion it repeats itself, 1 where harmonic balance has not
+    /// come to it; null where it does not within eight.
     pub periods: Option<usize>,
 }
 

@@ -16,12 +16,14 @@ use super::judgement::Judged;
 /// A place where a branch changes, between the point of this index and the next one.
 pub(super) type Found = (usize, BifurcationKind, Node);
 
-/// Folds of a balance that are none of the true motion, where there are some.
+/// Folds of the balance alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "ResponseRipple"))]
 pub struct Ripple {
     /// How many they are.
     pub folds: usize,
-    /// The lowest and the highest parameter of them.
+    /// The lowest and the highest value of the parameter at which they are.
     pub range: [f64; 2],
 }
 

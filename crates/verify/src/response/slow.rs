@@ -62,14 +62,16 @@ impl Spurious {
     }
 }
 
-/// A steady motion.
+/// A steady motion by slow equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "SlowPoint"))]
 pub struct SlowState {
-    /// The parameter that varies.
+    /// The value of the parameter that varies.
     pub parameter: f64,
-    /// The amplitude.
+    /// The amplitude of the first harmonic.
     pub amplitude: f64,
-    /// The phase: amplitude*cos(theta - phase).
+    /// Its phase, in radians.
     pub phase: f64,
     /// Whether small disturbances die out, by the slow equations.
     pub stable: bool,

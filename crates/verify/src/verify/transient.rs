@@ -36,28 +36,34 @@ use crate::solution::{AmplitudeConvention, Modulation, Solution};
 use crate::symbol::Symbol;
 use crate::values::Values;
 
-/// What else is known of a motion that was followed from its start.
+/// A motion that is not periodic, followed from its release at rest at x = A. Frequencies are those
+/// of its crossings of the equilibrium: pi over the mean time between successive ones;
+/// `max_deviation` is over the whole time.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Followed {
     /// How long it was followed, in the time of the equation.
     pub until: f64,
     /// Why no longer, in words.
-    pub reason: &'static str,
-    /// The number of times at which the formula and the true motion both went through the
-    /// equilibrium.
+    pub reason: String,
+    /// How many crossings of the formula and of the true motion were compared.
     pub crossings: usize,
-    /// The largest error of the turning points, over the amplitude at the start.
+    /// The largest error of the turning points, as a fraction of the amplitude at the start; null
+    /// where it is not known.
     pub amplitude_error: Option<f64>,
-    /// The measured exponent of that error, over times that grow as what is small becomes less;
-    /// `None` where rounding hides it, or nothing can be made smaller.
+    /// The exponent with which that error vanishes as the small parameter does, over times that
+    /// grow as it becomes less; null where rounding hides it.
+    #[cfg_attr(feature = "serde", serde(default))]
     pub amplitude_slope: Option<f64>,
-    /// When the amplitude is a tenth of that of the start: by the formula.
+    /// When the amplitude is a tenth of that at the start, by the formula; null where it was not
+    /// seen.
     pub tenth: Option<f64>,
-    /// By the action, which viscous damping drains at one rate whatever the force; `None` for any
-    /// other damping.
+    /// The same by the action, which viscous damping drains at one rate whatever the force; null
+    /// for any other damping.
     pub tenth_by_action: Option<f64>,
-    /// The same in truth, between turning points on the logarithm.
+    /// The same in truth, between turning points on the logarithm; null where it was not seen.
     pub true_tenth: Option<f64>,
 }
 
@@ -123,7 +129,7 @@ pub(super) fn judge(
         spurious: 0,
         followed: Some(Followed {
             until: *until,
-            reason,
+            reason: (*reason).to_owned(),
             crossings: count,
             amplitude_error,
             amplitude_slope: slopes.amplitude,

@@ -24,12 +24,14 @@ use crate::symbol::letters::of_frequency;
 
 pub use super::reach::Reach;
 
-/// One statement on where something holds, and whether the amplitude asked for lies outside.
+/// A place where the formula stops to hold, or another remark on its range.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Range {
-    /// In words and numbers.
+    /// The range in words and numbers.
     pub text: String,
-    /// Whether the values asked for are outside.
+    /// Whether the given values lie outside of it.
     pub outside: bool,
 }
 

@@ -22,31 +22,35 @@ use crate::numeric::ode::{Options, Point, Trajectory, integrate_first_order};
 
 /// The first cycle by the arctangent.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FirstCycle {
-    /// When it ends, units of 1/omega: at the second turning point, or after 2 pi where there is
-    /// none.
+    /// When it ends, in units of time.
     pub until: f64,
     /// The largest error of the force, as a fraction of alpha: all of it, where the motion turns
     /// back.
     pub largest_error: f64,
-    /// The part of that time in which the force errs by more than 1 % of alpha.
+    /// The part of the time in which the force errs by more than 1 % of alpha.
     pub over_one_percent: f64,
-    /// The part of that time in which it errs by more than 10 %.
+    /// The part of the time in which it errs by more than 10 %.
     pub over_ten_percent: f64,
     /// The work of the arctangent along this motion over that of Coulomb's law.
     pub work_share: f64,
-    /// The same by the formula of a harmonic swing, with the greatest speed of the cycle.
+    /// The same by the formula of a harmonic swing, (sqrt(1 + k^2) - 1)/k with k = 100 times the
+    /// greatest speed.
     pub work_share_formula: f64,
 }
 
-/// What is left of the motion some time after the stop.
+/// A state after the stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CreepSample {
-    /// Time since both were at rest where Coulomb's law stops the swing, units of 1/omega.
+    /// The time since both were at rest where Coulomb's law stops the swing, in units of time.
     pub t: f64,
-    /// Where the arctangent has taken it, rad.
+    /// Where the arctangent has taken it, in radians; Coulomb's law leaves it where it is.
     pub x: f64,
-    /// The same by the formula of the creep, rad; nothing where it swings.
+    /// The same by the formula without inertia, in radians; null where it swings.
     pub formula: Option<f64>,
 }
 

@@ -333,8 +333,8 @@ impl<'a> Run<'a> {
         self.taken = self.accounts[2];
         self.impacts.push(PrimaryImpact {
             side,
-            entry: self.t,
-            exit: None,
+            entry_time: self.t,
+            exit_time: None,
             speed_in: side.sign() * self.state.velocity,
             speed_out: None,
             penetration: depth,
@@ -346,7 +346,7 @@ impl<'a> Run<'a> {
         self.state.x = self.place(side);
         let (t, taken, velocity) = (self.t, self.taken, self.state.velocity);
         if let Some(impact) = self.impacts.last_mut() {
-            impact.exit = Some(t);
+            impact.exit_time = Some(t);
             impact.speed_out = Some(-side.sign() * velocity);
             impact.energy_lost = self.accounts[2] - taken;
         }

@@ -9,17 +9,19 @@ use super::super::simulation::REST_FRACTION;
 use super::{Primary, PrimaryMotion};
 use crate::impact::NoRest;
 
-/// A main mass alone.
+/// A main mass alone, in closed form.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Alone {
-    /// N, the mass in units of m.
+    /// Its mass, in units of the mass of the pendulum.
     pub mass: f64,
-    /// Its angular frequency over omega, damped; 0 where it creeps.
+    /// Its angular frequency, damped; 0 where it creeps.
     pub frequency: f64,
-    /// When its envelope has fallen to a tenth, released from rest and not driven; nothing where it
-    /// never does, or creeps.
+    /// When its envelope has fallen to a tenth; null where it never does, creeps, or a force drives
+    /// it.
     pub rest_time: Option<f64>,
-    /// The amplitude of the driven motion in the long run; nothing where it is not driven.
+    /// Its amplitude in the long run; null where no force drives it.
     pub amplitude: Option<f64>,
 }
 

@@ -100,28 +100,37 @@ impl Default for PrimarySettings {
     }
 }
 
-/// An impact on a barrier.
+/// An impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PrimaryImpact {
-    /// Which barrier.
+    /// The barrier: `left` or `right`.
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub side: Side,
     /// When it is touched; 0 where the motion starts inside it.
-    pub entry: f64,
-    /// When it is left; nothing where the motion ends in contact.
-    pub exit: Option<f64>,
+    pub entry_time: f64,
+    /// When it is left; null where the run ends before.
+    pub exit_time: Option<f64>,
     /// The speed of the pendulum towards the barrier at the touch; where the motion starts inside
     /// it, the speed inwards then.
     pub speed_in: f64,
-    /// Its speed away from it at the release.
+    /// Its speed away from it at the release; null where the run ends before.
     pub speed_out: Option<f64>,
-    /// The greatest depth, rad.
+    /// The greatest depth, in radians.
     pub penetration: f64,
     /// The energy that the contact took.
     pub energy_lost: f64,
 }
 
-/// What became of the energy, in units of m g L.
+/// The account of the energy.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "schema",
+    derive(schemars::JsonSchema),
+    schemars(rename = "PrimaryEnergyDocument")
+)]
 pub struct PrimaryEnergy {
     /// At the start.
     pub start: f64,
@@ -137,7 +146,7 @@ pub struct PrimaryEnergy {
     pub dashpot: f64,
     /// Put in by the force.
     pub force: f64,
-    /// What is not accounted for at any phase end, over the largest energy.
+    /// What is not accounted for, over the largest energy.
     pub residual: f64,
 }
 

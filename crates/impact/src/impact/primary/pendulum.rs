@@ -62,7 +62,8 @@ impl PrimaryMotion {
     /// units of m g.
     pub fn peak_force(&self, impact: &PrimaryImpact) -> f64 {
         let model = &self.case.model;
-        let contacts = self.path.contacts([impact.entry, impact.exit.unwrap_or(self.end)]);
+        let contacts =
+            self.path.contacts([impact.entry_time, impact.exit_time.unwrap_or(self.end)]);
         let peaks = contacts.map(|(path, side)| {
             let force = |s: f64| match path.at(s) {
                 Some(state) => hertz::force(

@@ -86,7 +86,7 @@ fn row(case: PrimaryCase, settings: &PrimarySettings) -> Result<PrimaryRow, Prim
         primary: case.primary,
         end: motion.end,
         amplitude: motion.largest_since(since),
-        impacts: motion.impacts.iter().filter(|impact| impact.entry >= since).count(),
+        impacts: motion.impacts.iter().filter(|impact| impact.entry_time >= since).count(),
         all_impacts: motion.impacts.len(),
         rest_time: motion.rest_time(),
         others: case.primary.others(),

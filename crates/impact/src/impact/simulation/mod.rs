@@ -360,19 +360,20 @@ pub struct Simulation {
     pub(super) fall: Option<f64>,
 }
 
-/// How far a contact is from the same one of the true motion.
+/// How far a contact of a chain is from the same one by integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "ImpactError"))]
 pub struct ContactDeviation {
-    /// Time of the touch, in units of 1/omega: its difference.
+    /// The difference of the times of touch, in units of time.
     pub entry_time: f64,
-    /// Speed of the touch, in parts of the true one; nothing where that is zero.
+    /// The error of the speed of touch, as a fraction of it; null where it is zero.
     pub speed_in: Option<f64>,
-    /// Greatest depth, in parts of the true one; nothing where one of the runs ends in the contact.
+    /// The error of the greatest depth, as a fraction of it; null where a run ends before.
     pub penetration: Option<f64>,
-    /// Duration, in parts of the true one; nothing likewise, and where it is too short for the
-    /// clock.
+    /// The error of the duration, as a fraction of it; null where a run ends before.
     pub duration: Option<f64>,
-    /// Speed of the release, in parts of the true one; nothing likewise.
+    /// The error of the speed of release, as a fraction of it; null where a run ends before.
     pub speed_out: Option<f64>,
 }
 

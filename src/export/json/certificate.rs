@@ -123,7 +123,6 @@ pub struct CertificateFormula {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[cfg_attr(feature = "schema", schemars(deny_unknown_fields))]
 pub struct CertificateLetters {
     /// That of the amplitude, whose value is x(0) less a place of rest.
     pub amplitude: String,

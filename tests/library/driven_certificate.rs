@@ -96,7 +96,7 @@ fn shooting_finds_what_is_proved() {
         let acceleration = |t: f64, x: f64, v: f64| -force.call(&[t, x, v, omega]);
         let period = std::f64::consts::TAU * periods as f64 / omega;
         let begin = start(&certificate, omega / periods as f64);
-        let found = periodic_motion(&acceleration, period, begin, 1.0).expect(equation);
+        let found = periodic_motion(&acceleration, period, begin, 1.0, &[]).expect(equation);
         let (x, v) = found.at(0.0);
         assert!(
             (x - begin[0]).abs() < 1e-8 && (v - begin[1]).abs() < 1e-8,

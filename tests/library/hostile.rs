@@ -41,8 +41,8 @@ fn numerics() {
         let _ = period::swing(&|_, x, _| -x, a, b, 100.0);
         let force = |x: f64| x + x * x * x;
         let _ = period::conservative_period(&period::Force::smooth(&force), a, b);
-        if let Ok(motion) = periodic::periodic_motion(&|t, x, v| t.cos() - x - v, a, [b, 0.0], 1.0)
-        {
+        let acceleration = |t: f64, x: f64, v: f64| t.cos() - x - v;
+        if let Some(motion) = periodic::periodic_motion(&acceleration, a, [b, 0.0], 1.0, &[]) {
             let _ = [0, u32::MAX].map(|number| motion.harmonic(number));
         }
         let acceleration = |x: f64, v: f64| (1.0 - x * x) * v - x;

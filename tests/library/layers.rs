@@ -381,8 +381,8 @@ const OF_THE_JUDGE: [&str; 1] = ["VerificationError"];
 /// What they may use of `solution`: plain data.
 const OF_AN_ANSWER: [&str; 1] = ["AmplitudeConvention"];
 
-/// The modules of `numeric` that are truth as a whole: the judge alone uses them, so that no answer
-/// comes by a detour.
+/// The modules of `numeric` that are truth as a whole: only those that judge use them, `verify` and
+/// `response`, so that no answer comes by a detour.
 const TRUE_MODULES: [&str; 3] = ["period", "periodic", "return_map"];
 
 /// What crosses the wall between the methods and the truth, as messages: `file` is the path of a
@@ -408,7 +408,7 @@ fn over_the_wall(file: &str, text: &str, handed_on: &[(String, String)]) -> Vec<
         let wrong = behind(root).into_iter().filter(|(_, name)| !allowed(name));
         found.extend(wrong.map(|(line, name)| format!("{line}: uses `{root}{name}`")));
     };
-    if source.module != "verify" && !makes_truth {
+    if !["verify", "response"].contains(&source.module) && !makes_truth {
         let no_truth = |name: &str| !TRUE_MODULES.contains(&name);
         refuse("numeric::", &no_truth);
         if source.module == "numeric" {
@@ -511,6 +511,7 @@ fn a_hole_in_the_wall_is_seen() {
             "method/exact.rs",
             "use super::numbers::evaluate;\nuse crate::numeric::ode::energy::PeriodError;",
         ),
+        ("response/cycle.rs", "use crate::numeric::periodic::Shooting;"),
         (
             "numeric/period.rs",
             "use crate::numeric::ode::root;\n#[cfg(test)]\nmod tests {\n    use crate::method::solve;\n}\n",

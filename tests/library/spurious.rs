@@ -58,7 +58,7 @@ fn true_amplitude(
         .map(|motion| CompiledFunction::new(&motion, &arguments).expect("compiled"));
     let start = [&position, &velocity].map(|of| of.call(&[0.0, state.amplitude, state.phase]));
     let acceleration = |t: f64, x: f64, v: f64| -force.call(&[t, x, v]);
-    let found = periodic_motion(&acceleration, period, start, state.amplitude).ok()?;
+    let found = periodic_motion(&acceleration, period, start, state.amplitude, &[])?;
     Some(found.harmonic(resonance.times_driving))
 }
 

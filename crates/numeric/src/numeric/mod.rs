@@ -2,18 +2,20 @@
 //! shares nothing with its judge.
 //!
 //! In come forces as closures, starts and tolerances; out go motions, periods and limit cycles, or
-//! the reason why there is none. Units are those of the closures. [`ode`] and `harmonics` use none
-//! of the others, and those do not use each other:
+//! the reason why there is none. Units are those of the closures. [`ode`], `harmonics` and
+//! [`continuation`] use none of the others, and those do not use each other:
 //!
 //! - [`ode`]: Runge-Kutta with dense output and events, quadrature, roots; turning points.
 //! - `harmonics`: the Fourier coefficients of a period that is known at equal steps, and back.
 //! - [`period`]: the true period of a force of the position alone, from its energy, and of others
 //!   from their return.
-//! - [`periodic`]: true periodic motions of driven equations, and their Floquet multipliers.
+//! - [`continuation`]: branches of solutions, step by step.
+//! - [`periodic`]: true periodic orbits by shooting, and their Floquet multipliers.
 //! - [`return_map`]: true limit cycles, from one turning point to the next.
 //!
-//! The last three belong to the judge: no method takes its answer from them.
+//! [`period`], [`periodic`] and [`return_map`] belong to the judge: no method takes its answer from them.
 
+pub mod continuation;
 pub mod harmonics;
 pub mod ode;
 pub mod period;

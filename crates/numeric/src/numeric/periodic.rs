@@ -1,62 +1,65 @@
-//! Periodic motions of a driven equation, found by Newton's method on the map of one period.
+//! Periodic orbits of first-order equations with any number of states, found by shooting: Newton's
+//! method on the map of one period.
 //!
-//! Reference: A. H. Nayfeh, B. Balachandran, *Applied Nonlinear Dynamics*, Wiley 1995, section 5.1
-//! (shooting) and 3.2 (Floquet multipliers).
+//! References: A. H. Nayfeh, B. Balachandran, *Applied Nonlinear Dynamics*, Wiley 1995, section 5.1
+//! (shooting) and 3.2 (Floquet multipliers); R. Seydel, *Practical Bifurcation and Stability
+//! Analysis*, Springer 2010, chapter 7 (the phase condition).
 //!
 //! ```text
-//! x'' = g(t, x, v),  g of period T in t:      M(x(0), v(0)) = (x(T), v(T)),      M(y) = y by Newton's method
-//! multipliers: the eigenvalues of dM/dy;      the motion attracts where both lie inside the unit circle
+//! y' = f(t, y),  y(T; y_0) = y_0,   M = dy(T)/dy_0:        [M - 1     f(y_T)] [dy_0]     [y_T - y_0]
+//! without drive T is an unknown, and dy_0 . f(y_0) = 0:    [f(y_0)^T    0   ] [ dT ] = - [    0    ]
+//! multipliers: the eigenvalues of M;                       the orbit attracts where all lie inside the unit circle
 //! ```
 //!
-//! The start is only where the search begins: the motion found is one of the equation alone, stable
-//! or not. Motions that are known already are kept away from by deflation (P. E. Farrell, A.
+//! The guess is only where the search begins: the orbit found is one of the equation alone, stable
+//! or not. Orbits that are known already are kept away from by deflation (P. E. Farrell, A.
 //! Birkisson, S. W. Funke, SIAM J. Sci. Comput. 37, 2015, A2026):
 //!
 //! ```text
-//! Newton on  eta(y) (M(y) - y),  eta = product of (1 + 1/|y - y_known|^2):  the step of Newton's method over 1 - (grad eta . step)/eta
+//! Newton on  eta(y) (y(T) - y),  eta = product of (1 + 1/|y - y_known|^2):  the step of Newton's method over 1 - (grad eta . step)/eta
 //! ```
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector};
+use num_complex::Complex;
 
 use crate::numeric::ode::{Options, State, Trajectory, integrate};
 
-/// A periodic motion, from the start of its period.
+/// An orbit of N states that comes back to its start after a period.
 #[derive(Clone, Debug)]
-pub struct PeriodicMotion {
-    path: Trajectory,
-    period: f64,
-    /// Real and imaginary part of the eigenvalues of the map of one period.
-    pub multipliers: [(f64, f64); 2],
+pub struct PeriodicOrbit<const N: usize = 2, Path = Trajectory> {
+    /// The state at the beginning of the period.
+    pub start: [f64; N],
+    /// The period.
+    pub period: f64,
+    /// The monodromy matrix: the derivative of the state after a period by that at its beginning.
+    pub monodromy: SMatrix<f64, N, N>,
+    /// The orbit as it was followed over a period.
+    pub path: Path,
 }
 
-/// Why no periodic motion was found.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum NoPeriodicMotion {
-    /// Newton's steps did not settle.
-    #[error("no motion of period {0} was found near the one by the formula")]
-    NotFound(f64),
-    /// The motion could not be followed over one period.
-    #[error("the motion could not be followed over one period, {0}")]
-    Lost(f64),
-}
-
-impl PeriodicMotion {
-    /// Its period.
-    pub fn period(&self) -> f64 {
-        self.period
-    }
-
-    /// Position and velocity at a time between zero and the period.
-    pub fn at(&self, t: f64) -> (f64, f64) {
-        self.path.at(t).unwrap_or((f64::NAN, f64::NAN))
+impl<const N: usize, Path> PeriodicOrbit<N, Path> {
+    /// The Floquet multipliers, the eigenvalues of the monodromy matrix. Without drive one of them
+    /// is 1, along the orbit.
+    pub fn multipliers(&self) -> Vec<Complex<f64>> {
+        let matrix = self.monodromy.resize(N, N, 0.0);
+        match N {
+            2 => eigenvalues_of_two(matrix.trace(), matrix.determinant()).into(),
+            _ => matrix.complex_eigenvalues().iter().copied().collect(),
+        }
     }
 
     /// Whether neighbouring motions come closer.
     pub fn attracts(&self) -> bool {
-        self.multipliers.iter().all(|value| value.0.hypot(value.1) < 1.0)
+        self.multipliers().iter().all(|value| value.norm() < 1.0)
+    }
+}
+
+impl PeriodicOrbit {
+    /// Position and velocity at a time between zero and the period.
+    pub fn at(&self, t: f64) -> (f64, f64) {
+        self.path.at(t).unwrap_or((f64::NAN, f64::NAN))
     }
 
     /// The amplitude of a harmonic of the period, `sqrt(c^2 + s^2)` of its cosine and sine.
@@ -73,99 +76,283 @@ impl PeriodicMotion {
     }
 }
 
-/// The periodic motion near a start, position and velocity at `t = 0`; `size` is about how large it
-/// is.
-///
-/// # Errors
-/// None was found near there, or the motion cannot be followed.
+/// The eigenvalues of a matrix of two rows, the larger first, from its trace and its determinant.
+pub fn eigenvalues_of_two(trace: f64, determinant: f64) -> [Complex<f64>; 2] {
+    let half = 0.5 * trace;
+    let square = half * half - determinant;
+    if square < 0.0 {
+        let root = (-square).sqrt();
+        return [Complex::new(half, root), Complex::new(half, -root)];
+    }
+    // The smaller one by the product, which does not cancel.
+    let large = half + half.signum() * square.sqrt();
+    let small = if large == 0.0 { 0.0 } else { determinant / large };
+    [large, small].map(Complex::from)
+}
+
+/// A search for a periodic orbit near a guess.
+pub struct Shooting<'a, const N: usize> {
+    /// The state from which the search begins.
+    pub guess: [f64; N],
+    /// The period, only a guess of it where there are `rates`.
+    pub period: f64,
+    /// The rates of a state by equations without drive, whose period is an unknown.
+    pub rates: Option<&'a dyn Fn([f64; N]) -> [f64; N]>,
+    /// The positive size in which each state is measured.
+    pub sizes: [f64; N],
+    /// The solution of the equations of a step: where every amplitude is an orbit, that of least
+    /// norm leads to the nearest.
+    pub solve: fn(DMatrix<f64>, DVector<f64>) -> Option<DVector<f64>>,
+    /// Newton's steps after which the search ends.
+    pub most: usize,
+    /// How far the start may move, in the sizes, and the period, in its guess.
+    pub far: f64,
+    /// The starts of orbits that are not looked for.
+    pub known: &'a [[f64; N]],
+}
+
+impl<const N: usize> Shooting<'_, N> {
+    /// The orbit; `None` where one cannot be followed over a period, or Newton's steps do not
+    /// settle. `follow` gives the state after a period from a start, its derivative by the start
+    /// and the path; `settled` hears how far an orbit is from closing and how far Newton's method
+    /// would move it, both in the sizes, and says whether it is the one.
+    pub fn orbit<Path>(
+        &self,
+        mut follow: impl FnMut([f64; N], f64) -> Option<([f64; N], SMatrix<f64, N, N>, Path)>,
+        mut settled: impl FnMut(f64, f64) -> bool,
+    ) -> Option<PeriodicOrbit<N, Path>> {
+        /// The longest step: one beyond the size of the orbit leads to another one, or nowhere.
+        const LONGEST: f64 = 0.5;
+        let [guess, sizes] = [self.guess, self.sizes].map(SVector::from);
+        let in_sizes = |vector: SVector<f64, N>| vector.component_div(&sizes);
+        let length = |vector| in_sizes(vector).iter().copied().fold(0.0, f64::hypot);
+        let (mut start, mut period) = (guess, self.period);
+        for _ in 0..self.most {
+            let (end, monodromy, path) = follow(start.into(), period)?;
+            let missed = SVector::from(end) - start;
+            let matrix = monodromy - SMatrix::identity();
+            let (step, longer) = match self.rates {
+                None => {
+                    let missed = missed.resize_vertically(N, 0.0);
+                    let step = (self.solve)(matrix.resize(N, N, 0.0), missed)?;
+                    (step.fixed_rows::<N>(0).into_owned(), 0.0)
+                }
+                Some(rates) => {
+                    let [there, back] = [start.into(), end]
+                        .map(|state| in_sizes(SVector::from(rates(state)) * period));
+                    let matrix = DMatrix::from_fn(N + 1, N + 1, |i, j| match (i < N, j < N) {
+                        (true, true) if i == j => matrix[(i, i)],
+                        (true, true) => matrix[(i, j)] * sizes[j] / sizes[i],
+                        (true, false) => back[i],
+                        (false, true) => there[j],
+                        (false, false) => 0.0,
+                    });
+                    let missed = in_sizes(missed).resize_vertically(N + 1, 0.0);
+                    let step = (self.solve)(matrix, missed)?;
+                    (step.fixed_rows::<N>(0).component_mul(&sizes), step[N])
+                }
+            };
+            // grad eta . step over eta
+            let pull = |known: &[f64; N]| {
+                let apart = in_sizes(start - SVector::from(*known));
+                let square = apart.norm_squared();
+                -2.0 * in_sizes(apart.component_mul(&step)).sum() / (square * (square + 1.0))
+            };
+            let step = step / (1.0 + self.known.iter().map(pull).sum::<f64>());
+            let moved = length(step).hypot(longer);
+            if settled(length(missed), moved) {
+                return Some(PeriodicOrbit { start: start.into(), period, monodromy, path });
+            }
+            let part = f64::min(1.0, LONGEST / moved);
+            start -= step * part;
+            period *= 1.0 - part * longer;
+            if !(length(start - guess) <= self.far
+                && (period / self.period - 1.0).abs() <= self.far)
+            {
+                return None;
+            }
+        }
+        None
+    }
+}
+
+/// What [`Shooting::orbit`] has to know of a motion, its derivative by central differences:
+/// `follow` gives the state after a period from a start, and the path; `sizes` are those of the
+/// states.
+pub fn by_differences<const N: usize, Path>(
+    start: [f64; N],
+    sizes: [f64; N],
+    mut follow: impl FnMut([f64; N]) -> Option<([f64; N], Path)>,
+) -> Option<([f64; N], SMatrix<f64, N, N>, Path)> {
+    /// Beside the size: far above the error of integration.
+    const DIFFERENCE: f64 = 1e-5;
+    let (end, path) = follow(start)?;
+    let mut derivative = SMatrix::<f64, N, N>::zeros();
+    for (index, size) in sizes.into_iter().enumerate() {
+        let step = DIFFERENCE * size;
+        let mut beside = |step: f64| {
+            let mut start = start;
+            start[index] += step;
+            Some(SVector::from(follow(start)?.0))
+        };
+        let difference = beside(step)? - beside(-step)?;
+        derivative.set_column(index, &(difference / (2.0 * step)));
+    }
+    Some((end, derivative, path))
+}
+
+/// The periodic motion of `x'' = acceleration(t, x, x')`, which has this period in `t`, near a
+/// start, position and velocity at `t = 0`, that is none of those that begin at the known places;
+/// `size` is about how large it is. `None` where none was found near there, or it cannot be
+/// followed.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
 /// use lindstedt::numeric::periodic::periodic_motion;
 ///
 /// // x'' + x'/5 + x = cos(2t)
-/// let found = periodic_motion(&|t, x, v| (2.0 * t).cos() - x - 0.2 * v, std::f64::consts::PI, [0.0, 0.0], 1.0)?;
+/// let acceleration = |t: f64, x: f64, v: f64| (2.0 * t).cos() - x - 0.2 * v;
+/// let found = periodic_motion(&acceleration, std::f64::consts::PI, [0.0, 0.0], 1.0, &[]).ok_or("none")?;
 /// assert!((found.harmonic(1) - 1.0 / 9.16_f64.sqrt()).abs() < 1e-9 && found.attracts());
-/// # Ok::<(), lindstedt::numeric::periodic::NoPeriodicMotion>(())
+/// # Ok::<(), &str>(())
 /// ```
 pub fn periodic_motion(
     acceleration: &dyn Fn(f64, f64, f64) -> f64,
     period: f64,
-    start: [f64; 2],
-    size: f64,
-) -> Result<PeriodicMotion, NoPeriodicMotion> {
-    another_periodic_motion(acceleration, period, start, size, &[])
-}
-
-/// A periodic motion near a start that is none of those that begin at the known places.
-///
-/// # Errors
-/// None was found near there, or the motion cannot be followed.
-pub fn another_periodic_motion(
-    acceleration: &dyn Fn(f64, f64, f64) -> f64,
-    period: f64,
-    start: [f64; 2],
+    guess: [f64; 2],
     size: f64,
     known: &[[f64; 2]],
-) -> Result<PeriodicMotion, NoPeriodicMotion> {
-    const STEPS: usize = 30;
+) -> Option<PeriodicOrbit> {
+    /// A step so short is the last.
     const SETTLED: f64 = 1e-11;
-    /// The finite differences of the map, beside the size of the motion: far above the error of
-    /// integration.
-    const DIFFERENCE: f64 = 1e-5;
-    let rate = TAU / period;
-    let scale = [size, size * rate];
-    let lost = NoPeriodicMotion::Lost(period);
-    let path = |place: Vector2<f64>| {
-        let [x, v] = [place[0], place[1]];
-        let mut options = Options::with_tolerance(1e-12);
-        options.absolute_tolerance = 1e-13 * size;
-        let path = integrate(acceleration, State { t: 0.0, x, v }, period, &[], &options);
-        path.ok().filter(Trajectory::is_complete).ok_or(lost)
+    let (sizes, far) = ([size, size * (TAU / period)], f64::INFINITY);
+    let options = Options { absolute_tolerance: 1e-13 * size, ..Options::with_tolerance(1e-12) };
+    let follow = |[x, v]: [f64; 2]| {
+        let path = integrate(acceleration, State { t: 0.0, x, v }, period, &[], &options).ok()?;
+        path.is_complete().then(|| ([path.end().x, path.end().v], path))
     };
-    let end = |path: &Trajectory| Vector2::new(path.end().x, path.end().v);
-    let slopes = |place: Vector2<f64>| -> Result<Matrix2<f64>, NoPeriodicMotion> {
-        let column = |index: usize| {
-            let mut step = Vector2::zeros();
-            step[index] = DIFFERENCE * scale[index];
-            let difference = end(&path(place + step)?) - end(&path(place - step)?);
-            Ok(difference / (2.0 * step[index]))
+    let mut before = f64::INFINITY;
+    let settled = |_, moved| std::mem::replace(&mut before, moved) < SETTLED;
+    let solve = |matrix: DMatrix<f64>, missed| Some(matrix.try_inverse()? * missed);
+    Shooting { guess, period, rates: None, sizes, solve, most: 31, far, known }
+        .orbit(|start, _| by_differences(start, sizes, follow), settled)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::ode::{Point, integrate_first_order};
+
+    /// `x'' + D x' + K x`, two masses coupled by springs and dampers.
+    const STIFFNESS: [[f64; 2]; 2] = [[3.0, -1.0], [-1.0, 2.0]];
+    const DAMPING: [[f64; 2]; 2] = [[0.3, -0.1], [-0.1, 0.2]];
+
+    /// y' = A y for the positions, then the velocities.
+    fn matrix() -> SMatrix<f64, 4, 4> {
+        SMatrix::from_fn(|row, column| match (row, column) {
+            (0 | 1, _) => f64::from(u8::from(column == row + 2)),
+            (_, 0 | 1) => -STIFFNESS[row - 2][column],
+            _ => -DAMPING[row - 2][column - 2],
+        })
+    }
+
+    /// The two masses, the first of them driven by `force * cos(omega t)`.
+    fn coupled(force: f64, omega: f64) -> PeriodicOrbit<4, ()> {
+        let matrix = matrix();
+        let rates = |t: f64, y: &[f64; 4], rates: &mut [f64; 4]| {
+            *rates = (matrix * SVector::from(*y)).into();
+            rates[2] += force * (omega * t).cos();
         };
-        Ok(Matrix2::from_columns(&[column(0)?, column(1)?]))
-    };
-    // grad eta . step over eta
-    let pull = |place: Vector2<f64>, step: Vector2<f64>| -> f64 {
-        let of_one = |[x, v]: &[f64; 2]| {
-            let apart = Vector2::new((place[0] - x) / scale[0], (place[1] - v) / scale[1]);
-            let square = apart.norm_squared();
-            -2.0 * (apart[0] * step[0] / scale[0] + apart[1] * step[1] / scale[1])
-                / (square * (square + 1.0))
+        let (guess, period, sizes) = ([0.2; 4], TAU / omega, [1.0; 4]);
+        let follow = |start: [f64; 4]| {
+            let options = Options::with_tolerance(1e-12);
+            let begin = Point { t: 0.0, y: start };
+            let path = integrate_first_order(rates, begin, period, &[], &options).ok()?;
+            Some((path.end().y, ()))
         };
-        known.iter().map(of_one).sum()
-    };
-    let mut place = Vector2::new(start[0], start[1]);
-    for _ in 0..STEPS {
-        let excess = end(&path(place)?) - place;
-        let map = slopes(place)?;
-        let Some(inverse) = (map - Matrix2::identity()).try_inverse() else {
-            break;
-        };
-        let step = inverse * excess;
-        let step = step / (1.0 + pull(place, step));
-        // A step far beyond the size of the motion leads to another one, or nowhere.
-        let length = (step[0] / scale[0]).hypot(step[1] / scale[1]);
-        if !length.is_finite() {
-            break;
-        }
-        place -= step * f64::min(1.0, 0.5 / length);
-        if length < SETTLED {
-            let found = slopes(place)?.complex_eigenvalues();
-            return Ok(PeriodicMotion {
-                path: path(place)?,
-                period,
-                multipliers: [(found[0].re, found[0].im), (found[1].re, found[1].im)],
+        let solve = |matrix: DMatrix<f64>, missed| matrix.lu().solve(&missed);
+        Shooting { guess, period, rates: None, sizes, solve, most: 10, far: 10.0, known: &[] }
+            .orbit(|start, _| by_differences(start, sizes, follow), |_, moved| moved < 1e-10)
+            .expect("an orbit")
+    }
+
+    /// `x = Re (K - omega^2 + i omega D)^(-1) (force, 0) exp(i omega t)`.
+    #[test]
+    fn two_coupled_oscillators_come_back_where_their_exact_motion_does() {
+        for (force, omega) in [(1.0, 0.7), (2.0, 1.4), (0.3, 3.0)] {
+            let orbit = coupled(force, omega);
+            let dynamic = SMatrix::<_, 2, 2>::from_fn(|row, column| {
+                let inertia = if row == column { omega * omega } else { 0.0 };
+                Complex::new(STIFFNESS[row][column] - inertia, omega * DAMPING[row][column])
             });
+            let drive = SVector::from([force, 0.0].map(Complex::from));
+            let exact = dynamic.lu().solve(&drive).expect("off resonance");
+            for (index, amplitude) in exact.iter().enumerate() {
+                let velocity = Complex::i() * omega * amplitude;
+                assert!((orbit.start[index] - amplitude.re).abs() < 1e-9, "{omega}: {orbit:?}");
+                assert!((orbit.start[index + 2] - velocity.re).abs() < 1e-9, "{omega}: {orbit:?}");
+            }
         }
     }
-    Err(NoPeriodicMotion::NotFound(period))
+
+    /// M = exp(A T), by its series after halvings of T.
+    #[test]
+    fn the_multipliers_are_those_of_the_matrix_exponential() {
+        for omega in [0.7, 1.4, 3.0] {
+            let (orbit, period) = (coupled(1.0, omega), TAU / omega);
+            let small = matrix() * (period / 1024.0);
+            let (mut term, mut exact) = (SMatrix::identity(), SMatrix::identity());
+            for power in 1..12 {
+                term = term * small / f64::from(power);
+                exact += term;
+            }
+            for _ in 0..10 {
+                exact *= exact;
+            }
+            assert!((orbit.monodromy - exact).amax() < 1e-8, "{}", orbit.monodromy);
+            let rates = matrix().complex_eigenvalues();
+            for value in orbit.multipliers() {
+                let apart = rates.iter().map(|rate| (value - (rate * period).exp()).norm());
+                assert!(apart.fold(f64::INFINITY, f64::min) < 1e-7, "{value} {rates}");
+            }
+            assert!(orbit.attracts() && orbit.multipliers().len() == 4);
+        }
+    }
+
+    /// Two oscillators of van der Pol, the second drawn to the first: four states, of which the
+    /// period is not known, and one multiplier is 1.
+    #[test]
+    fn a_limit_cycle_of_four_states_has_its_period() {
+        let rates = |[x, y, v, w]: [f64; 4]| {
+            [v, w, (1.0 - x * x) * v - x, (1.0 - y * y) * w - y + 0.5 * (x - y)]
+        };
+        let (guess, sizes) = ([2.0, 2.0, 0.0, 0.0], [2.0; 4]);
+        let follow = |start: [f64; 4], period: f64| {
+            let options = Options::with_tolerance(1e-12);
+            let in_time = |_: f64, y: &[f64; 4], out: &mut [f64; 4]| *out = rates(*y);
+            let begin = Point { t: 0.0, y: start };
+            let path = integrate_first_order(in_time, begin, period, &[], &options).ok()?;
+            Some((path.end().y, ()))
+        };
+        let shooting = Shooting {
+            guess,
+            period: 6.6,
+            rates: Some(&rates),
+            sizes,
+            solve: |matrix, missed| matrix.svd(true, true).solve(&missed, 1e-9).ok(),
+            most: 20,
+            far: 0.5,
+            known: &[],
+        };
+        let orbit = shooting
+            .orbit(
+                |start, period| by_differences(start, sizes, |start| follow(start, period)),
+                |_, moved| moved < 1e-9,
+            )
+            .expect("a cycle");
+        assert!((orbit.period - 6.663_286_859_3).abs() < 1e-8, "{}", orbit.period);
+        assert!((orbit.start[0] - orbit.start[1]).abs() < 1e-8, "{orbit:?}");
+        let along = orbit.multipliers().into_iter().map(|value| (value - 1.0).norm());
+        assert!(along.fold(f64::INFINITY, f64::min) < 1e-6, "{:?}", orbit.multipliers());
+    }
 }

@@ -33,6 +33,8 @@ use crate::conservative::force::Force;
 use crate::conservative::passage::{passage_at, passages, pushes_away};
 use crate::decimal::significant;
 use crate::exact::Doubles;
+use crate::numeric::continuation::Step::{Ended, Taken, TooLong};
+use crate::numeric::continuation::{self, bordered, follow};
 use crate::numeric::ode::quadrature::nodes_and_weights;
 use crate::numeric::ode::root::find_root;
 use crate::series::FourierSeries;
@@ -448,14 +450,10 @@ impl<'a> Problem<'a> {
         iterations: usize,
     ) -> Option<State> {
         let mut state = start.clone();
-        let size = self.count + 2;
         let mut last = f64::INFINITY;
         for _ in 0..iterations {
             let (residual, jacobian) = self.equations(&state, &self.nodes(&state, finer))?;
-            let mut system = jacobian.insert_row(size - 1, 0.0);
-            system.set_row(size - 1, &direction.transpose());
-            let right = residual.insert_row(size - 1, 0.0);
-            let change = system.lu().solve(&right)?;
+            let change = bordered(&jacobian, direction).lu().solve(&residual.push(0.0))?;
             state.0 -= &change;
             let moved = change.amax();
             if !moved.is_finite() || moved > 5.0 {
@@ -717,66 +715,55 @@ impl<'a> Problem<'a> {
         /// too fast.
         const SHARE: f64 = 0.2;
         let goal = self.amplitude.abs().ln();
-        let size = self.count + 2;
-        let mut state = start;
-        let mut direction = DVector::zeros(size);
-        direction[size - 1] = way;
-        let mut length = LONGEST / 4.0;
-        for _ in 0..STEPS {
-            let before = state.logarithm();
-            if (before - goal).abs() < 1e-12 {
-                return Ok(state);
+        let (amplitude, mut steps) = (self.count + 1, 0);
+        let mut direction = DVector::zeros(amplitude + 1);
+        direction[amplitude] = way;
+        let step = |passed: &[State], length: &mut f64| {
+            let state = &passed[passed.len() - 1];
+            let left = goal - state.logarithm();
+            steps += 1;
+            if left.abs() < 1e-12 || steps > STEPS {
+                return Ended(None, left.abs() < 1e-12);
             }
             // Round a turn the branch would come back to amplitudes that it has passed, with
             // another motion.
-            let tangent = self.tangent(&state, &direction);
-            let Some(tangent) = tangent.filter(|tangent| way * tangent[size - 1] > 0.0) else {
-                break;
+            let tangent = self.tangent(state, &direction);
+            let Some(tangent) = tangent.filter(|tangent| way * tangent[amplitude] > 0.0) else {
+                return Ended(None, false);
             };
-            let left = (goal - before) / tangent[size - 1];
             // The correction of the step before may have carried the branch past the goal, by less
             // than that step.
-            let last = left <= length;
-            let step = if last { left } else { length };
-            let mut predicted = State(&state.0 + step * &tangent);
-            if last {
-                predicted.0[size - 1] = goal;
-            }
+            let left = left / tangent[amplitude];
+            let last = left <= *length;
+            *length = length.min(left);
+            let mut predicted = State(&state.0 + *length * &tangent);
             let found = if last {
+                predicted.0[amplitude] = goal;
                 self.at_amplitude(&predicted, 1)
             } else {
                 self.corrected(&predicted, &tangent, 1, 12)
             };
-            let near = |found: &State| (&found.0 - &predicted.0).norm() <= SHARE * step.abs();
+            let near = |found: &State| (&found.0 - &predicted.0).norm() <= SHARE * length.abs();
             match found.filter(near) {
-                Some(found) if last => {
-                    passed.push(found.clone());
-                    return Ok(found);
-                }
+                Some(found) if last => Ended(Some(found), true),
                 Some(found) => {
-                    passed.push(found.clone());
-                    (state, direction) = (found, tangent);
-                    length = f64::min(1.7 * length, LONGEST);
+                    direction = tangent;
+                    Taken(found, 1.7)
                 }
-                None if left < 0.0 => break,
-                None => length = 0.5 * step,
+                None if 0.5 * *length < SHORTEST => Ended(None, false),
+                None => TooLong,
             }
-            if length < SHORTEST {
-                break;
-            }
-        }
-        Err(state)
+        };
+        let (states, reached) = follow(start, LONGEST / 4.0, LONGEST, step);
+        let end = states[states.len() - 1].clone();
+        passed.extend(states.into_iter().skip(1));
+        if reached { Ok(end) } else { Err(end) }
     }
 
     /// The direction of the branch, forward.
     fn tangent(&self, state: &State, before: &DVector<f64>) -> Option<DVector<f64>> {
-        let size = self.count + 2;
         let (_, jacobian) = self.equations(state, &self.nodes(state, 1))?;
-        let mut system = jacobian.insert_row(size - 1, 0.0);
-        system.set_row(size - 1, &before.transpose());
-        let mut right = DVector::zeros(size);
-        right[size - 1] = 1.0;
-        let tangent = system.lu().solve(&right)?;
+        let tangent = continuation::tangent(&bordered(&jacobian, before).lu())?;
         let norm = tangent.norm();
         (norm.is_finite() && norm > 0.0).then(|| tangent / norm)
     }

@@ -179,7 +179,7 @@ fn solved(
     for _ in 0..MOST {
         let linear = balance.linearised(&coefficients, parameter)?;
         let matrix = DMatrix::from_fn(count, count, |row, column| match column {
-            1 => linear.by_parameter[cosine(row)],
+            1 => linear.jacobian[(cosine(row), balance.size())],
             _ => linear.jacobian[(cosine(row), cosine(column))],
         });
         let right = DVector::from_fn(count, |row, _| linear.residual[cosine(row)]);

@@ -55,10 +55,8 @@ pub struct Balance<'a> {
 pub struct Linearised {
     /// R.
     pub residual: DVector<f64>,
-    /// dR/du.
+    /// dR/du and dR/dp, the last column.
     pub jacobian: DMatrix<f64>,
-    /// dR/dp.
-    pub by_parameter: DVector<f64>,
     /// The size of the terms that cancel in R.
     pub scale: f64,
 }
@@ -244,10 +242,10 @@ impl<'a> Balance<'a> {
         if let Some(place) = self.frequency_place() {
             jacobian.set_column(place, &vector(&slopes[3], 4));
         }
+        jacobian.set_column(self.size(), &vector(&slopes[2], 3));
         Some(Linearised {
             residual: vector(&sum, 0),
             jacobian,
-            by_parameter: vector(&slopes[2], 3),
             scale: size(&inertia).max(size(&force)),
         })
     }
@@ -342,7 +340,7 @@ impl<'a> Balance<'a> {
         (1..=self.harmonics).map(term).sum()
     }
 
-    /// dR/du from the derivatives of the force at the samples.
+    /// dR/du from the derivatives of the force at the samples, and room for dR/dp.
     fn jacobian(&self, stiffness: &Harmonics, damping: &Harmonics, omega: f64) -> DMatrix<f64> {
         // Coefficients (k; cos or sin) of s(theta) times the wave (l; cos or sin), s having these
         // harmonics.
@@ -354,7 +352,10 @@ impl<'a> Balance<'a> {
                 (true, true) => s.cosine(k - l) - s.cosine(k + l),
             }
         };
-        DMatrix::from_fn(self.size(), self.size(), |row, column| {
+        DMatrix::from_fn(self.size(), self.size() + 1, |row, column| {
+            if column == self.size() {
+                return 0.0;
+            }
             let place =
                 |index: usize| (index.div_ceil(2) as isize, index > 0 && index.is_multiple_of(2));
             let ((k, k_sine), (l, l_sine)) = (place(row), place(column));
@@ -379,7 +380,7 @@ impl<'a> Balance<'a> {
         let equations = |coefficients: &DVector<f64>| {
             let linear = self.linearised(coefficients, parameter)?;
             vanishes.set(linear.residual.norm() <= 1e-14 * linear.scale);
-            Some((linear.residual, linear.jacobian))
+            Some((linear.residual, linear.jacobian.remove_column(self.size())))
         };
         let judged = |coefficients: &DVector<f64>, step: &DVector<f64>| {
             if !coefficients.norm().is_finite() {

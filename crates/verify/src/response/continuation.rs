@@ -11,12 +11,14 @@
 //! the step begins, the parameter in the length of its range. In: a balance, a point on the branch.
 //! Out: the points of the whole branch within the range, both ways, with their tangents.
 
-use nalgebra::{DMatrix, DVector, Dyn, LU};
+use nalgebra::{DVector, Dyn, LU};
 
 use super::balance::{Balance, CONVERGED, Linearised};
 use super::hopf;
 use super::stability::TrueMotion;
 use crate::interrupt::Interrupt;
+use crate::numeric::continuation::Step::{Ended, Taken, TooLong};
+use crate::numeric::continuation::{bordered, follow, passes, tangent};
 
 /// A point of a branch.
 #[derive(Clone, Debug)]
@@ -141,6 +143,37 @@ impl Weights {
         self.dot(vector, vector).sqrt()
     }
 
+    fn scaled(&self, vector: &DVector<f64>) -> DVector<f64> {
+        vector.map_with_location(|index, _, part| self.of(index, vector.len() - 1) * part)
+    }
+
+    /// A point with its tangent, which goes on in this direction.
+    fn node(
+        &self,
+        balance: &Balance,
+        point: DVector<f64>,
+        direction: &DVector<f64>,
+    ) -> Option<Node> {
+        let jacobian = linearised(balance, &point)?.jacobian;
+        self.node_of(&bordered(&jacobian, &self.row(direction)).lu(), point)
+    }
+
+    /// A point with its tangent, from the factors of the bordered equations there. Their
+    /// determinant has the same sign whatever direction stands in the last row, as long as the
+    /// tangent goes the same way.
+    fn node_of(&self, factors: &LU<f64, Dyn, Dyn>, point: DVector<f64>) -> Option<Node> {
+        let tangent = tangent(factors)?;
+        let length = self.norm(&tangent);
+        let size = point.len() - 1;
+        (length > 0.0 && length.is_finite()).then(|| Node {
+            coefficients: point.rows(0, size).into_owned(),
+            parameter: point[size],
+            tangent: tangent / length,
+            orientation: sign_of_determinant(factors),
+            truth: None,
+        })
+    }
+
     /// The last row of the bordered equations: a product with it is one with this direction.
     fn row(&self, direction: &DVector<f64>) -> DVector<f64> {
         let size = direction.len() - 1;
@@ -148,19 +181,15 @@ impl Weights {
     }
 }
 
+/// The equations at coefficients and a parameter that are one vector.
+fn linearised(balance: &Balance, point: &DVector<f64>) -> Option<Linearised> {
+    let size = balance.size();
+    balance.linearised(&point.rows(0, size).into_owned(), point[size])
+}
+
 /// Coefficients and parameter as one vector.
 fn joined(coefficients: &DVector<f64>, parameter: f64) -> DVector<f64> {
     coefficients.clone().push(parameter)
-}
-
-/// The bordered matrix with this last row.
-fn bordered(linear: &Linearised, row: &DVector<f64>) -> DMatrix<f64> {
-    let size = linear.residual.len();
-    DMatrix::from_fn(size + 1, size + 1, |i, j| match (i < size, j < size) {
-        (true, true) => linear.jacobian[(i, j)],
-        (true, false) => linear.by_parameter[i],
-        (false, _) => row[j],
-    })
 }
 
 /// The size of the largest motion of these, that of one in the middle where they grow without
@@ -202,30 +231,23 @@ impl Walk {
         weights: Weights,
     ) -> Option<(Node, usize)> {
         const MOST: usize = 12;
-        let size = balance.size();
         let row = weights.row(direction);
         let mut point = guess.clone();
-        let mut iterations = 0;
-        loop {
-            let coefficients = point.rows(0, size).into_owned();
-            let parameter = point[size];
-            let linear = balance.linearised(&coefficients, parameter)?;
-            let factors = bordered(&linear, &row).lu();
-            let right = linear.residual.push(row.dot(&(&point - guess)));
-            let step = factors.solve(&right)?;
+        for iterations in 1..=MOST {
+            let linear = linearised(balance, &point)?;
+            let factors = bordered(&linear.jacobian, &row).lu();
+            let step = factors.solve(&linear.residual.push(row.dot(&(&point - guess))))?;
             let moved = weights.norm(&step);
-            if !moved.is_finite() || iterations >= MOST {
+            if !moved.is_finite() {
                 return None;
             }
             point -= &step;
-            iterations += 1;
             if moved <= CONVERGED {
                 // So short a step leaves the derivatives what they are.
-                let coefficients = point.rows(0, size).into_owned();
-                let node = node(&factors, coefficients, point[size], weights);
-                return node.map(|node| (node, iterations));
+                return Some((weights.node_of(&factors, point)?, iterations));
             }
         }
+        None
     }
 
     /// A point between two of a branch, at this part of the way.
@@ -263,10 +285,8 @@ impl Walk {
         direction: &DVector<f64>,
     ) -> Option<Path> {
         let weights = self.weights(balance, coefficients);
-        let linear = balance.linearised(coefficients, parameter)?;
-        let length = weights.norm(direction);
-        let factors = bordered(&linear, &weights.row(&(direction / length))).lu();
-        let start = node(&factors, coefficients.clone(), parameter, weights)?;
+        let direction = direction / weights.norm(direction);
+        let start = weights.node(balance, joined(coefficients, parameter), &direction)?;
         let mut backward = start.clone();
         backward.tangent *= -1.0;
         // The last row of the bordered equations has turned round.
@@ -350,100 +370,79 @@ impl Walk {
         const SLOW: f64 = 0.05;
         let [low, high] = self.range;
         let bound = ENORMOUS * balance.extent(&start.coefficients).max(self.ordinary);
-        let mut nodes = vec![start];
+        // Where a self-excited motion is near rest it may be born there.
+        let at_rest = |here: &Node, near: f64| match self.rest_beside(balance, here, near) {
+            Some(rest) => Ended(Some(rest), BranchEnd::Rest),
+            None => Ended(None, BranchEnd::Lost),
+        };
         let mut fastest = 0.0_f64;
-        let mut step = FIRST * self.longest;
-        loop {
+        let step = |nodes: &[Node], length: &mut f64| {
+            let length = *length;
             if self.interrupt.is_requested() {
-                return (nodes, BranchEnd::Interrupted);
+                return Ended(None, BranchEnd::Interrupted);
             }
             if nodes.len() >= self.most {
-                return (nodes, BranchEnd::Points);
+                return Ended(None, BranchEnd::Points);
             }
             let here = &nodes[nodes.len() - 1];
             let weights = self.weights(balance, &here.coefficients);
             let tangent = &here.tangent / weights.norm(&here.tangent);
             let start = joined(&here.coefficients, here.parameter);
-            let guess = &start + &tangent * step;
+            let guess = &start + &tangent * length;
             let found = self.corrected(balance, &guess, &tangent, weights).filter(|(node, _)| {
                 let next = &node.tangent / weights.norm(&node.tangent);
                 let moved = weights.norm(&(joined(&node.coefficients, node.parameter) - &start));
-                weights.dot(&next, &tangent) > SHARPEST && moved < 1.5 * step
+                weights.dot(&next, &tangent) > SHARPEST && moved < 1.5 * length
             });
-            let cut_off = found
-                .as_ref()
-                .is_some_and(|(node, _)| self.is_cut_off(balance, &node.coefficients));
-            let Some((mut node, iterations)) = found.filter(|_| !cut_off) else {
-                step *= 0.5;
-                if cut_off && step < SHORT {
-                    return (nodes, BranchEnd::Harmonics);
-                }
-                if step < SHORTEST {
+            let Some((node, iterations)) = found else {
+                return match 0.5 * length < SHORTEST {
                     // Where the damping has a corner at rest the branch has one there as well.
-                    let near = here.parameter;
-                    return self.ended_at_rest(balance, nodes, near);
-                }
-                continue;
+                    true => at_rest(here, here.parameter),
+                    false => TooLong,
+                };
             };
-            let outside = node.parameter < low || node.parameter > high;
-            if outside {
-                if let Some(last) = self.at_bound(balance, here, &node) {
-                    nodes.push(last);
-                    return (nodes, BranchEnd::Range);
-                }
+            // What it ends for unless a shorter step does better.
+            let ends = |end: BranchEnd| match 0.5 * length < SHORT {
+                true => Ended(None, end),
+                false => TooLong,
+            };
+            if self.is_cut_off(balance, &node.coefficients) {
+                return ends(BranchEnd::Harmonics);
+            }
+            if node.parameter < low || node.parameter > high {
                 // Where the end of the range is a resonance of a harmonic there is no motion, or
                 // more than one: near it is near enough.
-                step *= 0.5;
-                if step < SHORT {
-                    return (nodes, BranchEnd::Range);
-                }
-                continue;
+                return match self.at_bound(balance, here, &node) {
+                    Some(last) => Ended(Some(last), BranchEnd::Range),
+                    None => ends(BranchEnd::Range),
+                };
             }
             if balance.driven.self_excited && here.coefficients[1] * node.coefficients[1] <= 0.0 {
                 // Beyond rest the same motions come again, begun half a period later.
                 let part = here.coefficients[1] / (here.coefficients[1] - node.coefficients[1]);
-                let near = here.parameter + part * (node.parameter - here.parameter);
-                return self.ended_at_rest(balance, nodes, near);
+                return at_rest(here, here.parameter + part * (node.parameter - here.parameter));
             }
             if let Some(place) = balance.frequency_place() {
                 let own = node.coefficients[place];
                 fastest = fastest.max(own);
                 if own < SLOW * fastest {
-                    return (nodes, BranchEnd::Slow);
+                    return Ended(None, BranchEnd::Slow);
                 }
             }
-            let size = balance.extent(&node.coefficients);
-            if size > bound {
-                return (nodes, BranchEnd::Unbounded);
+            if balance.extent(&node.coefficients) > bound {
+                return Ended(None, BranchEnd::Unbounded);
             }
             if nodes.len() > 8 && self.has_closed(&nodes[0], here, &node, weights) {
-                node = nodes[0].clone();
-                nodes.push(node);
-                return (nodes, BranchEnd::Closed);
+                return Ended(Some(nodes[0].clone()), BranchEnd::Closed);
             }
-            nodes.push(node);
-            if iterations <= FEW {
-                step *= 1.4;
-            } else if iterations > MANY {
-                step *= 0.7;
-            }
-            step = step.min(self.longest);
-        }
-    }
-
-    /// These points, and the motion of amplitude zero behind them where the branch ends in one near
-    /// this parameter.
-    fn ended_at_rest(
-        &self,
-        balance: &Balance,
-        mut nodes: Vec<Node>,
-        near: f64,
-    ) -> (Vec<Node>, BranchEnd) {
-        let Some(rest) = self.rest_beside(balance, &nodes[nodes.len() - 1], near) else {
-            return (nodes, BranchEnd::Lost);
+            let ratio = match iterations {
+                ..=FEW => 1.4,
+                _ if iterations > MANY => 0.7,
+                _ => 1.0,
+            };
+            Taken(node, ratio)
         };
-        nodes.push(rest);
-        (nodes, BranchEnd::Rest)
+        follow(start, FIRST * self.longest, self.longest, step)
     }
 
     /// The motion of amplitude zero beside a small one, near this parameter: where a self-excited
@@ -470,15 +469,9 @@ impl Walk {
 
     /// Whether the way from one point to the next passes the first one in its direction.
     fn has_closed(&self, first: &Node, here: &Node, next: &Node, weights: Weights) -> bool {
-        let target = joined(&first.coefficients, first.parameter);
-        let from = joined(&here.coefficients, here.parameter);
-        let way = joined(&next.coefficients, next.parameter) - &from;
-        let length = weights.norm(&way);
-        let offset = &target - &from;
-        let along = weights.dot(&offset, &way) / length;
-        let across = (weights.dot(&offset, &offset) - along * along).max(0.0).sqrt();
-        let same_way = weights.dot(&first.tangent, &way) > 0.0;
-        same_way && (0.0..=length).contains(&along) && across < 0.1 * length
+        let scaled = |node: &Node| weights.scaled(&joined(&node.coefficients, node.parameter));
+        let [target, from, to] = [first, here, next].map(scaled);
+        weights.scaled(&first.tangent).dot(&(&to - &from)) > 0.0 && passes(&target, &from, &to)
     }
 
     /// The point at the end of the range between a point inside and one outside.
@@ -497,9 +490,7 @@ impl Walk {
         if jump > self.longest {
             return None;
         }
-        let linear = balance.linearised(&coefficients, bound)?;
-        let factors = bordered(&linear, &weights.row(&inside.tangent)).lu();
-        node(&factors, coefficients, bound, weights)
+        weights.node(balance, joined(&coefficients, bound), &inside.tangent)
     }
 
     /// Motions beside a crossing of branches, one on either side: the direction in which the
@@ -512,10 +503,7 @@ impl Walk {
         };
         let weights = self.weights(balance, &at.coefficients);
         // In weighted variables, so that right angles are those of the steps.
-        let matrix = DMatrix::from_fn(size, size + 1, |i, j| match j < size {
-            true => linear.jacobian[(i, j)] / weights.of(j, size),
-            false => linear.by_parameter[i] / weights.of(j, size),
-        });
+        let matrix = linear.jacobian.map_with_location(|_, j, slope| slope / weights.of(j, size));
         let square = matrix.transpose() * &matrix;
         let eigen = square.symmetric_eigen();
         let mut order: Vec<usize> = (0..=size).collect();
@@ -542,32 +530,6 @@ impl Walk {
         });
         found.into_iter().flatten().collect()
     }
-}
-
-/// A point with its tangent, from the factors of the bordered equations there. Their determinant
-/// has the same sign whatever direction stands in the last row, as long as the tangent goes the
-/// same way.
-fn node(
-    factors: &LU<f64, Dyn, Dyn>,
-    coefficients: DVector<f64>,
-    parameter: f64,
-    weights: Weights,
-) -> Option<Node> {
-    let size = coefficients.len();
-    let mut right = DVector::zeros(size + 1);
-    right[size] = 1.0;
-    let tangent = factors.solve(&right)?;
-    let length = weights.norm(&tangent);
-    if !(length > 0.0 && length.is_finite()) {
-        return None;
-    }
-    Some(Node {
-        coefficients,
-        parameter,
-        tangent: tangent / length,
-        orientation: sign_of_determinant(factors),
-        truth: None,
-    })
 }
 
 /// The sign of a determinant, which itself may be beyond doubles.

@@ -12,14 +12,13 @@
 //! which it attracts, so that errors shrink on the way. The multiplier along the motion is 1 by
 //! itself; the other one is that of Liouville's theorem, which does not cancel however small it is.
 
-use nalgebra::{Matrix2, Matrix3, Vector3};
+use nalgebra::{Matrix2, Matrix3};
 
 use super::driven::Driven;
-use super::stability::{
-    Budget, Floquet, SAMPLES, TOLERANCE, TrueMotion, first_harmonic, half_of_peak_to_peak, options,
-};
+use super::stability::{self, Budget, FAR, Floquet, SAMPLES, TOLERANCE, TrueMotion, options};
 use crate::numeric::ode::root::find_root;
 use crate::numeric::ode::{Point, Trajectory, integrate_first_order};
+use crate::numeric::periodic::{PeriodicOrbit, Shooting};
 
 /// A motion that is known but for rounding: where it starts, its frequency, how large it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,74 +68,37 @@ pub fn true_cycle(
     parameter: f64,
     backward: bool,
 ) -> Option<TrueMotion> {
-    const MOST: usize = 15;
-    /// Parts of the size of the motion by which the start may move, and of its period.
-    const FAR: f64 = 0.3;
     let &Guess { frequency, size, .. } = guess;
     let sign = if backward { -1.0 } else { 1.0 };
     let flow = |[x, v]: [f64; 2]| [sign * v, -sign * driven.force(&[x, v, 0.0, parameter])];
-    let measure = |step: [f64; 2]| step[0].hypot(step[1] / frequency);
-    let first_period = std::f64::consts::TAU / frequency;
-    let (mut start, mut period) = (guess.start, first_period);
-    let mut before = f64::INFINITY;
-    for _ in 0..MOST {
+    let follow = |start: [f64; 2], period: f64| {
         let path = followed(driven, guess, start, (period, backward), parameter)?;
-        let end = path.end().y;
-        let missed = [end[0] - start[0], end[1] - start[1]];
-        let (there, back) = (flow(start), flow([end[0], end[1]]));
-        // Positions in the size, velocities in the size times the frequency, time in periods.
-        let (x, v) = (size, size * frequency);
-        let matrix = Matrix3::new(
-            end[2] - 1.0,
-            end[4] * v / x,
-            back[0] * period / x,
-            end[3] * x / v,
-            end[5] - 1.0,
-            back[1] * period / v,
-            there[0] * period / x,
-            there[1] * period / v,
-            0.0,
-        );
-        let right = Vector3::new(missed[0] / x, missed[1] / v, 0.0);
-        // Where every amplitude is a motion the nearest one is taken.
-        let step = matrix.svd(true, true).solve(&right, 1e-9).ok()?;
-        let moved = step.norm();
-        let settled = moved <= 1e-6 && moved >= 0.5 * before;
-        if settled || moved <= 1e-10 || measure(missed) <= 1e-12 * size {
-            let determinant = end[6].exp();
-            return Some(described(&path, start, period, determinant));
-        }
-        before = moved;
-        start = [start[0] - step[0] * x, start[1] - step[1] * v];
-        period *= 1.0 - step[2];
-        let away = measure([start[0] - guess.start[0], start[1] - guess.start[1]]);
-        let longer = (period / first_period - 1.0).abs();
-        if !(away <= FAR * size && longer <= FAR) {
-            return None;
-        }
-    }
-    None
-}
-
-fn described(
-    path: &Trajectory<Point<[f64; 7]>>,
-    start: [f64; 2],
-    period: f64,
-    determinant: f64,
-) -> TrueMotion {
+        let [x, v, a, b, c, d, _] = path.end().y;
+        Some(([x, v], Matrix2::new(a, c, b, d), path))
+    };
+    let shooting = Shooting {
+        guess: guess.start,
+        period: std::f64::consts::TAU / frequency,
+        rates: Some(&flow),
+        sizes: [size, size * frequency],
+        solve: |matrix, missed| {
+            let matrix = Matrix3::from_column_slice(matrix.as_slice());
+            let step = matrix.svd(true, true).solve(&missed, 1e-9).ok()?;
+            Some(step.resize_vertically(3, 0.0))
+        },
+        most: 15,
+        far: FAR,
+        known: &[],
+    };
+    let PeriodicOrbit { start, period, path, .. } =
+        shooting.orbit(follow, stability::settled(1e-10))?;
     let positions: Vec<f64> =
         path.samples(SAMPLES + 1).take(SAMPLES).map(|point| point.y[0]).collect();
-    TrueMotion {
-        start,
-        frequency: std::f64::consts::TAU / period,
-        floquet: Floquet {
-            monodromy: Matrix2::new(determinant, 0.0, 0.0, 1.0),
-            self_excited: true,
-        },
-        first_harmonic: first_harmonic(&positions),
-        peak: half_of_peak_to_peak(&positions),
-        stuck: 0.0,
-    }
+    let determinant = path.end().y[6].exp();
+    let floquet =
+        Floquet { monodromy: Matrix2::new(determinant, 0.0, 0.0, 1.0), self_excited: true };
+    let frequency = std::f64::consts::TAU / period;
+    Some(TrueMotion::new(start, frequency, floquet, &positions, 0.0))
 }
 
 /// Where a simulation has come to that was let go here and followed for so many periods of about

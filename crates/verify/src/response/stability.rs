@@ -10,13 +10,14 @@
 //! Balachandran, *Applied Nonlinear Dynamics*, Wiley 1995, chapters 3 and 6). Everything is integrated by
 //! Runge-Kutta on the equation as it was given; of the balance only the start is taken.
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{DMatrix, Matrix2};
 use num_complex::Complex;
 
 use super::driven::Driven;
 use super::jump::{Course, Until, follow};
 use crate::interrupt::Interrupt;
 use crate::numeric::ode::{Options, Point, Trajectory, integrate_first_order};
+use crate::numeric::periodic::{PeriodicOrbit, Shooting, eigenvalues_of_two};
 
 /// Samples of a period from which its harmonics and its peaks are taken.
 pub(super) const SAMPLES: usize = 256;
@@ -35,19 +36,10 @@ impl Floquet {
     /// The eigenvalues of M(T), the larger first; of a self-excited motion the one that decides,
     /// then the one that is 1.
     pub fn multipliers(&self) -> [Complex<f64>; 2] {
-        if self.self_excited {
-            return [self.monodromy[(0, 0)], 1.0].map(|value| Complex::new(value, 0.0));
+        match self.self_excited {
+            true => [self.monodromy[(0, 0)], 1.0].map(Complex::from),
+            false => eigenvalues_of_two(self.monodromy.trace(), self.monodromy.determinant()),
         }
-        let (half, determinant) = (0.5 * self.monodromy.trace(), self.monodromy.determinant());
-        let square = half * half - determinant;
-        if square < 0.0 {
-            let root = (-square).sqrt();
-            return [Complex::new(half, root), Complex::new(half, -root)];
-        }
-        // The smaller one by the product, which does not cancel.
-        let large = half + half.signum() * square.sqrt();
-        let small = if large == 0.0 { 0.0 } else { determinant / large };
-        [Complex::new(large, 0.0), Complex::new(small, 0.0)]
     }
 
     /// The size of the one that decides: the larger.
@@ -73,6 +65,27 @@ pub struct TrueMotion {
     pub stuck: f64,
 }
 
+impl TrueMotion {
+    /// A motion of which the positions over a period are known, at equal steps.
+    pub(super) fn new(
+        start: [f64; 2],
+        frequency: f64,
+        floquet: Floquet,
+        positions: &[f64],
+        stuck: f64,
+    ) -> Self {
+        let first_harmonic = first_harmonic(positions);
+        Self {
+            start,
+            frequency,
+            floquet,
+            first_harmonic,
+            peak: half_of_peak_to_peak(positions),
+            stuck,
+        }
+    }
+}
+
 /// Relative error of a step where motions are judged.
 pub(super) const TOLERANCE: f64 = 1e-10;
 
@@ -87,21 +100,20 @@ pub(super) fn options(size: f64, tolerance: f64) -> Options {
     }
 }
 
-/// The motion over a period with its variations; nothing where it cannot be followed.
-fn with_variations(driven: &Driven, start: [f64; 2], parameter: f64) -> Option<Course> {
-    let omega = driven.frequency_at(parameter);
-    let size = start[0].abs().max(start[1].abs() / omega);
-    follow(
-        driven,
-        start,
-        parameter,
-        Until::Time(std::f64::consts::TAU / omega),
-        &options(size, TOLERANCE),
-    )
-}
+/// Parts of the size of a motion by which shooting may move its start, and of its period.
+pub(super) const FAR: f64 = 0.3;
 
-fn monodromy(end: &[f64; 6]) -> Floquet {
-    Floquet { monodromy: Matrix2::new(end[2], end[4], end[3], end[5]), self_excited: false }
+/// Whether shooting has settled so closely, by how far an orbit is from closing and how far
+/// Newton's method would move it.
+pub(super) fn settled(closely: f64) -> impl FnMut(f64, f64) -> bool {
+    let mut before = f64::INFINITY;
+    move |missed, moved| {
+        // Near a fold rounding is magnified: what does not shrink any more has come as near as it
+        // will.
+        let stalled = moved <= 1e-6 && moved >= 0.5 * before;
+        before = moved;
+        stalled || moved <= closely || missed <= 1e-12
+    }
 }
 
 /// The periodic motion whose start is near this one; nothing where shooting does not settle, or
@@ -112,34 +124,20 @@ pub fn periodic_motion(
     parameter: f64,
     size: f64,
 ) -> Option<TrueMotion> {
-    const MOST: usize = 12;
-    /// Parts of the size of the motion by which the start may move.
-    const FAR: f64 = 0.3;
     let omega = driven.frequency_at(parameter);
-    let mut start = guess;
-    let measure = |step: [f64; 2]| step[0].hypot(step[1] / omega);
-    let mut before = f64::INFINITY;
-    for _ in 0..MOST {
-        let path = with_variations(driven, start, parameter)?;
-        let end = path.end;
-        let floquet = monodromy(&end);
-        let missed = Vector2::new(end[0] - start[0], end[1] - start[1]);
-        let step = (Matrix2::identity() - floquet.monodromy).lu().solve(&missed)?;
-        let moved = measure([step[0], step[1]]);
-        // Near a fold rounding is magnified: what does not shrink any more has come as near as it
-        // will.
-        let settled = moved <= 1e-6 * size && moved >= 0.5 * before;
-        if settled || moved <= 1e-9 * size || measure([missed[0], missed[1]]) <= 1e-12 * size {
-            return Some(described(&path, start, (omega, floquet)));
-        }
-        before = moved;
-        start = [start[0] + step[0], start[1] + step[1]];
-        let away = measure([start[0] - guess[0], start[1] - guess[1]]);
-        if away.is_nan() || away > FAR * size {
-            return None;
-        }
-    }
-    None
+    let (period, sizes) = (std::f64::consts::TAU / omega, [size, size * omega]);
+    let follow = |start: [f64; 2], period: f64| {
+        let options = options(start[0].abs().max(start[1].abs() / omega), TOLERANCE);
+        let course = follow(driven, start, parameter, Until::Time(period), &options)?;
+        let [x, v, variations @ ..] = course.end;
+        Some(([x, v], Matrix2::from_column_slice(&variations), course))
+    };
+    let solve = |matrix: DMatrix<f64>, missed| matrix.lu().solve(&missed);
+    let shooting =
+        Shooting { guess, period, rates: None, sizes, solve, most: 12, far: FAR, known: &[] };
+    let PeriodicOrbit { start, monodromy, path, .. } = shooting.orbit(follow, settled(1e-9))?;
+    let floquet = Floquet { monodromy, self_excited: false };
+    Some(TrueMotion::new(start, omega, floquet, &path.positions(SAMPLES), path.stuck()))
 }
 
 /// The multipliers of a motion that is given with its frequency, not followed: `motion` has
@@ -175,18 +173,6 @@ pub fn multipliers_along(
         monodromy: Matrix2::new(end[0], end[2], end[1], end[3]),
         self_excited: false,
     })
-}
-
-fn described(path: &Course, start: [f64; 2], (frequency, floquet): (f64, Floquet)) -> TrueMotion {
-    let positions = path.positions(SAMPLES);
-    TrueMotion {
-        start,
-        frequency,
-        floquet,
-        first_harmonic: first_harmonic(&positions),
-        peak: half_of_peak_to_peak(&positions),
-        stuck: path.stuck(),
-    }
 }
 
 /// Coefficients of cos(theta) and sin(theta) of a period in equal steps.

@@ -22,9 +22,11 @@ use super::continuation::{BranchEnd, Node, Path};
 use super::jump::{Course, Until, follow};
 use super::seeds::Seed;
 use super::stability::{
-    Floquet, SAMPLES, TOLERANCE, TrueMotion, first_harmonic, half_of_peak_to_peak, options,
+    Floquet, SAMPLES, TOLERANCE, TrueMotion, half_of_peak_to_peak, options, settled,
 };
 use super::{Asked, LONGEST_STEP, MOST_BRANCHES};
+use crate::numeric::continuation::Step::{Ended, Taken, TooLong};
+use crate::numeric::continuation::{self, passes};
 
 /// Position, velocity and parameter, each in its size.
 type Scaled = Vector3<f64>;
@@ -119,7 +121,7 @@ impl<'a> PeriodMap<'a> {
         const SETTLED: f64 = 1e-9;
         let mut at = *guess;
         let mut by_parameter = self.by_parameter(&at)?;
-        let mut before = f64::INFINITY;
+        let mut settled = settled(SETTLED);
         for iteration in 0..MOST {
             let course = self.period(&at)?;
             let (start, _) = self.start(&at);
@@ -131,8 +133,7 @@ impl<'a> PeriodMap<'a> {
             if !moved.is_finite() {
                 return None;
             }
-            // What does not shrink any more has come as near as rounding lets it.
-            if moved <= SETTLED || moved <= 1e-6 && moved >= 0.5 * before {
+            if settled(f64::INFINITY, moved) {
                 let by_parameter = self.by_parameter(&at)?;
                 let matrix = self.bordered(&course, by_parameter, direction);
                 let tangent = matrix.lu().solve(&Vector3::new(0.0, 0.0, 1.0))?;
@@ -143,7 +144,6 @@ impl<'a> PeriodMap<'a> {
                     course,
                 });
             }
-            before = moved;
             at += step;
             if iteration == MOST / 2 {
                 by_parameter = self.by_parameter(&at)?;
@@ -157,11 +157,11 @@ impl<'a> PeriodMap<'a> {
         self.corrected(&self.scaled(start, parameter), &Vector3::new(0.0, 0.0, 1.0))
     }
 
-    /// Motion after motion in the direction of the tangent, the first left out, and why there are
+    /// Motion after motion in the direction of the tangent, the first included, and why there are
     /// no more. `met` says where motions of another branch are met.
     fn walk(
         &self,
-        first: &Shot,
+        first: Shot,
         met: &dyn Fn(&Node) -> bool,
         balance: &Balance,
     ) -> (Vec<Shot>, BranchEnd) {
@@ -175,58 +175,52 @@ impl<'a> PeriodMap<'a> {
         const ALL: f64 = 1.0 - 1e-9;
         const NEARLY_ALL: f64 = 0.8;
         let bounds = self.asked.question.range.map(|bound| bound / self.sizes[2]);
-        let mut shots: Vec<Shot> = Vec::new();
-        let mut step = FIRST * LONGEST_STEP;
-        loop {
+        let step = |shots: &[Shot], length: &mut f64| {
+            let length = *length;
             if self.asked.question.interrupt.is_requested() {
-                return (shots, BranchEnd::Interrupted);
+                return Ended(None, BranchEnd::Interrupted);
             }
-            if shots.len() >= MOST {
-                return (shots, BranchEnd::Points);
+            if shots.len() > MOST {
+                return Ended(None, BranchEnd::Points);
             }
-            let here = shots.last().unwrap_or(first);
-            let guess = here.at + here.tangent * step;
+            let here = &shots[shots.len() - 1];
+            let guess = here.at + here.tangent * length;
             let found = self.corrected(&guess, &here.tangent).filter(|shot| {
                 let moved = (shot.at - here.at).norm();
                 shot.tangent.dot(&here.tangent) > SHARPEST
-                    && moved < 1.5 * step
+                    && moved < 1.5 * length
                     && shot.course.stuck() < ALL
             });
             let Some(shot) = found else {
-                step *= 0.5;
-                if step < SHORTEST {
-                    let end = match here.course.stuck() > NEARLY_ALL {
-                        true => BranchEnd::Held,
-                        false => BranchEnd::Lost,
-                    };
-                    return (shots, end);
-                }
-                continue;
+                return match here.course.stuck() > NEARLY_ALL {
+                    _ if 0.5 * length >= SHORTEST => TooLong,
+                    true => Ended(None, BranchEnd::Held),
+                    false => Ended(None, BranchEnd::Lost),
+                };
             };
             if !(bounds[0]..=bounds[1]).contains(&shot.at[2]) {
                 let bound = if shot.at[2] < bounds[0] { bounds[0] } else { bounds[1] };
                 if (bound - here.at[2]).abs() <= 1e-9 {
-                    return (shots, BranchEnd::Range);
+                    return Ended(None, BranchEnd::Range);
                 }
                 let part = (bound - here.at[2]) / (shot.at[2] - here.at[2]);
                 let mut guess = here.at + (shot.at - here.at) * part;
                 guess[2] = bound;
                 let direction = Vector3::new(0.0, 0.0, (shot.at[2] - here.at[2]).signum());
-                shots.extend(self.corrected(&guess, &direction));
-                return (shots, BranchEnd::Range);
+                return Ended(self.corrected(&guess, &direction), BranchEnd::Range);
             }
-            if shots.len() > 8 && passes(&first.at, &here.at, &shot.at) {
-                return (shots, BranchEnd::Closed);
+            if shots.len() > 9 && passes(&shots[0].at, &here.at, &shot.at) {
+                return Ended(None, BranchEnd::Closed);
             }
             if shot.course.stuck() == 0.0
                 && self.asked.driven.is_balanced()
                 && met(&self.node(balance, &shot))
             {
-                return (shots, BranchEnd::Crossing);
+                return Ended(None, BranchEnd::Crossing);
             }
-            shots.push(shot);
-            step = (1.4 * step).min(LONGEST_STEP);
-        }
+            Taken(shot, 1.4)
+        };
+        continuation::follow(first, FIRST * LONGEST_STEP, LONGEST_STEP, step)
     }
 
     /// A point of a branch with the harmonics of the motion.
@@ -247,14 +241,13 @@ impl<'a> PeriodMap<'a> {
             parameter,
             tangent,
             orientation: 0.0,
-            truth: Some(TrueMotion {
+            truth: Some(TrueMotion::new(
                 start,
                 frequency,
-                floquet: Floquet { monodromy, self_excited },
-                first_harmonic: first_harmonic(&positions),
-                peak: half_of_peak_to_peak(&positions),
-                stuck: shot.course.stuck(),
-            }),
+                Floquet { monodromy, self_excited },
+                &positions,
+                shot.course.stuck(),
+            )),
         }
     }
 }
@@ -277,15 +270,6 @@ fn cut_rest(balance: &Balance, path: &mut Path, size: f64) {
         path.nodes.drain(..first);
         path.ends[0] = BranchEnd::Held;
     }
-}
-
-/// Whether the way from one place to the next passes a third one in between.
-fn passes(target: &Scaled, from: &Scaled, to: &Scaled) -> bool {
-    let (way, offset) = (to - from, target - from);
-    let length = way.norm();
-    let along = offset.dot(&way) / length;
-    let across = (offset.norm_squared() - along * along).max(0.0).sqrt();
-    (0.0..=length).contains(&along) && across < 0.1 * length
 }
 
 impl Asked<'_> {
@@ -380,17 +364,15 @@ impl Asked<'_> {
         paths: &[Path],
     ) -> Option<Path> {
         let met = |node: &Node| self.is_met(balance, paths, node);
-        let (behind, last) = map.walk(&shot, &met, balance);
+        let turned = |shot: Shot| Shot { tangent: -shot.tangent, ..shot };
+        let (behind, last) = map.walk(shot.clone(), &met, balance);
+        let closing = (last == BranchEnd::Closed).then(|| shot.clone());
         let (before, first) = match last {
             BranchEnd::Closed => (vec![], last),
-            _ => {
-                let backward = Shot { tangent: -shot.tangent, ..shot.clone() };
-                map.walk(&backward, &met, balance)
-            }
+            _ => map.walk(turned(shot), &met, balance),
         };
-        let before = before.into_iter().rev().map(|shot| Shot { tangent: -shot.tangent, ..shot });
-        let closing = (last == BranchEnd::Closed).then(|| shot.clone());
-        let shots = before.chain([shot]).chain(behind).chain(closing);
+        let before = before.into_iter().skip(1).rev().map(turned);
+        let shots = before.chain(behind).chain(closing);
         let nodes: Vec<Node> = shots.map(|shot| map.node(balance, &shot)).collect();
         (nodes.len() > 1).then_some(Path { nodes, ends: [first, last], mirrored: false })
     }
@@ -434,8 +416,8 @@ impl Asked<'_> {
             .map(|other| paths[other].clone())
             .collect();
         let met = |node: &Node| self.is_met(balance, &others, node);
-        let (shots, end) = map.walk(&first, &met, balance);
-        let mut outward = shots.iter().map(|shot| map.node(balance, shot));
+        let (shots, end) = map.walk(first, &met, balance);
+        let mut outward = shots.iter().skip(1).map(|shot| map.node(balance, shot));
         let path = &mut paths[index];
         path.ends[side] = end;
         match side {

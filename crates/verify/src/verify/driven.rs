@@ -32,7 +32,7 @@ use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
 use crate::method::numbers::symbol_values;
 use crate::numeric::ode::{Options, State, integrate};
-use crate::numeric::periodic::{PeriodicMotion, another_periodic_motion, periodic_motion};
+use crate::numeric::periodic::{PeriodicOrbit, periodic_motion};
 use crate::oscillator::Oscillator;
 use crate::solution::response::{SteadyMotions, SteadyState};
 use crate::solution::{Response, Solution};
@@ -162,7 +162,7 @@ impl<'a> Question<'a> {
         let is_held = |state: &SteadyState| {
             state.amplitude == 0.0 && self.truth.is_held(self.motion.equilibrium)
         };
-        let found: Vec<Option<PeriodicMotion>> = states
+        let found: Vec<Option<PeriodicOrbit>> = states
             .iter()
             .enumerate()
             .map(|(k, state)| match (is_held(state), k < count) {
@@ -171,7 +171,7 @@ impl<'a> Question<'a> {
                 (false, false) => self.truth.by_newton(&self.motion, *state, &[]),
             })
             .collect();
-        let judge = |state: &SteadyState, found: Option<&PeriodicMotion>| match is_held(state) {
+        let judge = |state: &SteadyState, found: Option<&PeriodicOrbit>| match is_held(state) {
             true => held(*state),
             false => self.truth.beside(&self.motion, *state, found),
         };
@@ -234,7 +234,7 @@ impl<'a> Question<'a> {
 }
 
 /// Where a true motion begins.
-fn start_of(found: &Option<PeriodicMotion>) -> Option<(f64, f64)> {
+fn start_of(found: &Option<PeriodicOrbit>) -> Option<(f64, f64)> {
     found.as_ref().map(|found| found.at(0.0))
 }
 
@@ -371,22 +371,22 @@ impl Truth {
         motion: &Formula,
         state: SteadyState,
         known: &[[f64; 2]],
-    ) -> Option<PeriodicMotion> {
+    ) -> Option<PeriodicOrbit> {
         let start = [motion.position(0.0, state), motion.velocity(0.0, state)];
         let size = motion.size(self.period, state);
         let size = if size > 0.0 { size } else { 1.0 };
         let acceleration = |t: f64, x: f64, v: f64| -self.force.call(&[t, x, v]);
-        another_periodic_motion(&acceleration, self.period, start, size, known).ok()
+        periodic_motion(&acceleration, self.period, start, size, known)
     }
 
     /// The true periodic motion near one by the formula; where a second one is near that is as
     /// stable as it, and the first is not, that one.
-    fn as_stable(&self, motion: &Formula, state: SteadyState) -> Option<PeriodicMotion> {
+    fn as_stable(&self, motion: &Formula, state: SteadyState) -> Option<PeriodicOrbit> {
         /// How far the amplitude of the second may be off.
         const NEAR: f64 = 0.3;
         let found = self.near(motion, state)?;
-        let is_alike = |found: &PeriodicMotion| found.attracts() == state.is_stable();
-        let is_near = |found: &PeriodicMotion| {
+        let is_alike = |found: &PeriodicOrbit| found.attracts() == state.is_stable();
+        let is_near = |found: &PeriodicOrbit| {
             (state.amplitude / found.harmonic(self.own) - 1.0).abs() <= NEAR
         };
         if is_alike(&found) || state.amplitude == 0.0 {
@@ -397,14 +397,14 @@ impl Truth {
     }
 
     /// The true periodic motion near one by the formula.
-    fn near(&self, motion: &Formula, state: SteadyState) -> Option<PeriodicMotion> {
+    fn near(&self, motion: &Formula, state: SteadyState) -> Option<PeriodicOrbit> {
         /// For how long a motion is left to settle.
         const PERIODS: f64 = 200.0;
         let start = [motion.position(0.0, state), motion.velocity(0.0, state)];
         let size = motion.size(self.period, state);
         let size = if size > 0.0 { size } else { 1.0 };
         let acceleration = |t: f64, x: f64, v: f64| -self.force.call(&[t, x, v]);
-        let found = periodic_motion(&acceleration, self.period, start, size);
+        let found = periodic_motion(&acceleration, self.period, start, size, &[]);
         // Near a fold the search may miss what a motion settles on all the same.
         let settled = || {
             let [x, v] = start;
@@ -412,14 +412,11 @@ impl Truth {
             let end = PERIODS * self.period;
             let path = integrate(acceleration, State { t: 0.0, x, v }, end, &[], &options).ok()?;
             let end = path.end();
-            periodic_motion(&acceleration, self.period, [end.x, end.v], size).ok()
+            periodic_motion(&acceleration, self.period, [end.x, end.v], size, &[])
         };
-        match found {
-            Ok(found) => Some(found),
-            // A motion that dry friction holds has no start to settle from.
-            Err(_) if state.is_stable() && state.amplitude > 0.0 => settled(),
-            Err(_) => None,
-        }
+        // A motion that dry friction holds has no start to settle from.
+        let settles = state.is_stable() && state.amplitude > 0.0;
+        found.or_else(|| settles.then(settled).flatten())
     }
 
     /// A true periodic motion near one by the formula that is none of the known ones.
@@ -428,7 +425,7 @@ impl Truth {
         motion: &Formula,
         state: SteadyState,
         known: &[[f64; 2]],
-    ) -> Option<PeriodicMotion> {
+    ) -> Option<PeriodicOrbit> {
         let start = [motion.position(0.0, state), motion.velocity(0.0, state)];
         let size = motion.size(self.period, state);
         let acceleration = |t: f64, x: f64, v: f64| -self.force.call(&[t, x, v]);
@@ -437,16 +434,14 @@ impl Truth {
         let half_way = |known: &[f64; 2]| [0, 1].map(|index| 0.5 * (start[index] + known[index]));
         let mut starts = std::iter::once(start).chain(known.iter().map(half_way));
         let search = || {
-            starts.find_map(|start| {
-                another_periodic_motion(&acceleration, self.period, start, size, known).ok()
-            })
+            starts.find_map(|start| periodic_motion(&acceleration, self.period, start, size, known))
         };
         (size > 0.0).then(search).flatten()
     }
 
     /// Where a true motion begins, and where it does a period of the drive later and so on, which
     /// are other starts of the same one.
-    fn starts(&self, found: &PeriodicMotion) -> Vec<[f64; 2]> {
+    fn starts(&self, found: &PeriodicOrbit) -> Vec<[f64; 2]> {
         let part = self.period / f64::from(self.drives);
         let start = |k: u32| found.at(part * f64::from(k)).into();
         (0..self.drives).map(start).collect()
@@ -456,7 +451,7 @@ impl Truth {
         &self,
         motion: &Formula,
         state: SteadyState,
-        found: Option<&PeriodicMotion>,
+        found: Option<&PeriodicOrbit>,
     ) -> JudgedState {
         let own = found.map(|found| found.harmonic(self.own));
         let error = own.map(|own| state.amplitude / own - 1.0);

@@ -1,0 +1,110 @@
+//! Branches of solutions, followed step by step: prediction along the tangent, correction by
+//! Newton's method, and lengths of the steps that fit the branch.
+//!
+//! ```text
+//! F(u) = 0,  n equations for n + 1 unknowns:      [F_u; t^T] du = -[F; 0]     Newton's method at right angles to the tangent t
+//!                                                 [F_u; t^T] t' = [0; 1]      the tangent that goes on the same way
+//! ```
+//!
+//! References: H. B. Keller, in *Applications of Bifurcation Theory*, Academic Press 1977; E. L.
+//! Allgower, K. Georg, *Introduction to Numerical Continuation Methods*, SIAM 2003, chapters 2 and
+//! 6. Folds are no obstacle, since no unknown is the one that grows along the branch.
+
+use nalgebra::allocator::Allocator;
+use nalgebra::{DMatrix, DVector, DefaultAllocator, Dim, Dyn, LU, OVector};
+
+/// What comes of a step.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step<Point, End> {
+    /// The next point, and the ratio of the next step to this one.
+    Taken(Point, f64),
+    /// Nothing: the next one is half as long.
+    TooLong,
+    /// The end of the branch, with its last point if that is not the one before.
+    Ended(Option<Point>, End),
+}
+
+/// The points of a branch from the first one on, and its end. `step` takes a step from the last of
+/// the points, of a length that it may shorten; `length` is the first, in the unit of the caller.
+///
+/// ```
+/// # use lindstedt_numeric as lindstedt;
+/// use lindstedt::numeric::continuation::{Step, bordered, follow, tangent};
+/// use lindstedt::numeric::ode::newton::{Progress, newton};
+/// use nalgebra::{DMatrix, DVector};
+///
+/// // Once around the circle x^2 + y^2 = 1.
+/// let vector = |x: f64, y: f64| DVector::from_vec(vec![x, y]);
+/// let slopes = |at: &DVector<f64>| DMatrix::from_row_slice(1, 2, &[2.0 * at[0], 2.0 * at[1]]);
+/// let step = |points: &[(DVector<f64>, DVector<f64>)], length: &mut f64| {
+///     let (here, along) = &points[points.len() - 1];
+///     let guess = here + along * *length;
+///     let equations = |at: &DVector<f64>| {
+///         let residual = vector(at.norm_squared() - 1.0, along.dot(&(at - &guess)));
+///         Some((residual, bordered(&slopes(at), along)))
+///     };
+///     let judged = |_: &DVector<f64>, step: &DVector<f64>| match step.norm() < 1e-12 {
+///         true => Progress::Settled,
+///         false => Progress::Going,
+///     };
+///     let found = newton(guess.clone(), 5, equations, judged);
+///     match found.and_then(|at| Some((tangent(&bordered(&slopes(&at), along).lu())?, at))) {
+///         None => Step::TooLong,
+///         Some((_, at)) if here[1] < 0.0 && at[1] >= 0.0 => Step::Ended(Some((at, along.clone())), "around"),
+///         Some((along, at)) => Step::Taken((at, along), 1.4),
+///     }
+/// };
+/// let (points, end) = follow((vector(1.0, 0.0), vector(0.0, 1.0)), 0.01, 0.3, step);
+/// assert!(end == "around" && points.iter().all(|(at, _)| (at.norm() - 1.0).abs() < 1e-12));
+/// ```
+pub fn follow<Point, End>(
+    first: Point,
+    mut length: f64,
+    longest: f64,
+    mut step: impl FnMut(&[Point], &mut f64) -> Step<Point, End>,
+) -> (Vec<Point>, End) {
+    let mut points = vec![first];
+    loop {
+        match step(&points, &mut length) {
+            Step::Taken(point, ratio) => {
+                points.push(point);
+                length = longest.min(ratio * length);
+            }
+            Step::TooLong => length *= 0.5,
+            Step::Ended(last, end) => {
+                points.extend(last);
+                return (points, end);
+            }
+        }
+    }
+}
+
+/// The Jacobian of n equations for n + 1 unknowns with this last row.
+pub fn bordered(jacobian: &DMatrix<f64>, row: &DVector<f64>) -> DMatrix<f64> {
+    let count = jacobian.nrows();
+    DMatrix::from_fn(count + 1, count + 1, |i, j| if i < count { jacobian[(i, j)] } else { row[j] })
+}
+
+/// The tangent of a branch, of any length, from the factors of the bordered Jacobian.
+pub fn tangent(factors: &LU<f64, Dyn, Dyn>) -> Option<DVector<f64>> {
+    let mut right = DVector::zeros(factors.lu_internal().nrows());
+    let last = right.len() - 1;
+    right[last] = 1.0;
+    factors.solve(&right)
+}
+
+/// Whether the way from one point to the next passes a third one in between.
+pub fn passes<D: Dim>(
+    target: &OVector<f64, D>,
+    from: &OVector<f64, D>,
+    to: &OVector<f64, D>,
+) -> bool
+where
+    DefaultAllocator: Allocator<D>,
+{
+    let (way, offset) = (to - from, target - from);
+    let length = way.norm();
+    let along = offset.dot(&way) / length;
+    let across = (offset.norm_squared() - along * along).max(0.0).sqrt();
+    (0.0..=length).contains(&along) && across < 0.1 * length
+}

@@ -24,6 +24,7 @@ mod axes;
 use axes::drawn;
 pub(super) use axes::power_of_ten;
 
+use crate::impact::MaterialsError;
 use crate::verify::comparison::Backbone;
 use kuva::prelude::{
     Figure, LabelConfig, Layout, LegendEntry, LegendPlot, Plot, SvgBackend, collect_legend_entries,
@@ -171,6 +172,9 @@ pub enum FigureError {
         "formula and truth must be sampled at the same times, but differ at sample {0}: sample both alike"
     )]
     DifferentTimes(usize),
+    /// A motion that is drawn cannot be followed.
+    #[error(transparent)]
+    Study(#[from] MaterialsError),
 }
 
 /// One motion of the impact oscillator: a column of the answer, or Runge-Kutta.

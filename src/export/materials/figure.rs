@@ -4,7 +4,7 @@
 use super::super::figure::{Curve, CurveStyle, FigureError, Guide, Panel, Scale, figure};
 use crate::decimal::{decimal, significant};
 use crate::impact::{
-    ContactDamping, HeldFixed, MaterialStudy, MaterialsError, Parameter, REST_FRACTION, Simulation,
+    ContactDamping, HeldFixed, MaterialStudy, Parameter, REST_FRACTION, Simulation,
 };
 
 /// Points of a motion, equally spaced in time.
@@ -26,18 +26,6 @@ const STYLES: [CurveStyle; 8] = [
 /// The times of the paper's Figure 4, s.
 const FIGURE_4: [f64; 2] = [1.0, 2.5];
 
-/// Why there is no picture.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum MaterialsFigureError {
-    /// The drawing.
-    #[error(transparent)]
-    Figure(#[from] FigureError),
-    /// A motion that is drawn.
-    #[error(transparent)]
-    Study(#[from] MaterialsError),
-}
-
 /// Points of one curve.
 type Points = Vec<(f64, f64)>;
 
@@ -57,7 +45,7 @@ type Points = Vec<(f64, f64)>;
 /// assert!(figure::materials(&study)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn materials(study: &MaterialStudy) -> Result<String, MaterialsFigureError> {
+pub fn materials(study: &MaterialStudy) -> Result<String, FigureError> {
     let drawn = study.rows.len().min(STYLES.len());
     let second = study.units.time();
     let window = FIGURE_4.map(|time| time / second);
@@ -121,7 +109,7 @@ pub fn materials(study: &MaterialStudy) -> Result<String, MaterialsFigureError> 
         }
     });
     let panels: Vec<Panel> = swings.chain(decays).collect();
-    Ok(figure(&panels, &caption(study, contrast, drawn))?)
+    figure(&panels, &caption(study, contrast, drawn))
 }
 
 /// When the last of them rests; the end of the run where one does not.

@@ -735,7 +735,7 @@ impl Oscillator {
         {
             return Ok(Some(degree));
         }
-        let mut names = Names::new(self);
+        let mut names = NamedConstants::new(self);
         let polynomial = self.force.to_polynomial(&mut |constant| names.of(constant, &own))?;
         let range = polynomial.and_then(|polynomial| polynomial.exponent_range(self.coordinate));
         Ok(range.filter(|range| range.0 >= 0).and_then(|range| u32::try_from(range.1).ok()))
@@ -838,7 +838,7 @@ impl Oscillator {
                 false => OscillatorError::NoEquilibrium(at_rest.to_string()),
             });
         }
-        let mut names = Names::new(self);
+        let mut names = NamedConstants::new(self);
         let mut linear = Polynomial::zero();
         let mut terms = Vec::new();
         for (power, part) in parts.iter().enumerate().skip(first) {
@@ -916,12 +916,12 @@ fn at_rest(expression: &Expr, coordinate: Symbol) -> Result<Expr, ExprError> {
 }
 
 /// Names for constants that are no polynomials.
-struct Names {
+struct NamedConstants {
     taken: Vec<Symbol>,
     definitions: Vec<Definition>,
 }
 
-impl Names {
+impl NamedConstants {
     fn new(oscillator: &Oscillator) -> Self {
         Self { taken: oscillator.names(), definitions: vec![] }
     }

@@ -22,6 +22,7 @@
 #[cfg(feature = "plot")]
 mod drawing;
 
+use crate::impact::MaterialsError;
 use crate::verify::comparison::Backbone;
 #[cfg(feature = "plot")]
 use drawing::arranged;
@@ -175,6 +176,9 @@ pub enum FigureError {
     /// The library was built without the feature `plot`.
     #[error("this build draws no pictures: build it with the feature `plot`")]
     LeftOut,
+    /// A motion that is drawn cannot be followed.
+    #[error(transparent)]
+    Study(#[from] MaterialsError),
 }
 
 /// One motion of the impact oscillator: a column of the answer, or Runge-Kutta.

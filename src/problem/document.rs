@@ -61,7 +61,7 @@ pub struct Problem {
     pub limits: LimitsSection,
     /// How it searches.
     pub genetic: GeneticSection,
-    /// The keys that are given, as [`KEYS`](super::KEYS) names them: what is absent has its
+    /// The keys that are given, as [`keys`](super::keys) names them: what is absent has its
     /// default.
     #[serde(skip)]
     pub given: Vec<String>,

@@ -45,7 +45,7 @@ pub use document::{
     Order, Pendulum, PrimarySection, Problem, Range, Run, SphereSection,
 };
 pub use formula::Formula;
-pub use keys::{KEYS, Reader};
+pub use keys::{Reader, keys};
 pub(crate) use mistakes::{at_place, in_words};
 pub use primary::PrimaryProblem;
 pub use simulate::Simulate;

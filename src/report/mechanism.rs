@@ -8,7 +8,9 @@ use crate::audit::paper::Finding;
 use crate::decimal::decimal;
 use crate::derivation::Line;
 use crate::expr::{Expr, Function};
-use crate::mechanics::{Drive, Groups, MechanismStudy, Mode, NoGroups, NoModes, Place, RestStudy};
+use crate::mechanics::{
+    Drive, Groups, MechanicsError, MechanismStudy, Mode, NoModes, Place, RestStudy,
+};
 use crate::symbol::Symbol;
 
 /// The document of a study of a mechanism.
@@ -202,7 +204,7 @@ fn checked<'a>() -> Block<'a> {
     )
 }
 
-fn no_groups(error: &NoGroups) -> String {
+fn no_groups(error: &MechanicsError) -> String {
     format!("no dimensionless groups: {error}")
 }
 

@@ -104,7 +104,7 @@ pub struct PerturbedForce {
 pub enum OscillatorError {
     /// The text is not an equation.
     #[error(transparent)]
-    Parse(#[from] ParseError),
+    Parse(Box<ParseError>),
     /// A step of algebra failed.
     #[error("{0}")]
     Expression(#[from] ExprError),
@@ -177,8 +177,8 @@ pub enum OscillatorError {
         coordinate: Symbol,
         /// `<` or `>`.
         side: char,
-        /// The term with the root.
-        term: Quotation,
+        /// The term with the root, as it was typed where that is known.
+        term: String,
         /// The force to write instead of the root, for a force that pulls back on both sides.
         odd: String,
         /// For one that is zero where the root has no value, where another term pulls back there.
@@ -262,15 +262,20 @@ fn list(symbols: &[Symbol]) -> String {
     symbols.iter().map(|symbol| symbol.name()).collect::<Vec<_>>().join(", ")
 }
 
+impl From<ParseError> for OscillatorError {
+    fn from(error: ParseError) -> Self {
+        Self::Parse(Box::new(error))
+    }
+}
+
 impl OscillatorError {
     /// The term that it names, where it names one of the equation.
     pub fn term(&self) -> Option<&str> {
         match self {
             Self::NotSmall { term, .. }
-            | Self::OneSided { term, .. }
             | Self::NotPolynomial(term)
             | Self::Taylor(TaylorError::NotAnalytic { term, .. }) => Some(term.words()),
-            Self::NonlinearAcceleration(words) => Some(words),
+            Self::OneSided { term: words, .. } | Self::NonlinearAcceleration(words) => Some(words),
             _ => None,
         }
     }
@@ -686,7 +691,7 @@ impl Oscillator {
         {
             return Ok(Some(degree));
         }
-        let mut names = Names::new(self);
+        let mut names = NamedConstants::new(self);
         let polynomial = self.force.to_polynomial(&mut |constant| names.of(constant, &own))?;
         let range = polynomial.and_then(|polynomial| polynomial.exponent_range(self.coordinate));
         Ok(range.filter(|range| range.0 >= 0).and_then(|range| u32::try_from(range.1).ok()))
@@ -789,7 +794,7 @@ impl Oscillator {
                 false => OscillatorError::NoEquilibrium(at_rest.to_string()),
             });
         }
-        let mut names = Names::new(self);
+        let mut names = NamedConstants::new(self);
         let mut linear = Polynomial::zero();
         let mut terms = Vec::new();
         for (power, part) in parts.iter().enumerate().skip(first) {
@@ -867,12 +872,12 @@ fn at_rest(expression: &Expr, coordinate: Symbol) -> Result<Expr, ExprError> {
 }
 
 /// Names for constants that are no polynomials.
-struct Names {
+struct NamedConstants {
     taken: Vec<Symbol>,
     definitions: Vec<Definition>,
 }
 
-impl Names {
+impl NamedConstants {
     fn new(oscillator: &Oscillator) -> Self {
         Self { taken: oscillator.names(), definitions: vec![] }
     }

@@ -7,8 +7,8 @@
 use std::collections::BTreeMap;
 
 use crate::expr::{Expr, ExprError, Function, Node};
-use crate::mechanics::dimension::{Dimension, UnitError, check, dimension};
-use crate::mechanics::{Equations, Groups, MechanicsError, Mechanism, MechanismQuestion, NoGroups};
+use crate::mechanics::dimension::{Dimension, check, dimension};
+use crate::mechanics::{Equations, Groups, MechanicsError, Mechanism, MechanismQuestion};
 use crate::symbol::Symbol;
 
 /// An equation of the paper.
@@ -89,28 +89,10 @@ pub fn mechanism() -> MechanismQuestion {
     MechanismQuestion { mechanism: pendulum(), units: Some(units()), values: BTreeMap::new() }
 }
 
-/// The reason why the paper's equations could not be compared.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum PaperError {
-    /// The mechanism has no equations.
-    #[error(transparent)]
-    Mechanics(#[from] MechanicsError),
-    /// The mechanism has no groups.
-    #[error(transparent)]
-    Groups(#[from] NoGroups),
-    /// A step of algebra failed.
-    #[error(transparent)]
-    Expression(#[from] ExprError),
-    /// A letter without a unit.
-    #[error(transparent)]
-    Unit(#[from] UnitError),
-}
-
 /// The paper's equations (1) to (8), each beside what is derived.
 ///
 /// # Errors
-/// [`PaperError`] is never met for the mechanism of [`pendulum`].
+/// [`MechanicsError`] is never met for the mechanism of [`pendulum`].
 ///
 /// ```
 /// use lindstedt::audit::paper::findings;
@@ -120,7 +102,7 @@ pub enum PaperError {
 /// assert!(findings[0].words.contains("L*m*x'*sin(x)/2"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn findings() -> Result<Vec<Finding>, PaperError> {
+pub fn findings() -> Result<Vec<Finding>, MechanicsError> {
     let mechanism = pendulum();
     let units = units();
     let all = mechanism.all_units(&units);
@@ -173,7 +155,7 @@ fn kinetic(
     mechanism: &Mechanism,
     energy: &Dimension,
     all: &BTreeMap<Symbol, Dimension>,
-) -> Result<Finding, PaperError> {
+) -> Result<Finding, MechanicsError> {
     let printed: Expr = PRINTED_KINETIC.parse().unwrap_or_else(|_| Expr::zero());
     let refused = check(&printed, energy, all, "kinetic energy");
     let squared = check(&mechanism.kinetic, energy, all, "kinetic energy").is_ok();
@@ -195,7 +177,7 @@ fn kinetic(
 fn equation_of_motion(
     equations: &Equations,
     all: &BTreeMap<Symbol, Dimension>,
-) -> Result<Finding, PaperError> {
+) -> Result<Finding, MechanicsError> {
     let swing: Expr = PRINTED_SWING.parse().unwrap_or_else(|_| Expr::zero());
     let own: Expr = equations.left[0]
         .expand()?
@@ -231,7 +213,7 @@ fn equation_of_motion(
 }
 
 /// Equation (7): the equation in its groups, for a contact of small depth.
-fn scaled(groups: &Groups) -> Result<Finding, PaperError> {
+fn scaled(groups: &Groups) -> Result<Finding, MechanicsError> {
     let printed: Expr = PRINTED_SCALED.parse().unwrap_or_else(|_| Expr::zero());
     let depth: Expr = "x - xc".parse().unwrap_or_else(|_| Expr::zero());
     let own = for_small(&groups.left[0], &depth)?.expand()?;
@@ -252,7 +234,7 @@ fn scaled(groups: &Groups) -> Result<Finding, PaperError> {
 }
 
 /// Equation (8): the two groups that are printed.
-fn definitions(groups: &Groups) -> Result<Finding, PaperError> {
+fn definitions(groups: &Groups) -> Result<Finding, MechanicsError> {
     let mut differing = Vec::new();
     for (name, printed) in PRINTED_GROUPS {
         let printed: Expr = printed.parse().unwrap_or_else(|_| Expr::zero());

@@ -9,5 +9,5 @@ mod equations;
 mod friction;
 
 pub use contact_time::{CONTACT_TIME, is_reproduced, over_contact_time};
-pub use equations::{Finding, PaperError, findings, mechanism, pendulum, units};
+pub use equations::{Finding, findings, mechanism, pendulum, units};
 pub use friction::{Entry, PiReading, PrintedSpeed, SPEEDS, Table, TableRow};

@@ -72,31 +72,20 @@ use crate::impact::Phase;
 use crate::solution::Solution;
 use schema::check_kind;
 
-/// Why a document cannot be read.
+/// Why a document or a record cannot be read: a key that is missing or holds what it never holds, a
+/// text that is none, another search.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum JsonError {
-    /// A key is missing, or holds what it never holds.
-    #[error("{0}")]
-    Shape(String),
-    /// A text or a number is none that could stand there.
-    #[error("`{key}` should hold {expected}")]
-    Unexpected {
-        /// The key.
-        key: String,
-        /// What belongs there.
-        expected: &'static str,
-    },
-}
+#[error("{0}")]
+pub struct JsonError(String);
 
 impl From<serde_json::Error> for JsonError {
     fn from(error: serde_json::Error) -> Self {
-        Self::Shape(error.to_string())
+        Self(error.to_string())
     }
 }
 
 fn unexpected<T>(key: &str, expected: &'static str) -> Result<T, JsonError> {
-    Err(JsonError::Unexpected { key: key.to_owned(), expected })
+    Err(JsonError(format!("`{key}` should hold {expected}")))
 }
 
 /// Writes a document as text of several lines, with a line end.

@@ -10,9 +10,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::Kind;
 use super::number::{Map, finite, text};
 use super::simulation::Barrier;
+use super::{JsonError, Kind};
 use crate::genetic::{Coding, Crossover, Mutation, Penalty, StallTest, Stop};
 use crate::impact::{self, ContactDamping, Friction, Parameter, REST_FRACTION, SpeedUnit};
 use crate::optimize::{self, Found, Objective, Question, Role, SearchRun, Study, WITHIN};
@@ -696,29 +696,11 @@ struct Head {
     asked: Value,
 }
 
-/// Why a record cannot be taken up.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RecordError {
-    /// No record at all.
-    #[error("it is no record of `lindstedt optimize`: its first line says what was asked")]
-    NoRecord,
-    /// That of another search.
-    #[error("it is the record of another search: `{0}` differs; only `runs` may")]
-    Other(String),
-    /// A line in between that is no run.
-    #[error("line {0} is no run of this search")]
-    Line(usize),
-    /// Numbers that JSON has not.
-    #[error("it cannot be written: {0}")]
-    Unwritable(String),
-}
-
 /// The first line of the record of a search, with its line end.
 ///
 /// # Errors
 /// What the writer says.
-pub fn record_head(question: &Question) -> Result<String, RecordError> {
+pub fn record_head(question: &Question) -> Result<String, JsonError> {
     let head = Head { schema: RECORD.to_owned(), asked: asked(question)? };
     line(&head)
 }
@@ -727,25 +709,33 @@ pub fn record_head(question: &Question) -> Result<String, RecordError> {
 ///
 /// # Errors
 /// What the writer says.
-pub fn record_line(run: &SearchRun) -> Result<String, RecordError> {
+pub fn record_line(run: &SearchRun) -> Result<String, JsonError> {
     line(&Run::of(run))
 }
 
-fn line(of: &impl Serialize) -> Result<String, RecordError> {
-    let text =
-        serde_json::to_string(of).map_err(|error| RecordError::Unwritable(error.to_string()))?;
+fn unwritable(error: serde_json::Error) -> JsonError {
+    JsonError(format!("it cannot be written: {error}"))
+}
+
+fn no_record() -> JsonError {
+    JsonError(
+        "it is no record of `lindstedt optimize`: its first line says what was asked".to_owned(),
+    )
+}
+
+fn line(of: &impl Serialize) -> Result<String, JsonError> {
+    let text = serde_json::to_string(of).map_err(unwritable)?;
     Ok(text + "\n")
 }
 
-fn asked(question: &Question) -> Result<Value, RecordError> {
-    serde_json::to_value(Asked::of(question))
-        .map_err(|error| RecordError::Unwritable(error.to_string()))
+fn asked(question: &Question) -> Result<Value, JsonError> {
+    serde_json::to_value(Asked::of(question)).map_err(unwritable)
 }
 
 /// The runs of a record of the same search, and how many bytes of it are whole lines.
 ///
 /// # Errors
-/// [`RecordError`]: a text that is no record, or that of another search.
+/// [`JsonError`]: a text that is no record, or that of another search.
 ///
 /// ```
 /// use lindstedt::export::json::optimization::{read_record, record_head, record_line};
@@ -759,24 +749,23 @@ fn asked(question: &Question) -> Result<Value, RecordError> {
 /// assert_eq!(optimize(question, runs, &Watch::default())?, study);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn read_record(
-    text: &str,
-    question: &Question,
-) -> Result<(Vec<SearchRun>, usize), RecordError> {
+pub fn read_record(text: &str, question: &Question) -> Result<(Vec<SearchRun>, usize), JsonError> {
     let whole = text.rfind('\n').map_or(0, |place| place + 1);
     let mut lines = text[..whole].lines();
-    let first = lines.next().ok_or(RecordError::NoRecord)?;
-    let head: Head = serde_json::from_str(first).map_err(|_| RecordError::NoRecord)?;
+    let first = lines.next().ok_or_else(no_record)?;
+    let head: Head = serde_json::from_str(first).map_err(|_| no_record())?;
     if head.schema != RECORD {
-        return Err(RecordError::NoRecord);
+        return Err(no_record());
     }
     if let Some(key) = difference(&head.asked, &asked(question)?) {
-        return Err(RecordError::Other(key));
+        return Err(JsonError(format!(
+            "it is the record of another search: `{key}` differs; only `runs` may"
+        )));
     }
     let mut runs: Vec<SearchRun> = Vec::new();
     let length = question.variables.len() + usize::from(question.materials.len() > 1);
     for (index, line) in lines.enumerate() {
-        let wrong = || RecordError::Line(index + 2);
+        let wrong = || JsonError(format!("line {} is no run of this search", index + 2));
         let run: Run = serde_json::from_str(line).map_err(|_| wrong())?;
         let run = run.read().ok_or_else(wrong)?;
         let fits = |found: &optimize::Found| {

@@ -6,7 +6,7 @@ use crate::export::figure::{
     Curve, CurveStyle, FigureError, Guide, Panel, Points, Scale, curve, figure, panel,
 };
 use crate::impact::{
-    ContactDamping, HeldFixed, MaterialStudy, MaterialsError, Parameter, REST_FRACTION, Simulation,
+    ContactDamping, HeldFixed, MaterialStudy, Parameter, REST_FRACTION, Simulation,
 };
 
 /// Points of a motion, equally spaced in time.
@@ -28,17 +28,6 @@ const STYLES: [CurveStyle; 8] = [
 /// The times of the paper's Figure 4, s.
 const FIGURE_4: [f64; 2] = [1.0, 2.5];
 
-/// Why there is no picture.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum MaterialsFigureError {
-    /// The drawing.
-    #[error(transparent)]
-    Figure(#[from] FigureError),
-    /// A motion that is drawn.
-    #[error(transparent)]
-    Study(#[from] MaterialsError),
-}
 
 /// The swing against every barrier from 1 to 2.5 s, as in the paper's Figure 4, and the decay of
 /// its amplitude: as asked for, and beside it with the contact damping held fixed in the form under
@@ -56,7 +45,7 @@ pub enum MaterialsFigureError {
 /// assert!(figure::materials(&study)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn materials(study: &MaterialStudy) -> Result<String, MaterialsFigureError> {
+pub fn materials(study: &MaterialStudy) -> Result<String, FigureError> {
     let drawn = study.rows.len().min(STYLES.len());
     let second = study.units.time();
     let window = FIGURE_4.map(|time| time / second);
@@ -112,7 +101,7 @@ pub fn materials(study: &MaterialStudy) -> Result<String, MaterialsFigureError> 
         Panel { y_scale: Scale::Logarithmic, ..panel(title, labels, curves, guides) }
     });
     let panels: Vec<Panel> = swings.chain(decays).collect();
-    Ok(figure(&panels, &caption(study, contrast, drawn))?)
+    figure(&panels, &caption(study, contrast, drawn))
 }
 
 /// When the last of them rests; the end of the run where one does not.

@@ -1,6 +1,6 @@
 //! The keys of files.
 
-use lindstedt::problem::{KEYS, Reader};
+use lindstedt::problem::{Reader, keys};
 
 use super::{is_refused, of_file, run};
 
@@ -56,8 +56,8 @@ const LINES: [(&str, &str, &str); 95] = [
     ("[contact] gamma", "[contact]\ngamma = 1e5", ""),
     ("[contact] force", "[contact]\nforce = \"1e6*d^2\"", ""),
     ("[contact] mu", "[contact]\nmu = 1e5", ""),
-    ("[contact] mu_over_gamma", "[contact]\nmu_over_gamma = 0.25", ""),
     ("[contact] lambda", "[contact]\nlambda = 0.25", ""),
+    ("[contact] mu_over_gamma", "[contact]\nmu_over_gamma = 0.25", ""),
     ("[contact] restitution", "[contact]\nrestitution = 0.75", ""),
     ("[contact] at_speed", "at_speed = 0.25", "[contact]\nrestitution = 0.75\n"),
     ("[contact] damping", "[contact]\ndamping = 25", ""),
@@ -138,11 +138,11 @@ const LINES: [(&str, &str, &str); 95] = [
 
 #[test]
 fn every_key_of_a_file_changes_the_answer_or_is_refused_by_name() {
-    let known: Vec<&str> = KEYS.iter().map(|(key, _)| *key).collect();
+    let known: Vec<String> = keys().map(|(key, _)| key).collect();
     assert_eq!(known, LINES.map(|(key, ..)| key), "a line for every key");
     for (key, line, beside) in LINES {
         let (_, word) = key.split_once("] ").unwrap_or(("", key));
-        let (_, readers) = KEYS.iter().find(|(known, _)| *known == key).expect("a key");
+        let (_, readers) = keys().find(|(known, _)| known == key).expect("a key");
         for (command, reader) in [
             ("derive", Reader::Derive),
             ("compare", Reader::Compare),
@@ -278,7 +278,7 @@ fn every_key_of_a_response_changes_it_or_is_refused_by_name() {
 #[test]
 fn every_key_of_a_motion_of_ones_own_changes_it_or_is_refused_by_name() {
     for (key, line, beside) in LINES {
-        let (_, readers) = KEYS.iter().find(|(known, _)| *known == key).expect("a key");
+        let (_, readers) = keys().find(|(known, _)| known == key).expect("a key");
         let of_mechanism = key.starts_with("[lagrangian]") || key == "[units]";
         let (with, without) = match of_mechanism {
             true => (format!("{beside}{line}\n"), beside.to_owned()),

@@ -16,9 +16,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use num_traits::{One, Signed, Zero};
-use thiserror::Error;
 
-use super::{Combination, Dimension, Equations, Mechanism};
+use super::{Combination, Dimension, Equations, MechanicsError, Mechanism};
 use crate::exact::Rational;
 use crate::expr::{Expr, ExprError, Function, Node, fresh};
 use crate::symbol::Symbol;
@@ -60,23 +59,11 @@ pub struct Group {
     pub dimension: Dimension,
 }
 
-/// Why there are no groups.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum NoGroups {
-    /// Nothing among the parameters and the sizes of the motion has the dimension of a time.
-    #[error("no product of powers of {0} is a time: the motion has no time of its own")]
-    NoTime(String),
-    /// A step of algebra failed.
-    #[error(transparent)]
-    Expression(#[from] ExprError),
-}
-
 impl Groups {
     /// Those of a mechanism whose units have passed their check.
     ///
     /// # Errors
-    /// [`NoGroups`].
+    /// Nothing that has the dimension of a time; a step of algebra.
     ///
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
@@ -95,7 +82,7 @@ impl Groups {
         mechanism: &Mechanism,
         equations: &Equations,
         units: &BTreeMap<Symbol, Dimension>,
-    ) -> Result<Self, NoGroups> {
+    ) -> Result<Self, MechanicsError> {
         // In sums that enter as one, each with the unit of its terms.
         let combined = |expressions: &[Expr]| -> Result<Vec<Expr>, ExprError> {
             expressions.iter().map(|expression| equations.combined(expression)).collect()
@@ -127,7 +114,7 @@ impl Groups {
             }
         }
         let time = basis.express(&Dimension::of([0, 0, 1]))?;
-        let time = time.ok_or_else(|| NoGroups::NoTime(names(&parameters)))?;
+        let time = time.ok_or_else(|| MechanicsError::NoTime(names(&parameters)))?;
         let mut lengths = Vec::new();
         for coordinate in &equations.coordinates {
             lengths.extend(basis.express(&dimension_of(*coordinate))?);

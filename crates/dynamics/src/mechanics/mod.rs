@@ -42,11 +42,11 @@ use crate::symbol::Symbol;
 pub use combination::Combination;
 pub use dimension::{Dimension, UnitError};
 pub use equilibrium::{Drive, Place, Rest, equilibria};
-pub use groups::{Group, Groups, NoGroups};
+pub use groups::{Group, Groups};
 pub use lagrange::Equations;
 pub use modes::{Mode, Modes, NoModes};
 pub use rates::Rates;
-pub use study::{MechanismQuestion, MechanismStudy, RestStudy, StudyError, study};
+pub use study::{MechanismQuestion, MechanismStudy, RestStudy, study};
 
 /// The most coordinates that a mechanism may have: its matrices are written out as formulas.
 pub const MOST_COORDINATES: usize = 8;
@@ -66,7 +66,7 @@ pub struct Mechanism {
     pub forces: BTreeMap<Symbol, Expr>,
 }
 
-/// Why there are no equations of motion.
+/// Why there are no equations of motion, no groups or no study.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MechanicsError {
@@ -126,6 +126,25 @@ pub enum MechanicsError {
     /// A force on something that is no coordinate.
     #[error("there is a force on `{0}`, which is no coordinate")]
     ForceOnNothing(Symbol),
+    /// A term of a wrong unit.
+    #[error(transparent)]
+    Unit(#[from] UnitError),
+    /// Nothing among the parameters and the sizes of the motion has the dimension of a time.
+    #[error("no product of powers of {0} is a time: the motion has no time of its own")]
+    NoTime(String),
+    /// A value for a name that does not occur.
+    #[error("there is a value for `{0}`, which is no parameter of the mechanism")]
+    UnknownValue(Symbol),
+}
+
+impl MechanicsError {
+    /// What to write instead, where it is known.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Unit(error) => error.help(),
+            _ => None,
+        }
+    }
 }
 
 impl Mechanism {

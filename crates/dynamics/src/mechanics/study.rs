@@ -2,12 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use thiserror::Error;
-
 use super::modes::Jacobians;
 use super::{
-    Dimension, Drive, Equations, Groups, MechanicsError, Mechanism, Mode, Modes, NoGroups, NoModes,
-    Rest, UnitError, equilibria,
+    Dimension, Drive, Equations, Groups, MechanicsError, Mechanism, Mode, Modes, NoModes, Rest,
+    equilibria,
 };
 use crate::symbol::Symbol;
 
@@ -33,7 +31,7 @@ pub struct MechanismStudy {
     /// Places of rest, and how it swings there.
     pub rests: Vec<RestStudy>,
     /// The dimensionless form; nothing without units.
-    pub groups: Option<Result<Groups, NoGroups>>,
+    pub groups: Option<Result<Groups, MechanicsError>>,
 }
 
 /// A place of rest.
@@ -50,35 +48,10 @@ pub struct RestStudy {
     pub numbers: Option<Result<Vec<Mode>, NoModes>>,
 }
 
-/// Why there is no study.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum StudyError {
-    /// No equations of motion.
-    #[error(transparent)]
-    Mechanics(#[from] MechanicsError),
-    /// A term of a wrong unit.
-    #[error(transparent)]
-    Unit(#[from] UnitError),
-    /// A value for a name that does not occur.
-    #[error("there is a value for `{0}`, which is no parameter of the mechanism")]
-    UnknownValue(Symbol),
-}
-
-impl StudyError {
-    /// What to write instead, where it is known.
-    pub fn help(&self) -> Option<String> {
-        match self {
-            Self::Unit(error) => error.help(),
-            _ => None,
-        }
-    }
-}
-
 /// Derives, checks and linearises.
 ///
 /// # Errors
-/// [`StudyError`] names the term or the name.
+/// [`MechanicsError`] names the term or the name.
 ///
 /// ```
 /// # use lindstedt_dynamics as lindstedt;
@@ -98,12 +71,12 @@ impl StudyError {
 /// assert_eq!(names, ["zeta"]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, StudyError> {
+pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, MechanicsError> {
     let mechanism = &question.mechanism;
     let equations = mechanism.equations()?;
     let parameters = mechanism.parameters();
     if let Some(unknown) = question.values.keys().find(|name| !parameters.contains(name)) {
-        return Err(StudyError::UnknownValue(*unknown));
+        return Err(MechanicsError::UnknownValue(*unknown));
     }
     if let Some(units) = &question.units {
         mechanism.check_units(units)?;

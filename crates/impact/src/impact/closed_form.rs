@@ -16,11 +16,12 @@
 use super::collision::losses;
 use super::contact::{ContactLaw, ContactRow};
 use super::derived::{DerivedContact, Flight};
+use super::error::ImpactError;
 use super::form::Form;
 use super::judge::{Deviation, TrueImpact};
-use super::phases::{ContactSpeed, PhasesError, Swing, ThreePhases, three_phases};
-use super::setup::{Letters, Setup, SetupError};
-use super::trial::{Attempt, ImpactError, Trial};
+use super::phases::{ContactSpeed, Swing, ThreePhases, three_phases};
+use super::setup::{Letters, Setup};
+use super::trial::{Attempt, Trial};
 use crate::method::{self, is_odd};
 use crate::solution::{Method, Solution};
 use crate::verify::Verdict;
@@ -124,7 +125,12 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
                 let alone = tried.iter().all(|attempt| attempt.method == Method::LindstedtPoincare);
                 if derived.is_none()
                     && alone
-                    && matches!(error, ImpactError::Law(_) | ImpactError::Phases(_))
+                    && !matches!(
+                        error,
+                        ImpactError::LosesEnergy
+                            | ImpactError::NotOdd { .. }
+                            | ImpactError::Expression(_)
+                    )
                 {
                     return Err(error);
                 }
@@ -180,13 +186,11 @@ const PAPERS_ORDER: u32 = 2;
 pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhases)>), ImpactError> {
     let Trial { setup, equations, collision, .. } = trial;
     if setup.loss.is_some() {
-        return Err(SetupError::LosesEnergy.into());
+        return Err(ImpactError::LosesEnergy);
     }
     let swing = &equations.swing;
-    if equations.equilibrium != 0.0
-        || !is_odd(&swing.force, swing.coordinate).map_err(SetupError::from)?
-    {
-        return Err(SetupError::NotOdd { force: swing.force.to_string() }.into());
+    if equations.equilibrium != 0.0 || !is_odd(&swing.force, swing.coordinate)? {
+        return Err(ImpactError::NotOdd { force: swing.force.to_string() });
     }
     let order = match setup.method {
         None | Some(Method::LindstedtPoincare) => setup.order.unwrap_or(PAPERS_ORDER),
@@ -221,7 +225,7 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
     let side = setup.side.sign();
     let phases = readings
         .map(|(reading, speed)| Ok((reading, three_phases(&swing, speed)?.moved(side, 0.0))));
-    Ok((law, phases.into_iter().collect::<Result<_, PhasesError>>()?))
+    Ok((law, phases.into_iter().collect::<Result<_, ImpactError>>()?))
 }
 
 /// One number of an impact: by Runge-Kutta and by every column.

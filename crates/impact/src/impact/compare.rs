@@ -4,10 +4,11 @@
 //! its lowest order that passes, else at its best, and the reason of each that has no row.
 
 use super::closed_form::{Reading, paper};
+use super::error::ImpactError;
 use super::judge::TrueImpact;
 use super::phases::ThreePhases;
 use super::setup::{Letters, Setup};
-use super::trial::{ImpactError, Trial, worst};
+use super::trial::{Trial, worst};
 use crate::solution::{Degrees, Method};
 use crate::verify::Verdict;
 

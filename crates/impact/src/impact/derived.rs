@@ -21,78 +21,19 @@ use std::f64::consts::PI;
 
 use num_complex::Complex64;
 
-use super::contact::{ContactError, ContactMotion, HuntCrossley, SineSeries};
+use super::contact::{ContactMotion, HuntCrossley, SineSeries};
+use super::error::ImpactError;
 use super::form::Form;
 use super::phases::{Phase, ThreePhases};
 use super::setup::Equations;
 use crate::exact::{Doubles, from_f64};
-use crate::expr::{Equation, Expr, ExprError};
-use crate::method::motion::{Motion, NoMotion};
-use crate::method::{self, Refusal, is_odd};
+use crate::expr::{Equation, Expr};
+use crate::method::motion::Motion;
+use crate::method::{self, is_odd};
 use crate::numeric::ode::root::find_root;
-use crate::oscillator::{Oscillator, OscillatorError};
+use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Method, Solution};
-use crate::values::ValueError;
-
-/// Why a method gives no flight.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum NoFlight {
-    /// The method refuses.
-    #[error(transparent)]
-    Refusal(#[from] Refusal),
-    /// It has no motion at these numbers.
-    #[error(transparent)]
-    Motion(#[from] NoMotion),
-    /// A value that is none.
-    #[error(transparent)]
-    Value(#[from] ValueError),
-    /// The equation could not be turned round.
-    #[error(transparent)]
-    Expression(#[from] ExprError),
-    /// The equation could not be read.
-    #[error(transparent)]
-    Oscillator(#[from] OscillatorError),
-    /// The contact could not be computed.
-    #[error(transparent)]
-    Contact(#[from] ContactError),
-    /// No amplitude of the law belongs to the release.
-    #[error("no amplitude of the law turns round at the release")]
-    Amplitude,
-    /// No amplitude of the law belongs to the way back.
-    #[error("no amplitude of the law leaves the barrier with the speed {0}")]
-    WayBack(f64),
-    /// The derived motion does not touch the barrier.
-    #[error("the derived motion does not reach the barrier: it swings from {from} to {to}")]
-    NeverReaches {
-        /// Where it starts.
-        from: f64,
-        /// Where it ends.
-        to: f64,
-    },
-    /// The derived motion does not start at the release.
-    #[error(
-        "the derived motion starts at {start}, not at the release {release}: it has too few harmonics there, as next to a separatrix, \
-         where a motion all but stops; lower the amplitude, or follow it by `lindstedt simulate`"
-    )]
-    Start {
-        /// Where it starts.
-        start: f64,
-        /// Where it should.
-        release: f64,
-    },
-}
-
-impl NoFlight {
-    /// The message without the name of the method at its head, for lists that name it already.
-    pub fn of(&self, method: Method) -> String {
-        match self {
-            Self::Refusal(refusal) => refusal.without_title(method),
-            other => other.to_string(),
-        }
-    }
-}
 
 /// The derived swing, x(t) = sign X(t) with X released from its upper turning point.
 #[derive(Clone, Debug)]
@@ -116,12 +57,12 @@ impl Flight {
     /// values.
     ///
     /// # Errors
-    /// [`NoFlight`].
+    /// [`ImpactError`].
     pub(super) fn derive(
         equations: &Equations,
         [release, sign]: [f64; 2],
         options: &method::Options,
-    ) -> Result<Self, NoFlight> {
+    ) -> Result<Self, ImpactError> {
         let swing = &equations.swing;
         let turned = if sign < 0.0 { turned(swing)? } else { None };
         // A swing between barriers is free: what drives it is refused by the method that knows free
@@ -141,7 +82,7 @@ impl Flight {
                     motion_at(amplitude).map_or(f64::NAN, |motion| motion.at(0.0) - from)
                 };
                 find_root(short, 0.25 * distance, 2.0 * distance)
-                    .map_err(|_| NoFlight::Amplitude)?
+                    .map_err(|_| ImpactError::NoAmplitude)?
             }
         };
         let motion = motion_at(amplitude)?;
@@ -150,21 +91,21 @@ impl Flight {
         let starts_there = (start - from).abs() <= 1e-6 * distance.abs();
         match starts_there {
             true => Ok(Self { solution, amplitude, sign, is_turned: turned.is_some(), motion }),
-            false => Err(NoFlight::Start { start: sign * start, release }),
+            false => Err(ImpactError::Start { start: sign * start, release }),
         }
     }
 
     /// The same swing with the amplitude, no larger one, that passes the barrier at this speed.
     ///
     /// # Errors
-    /// [`NoFlight::WayBack`]; the method has no motion at that amplitude.
+    /// [`ImpactError::WayBack`]; the method has no motion at that amplitude.
     pub(super) fn passing(
         &self,
         equations: &Equations,
         barrier: f64,
         speed: f64,
-    ) -> Result<Self, NoFlight> {
-        let of = |amplitude: f64| -> Result<Self, NoFlight> {
+    ) -> Result<Self, ImpactError> {
+        let of = |amplitude: f64| -> Result<Self, ImpactError> {
             Ok(Self {
                 amplitude,
                 motion: motion_at(&self.solution, equations, amplitude)?,
@@ -177,18 +118,18 @@ impl Flight {
             touched.map_or(-1.0, |(_, found)| (found / speed).powi(2) - 1.0)
         };
         let amplitude =
-            find_root(excess, 0.0, self.amplitude).map_err(|_| NoFlight::WayBack(speed))?;
+            find_root(excess, 0.0, self.amplitude).map_err(|_| ImpactError::WayBack(speed))?;
         of(amplitude)
     }
 
     /// The time from the release to this place, and the speed there.
     ///
     /// # Errors
-    /// [`NoFlight::NeverReaches`].
-    pub fn touch(&self, barrier: f64) -> Result<(f64, f64), NoFlight> {
+    /// [`ImpactError::NeverReaches`].
+    pub fn touch(&self, barrier: f64) -> Result<(f64, f64), ImpactError> {
         let half = PI / self.motion.frequency();
         let place = self.sign * barrier;
-        let never = |_| NoFlight::NeverReaches {
+        let never = |_| ImpactError::NeverReaches {
             from: self.sign * self.motion.at(0.0),
             to: self.sign * self.motion.at(half),
         };
@@ -228,16 +169,16 @@ fn motion_at(
     solution: &Solution,
     equations: &Equations,
     amplitude: f64,
-) -> Result<Motion, NoFlight> {
+) -> Result<Motion, ImpactError> {
     let symbol = solution.amplitude.symbol();
     let (_, mut values) = equations.values.split(&[symbol]);
-    let exact = from_f64(amplitude).ok_or(NoFlight::Amplitude)?;
+    let exact = from_f64(amplitude).ok_or(ImpactError::NoAmplitude)?;
     values.insert(symbol, Expr::number(exact))?;
     Ok(solution.motion_at(&values)?)
 }
 
 /// The equation of -x; `None` where it is that of x.
-fn turned(swing: &Oscillator) -> Result<Option<Oscillator>, NoFlight> {
+fn turned(swing: &Oscillator) -> Result<Option<Oscillator>, ImpactError> {
     let x = swing.coordinate;
     if is_odd(&swing.force, x)? {
         return Ok(None);
@@ -291,14 +232,14 @@ impl DerivedContact {
 /// speed, the flight backwards.
 ///
 /// # Errors
-/// [`NoFlight`] where a contact that loses energy has no way back.
+/// [`ImpactError`] where a contact that loses energy has no way back.
 pub(super) fn phases_of(
     flight: &Flight,
     equations: &Equations,
     barrier: f64,
     [touch, speed]: [f64; 2],
     contact: &DerivedContact,
-) -> Result<ThreePhases, NoFlight> {
+) -> Result<ThreePhases, ImpactError> {
     let [penetration, duration, exit_speed] = contact.numbers(speed);
     let (back, way_back) = match contact {
         DerivedContact::Elastic(_) => (flight.form(), touch),

@@ -75,6 +75,7 @@ mod compare;
 pub mod contact;
 mod derived;
 mod dissipation;
+mod error;
 mod form;
 pub mod friction;
 pub mod hertz;
@@ -102,11 +103,12 @@ pub use chain::{ChainError, chain};
 pub use closed_form::{Column, Impact, Quantity, Reading, SampledMotion, Shortcoming, solve};
 pub use collision::{Collision, CollisionError};
 pub use compare::{ImpactComparison, ImpactMethod, ImpactRow, compare};
-pub use derived::{DerivedContact, Flight, NoFlight};
+pub use derived::{DerivedContact, Flight};
 pub use dissipation::{
     ContactDamping, ContactScales, DampingError, Dissipation, SpeedUnit, friction_of_torque,
     torque_of_friction, viscous_coefficient, viscous_ratio,
 };
+pub use error::ImpactError;
 pub use form::{Form, Term};
 pub use judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation, true_impact};
 pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
@@ -119,13 +121,13 @@ pub use model::{
     DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, STEEPNESS, Side, Start,
 };
 pub use parameter::{Parameter, UnknownParameter};
-pub use phases::{ContactSpeed, FittedLine, Phase, PhasesError, Swing, ThreePhases, three_phases};
-pub use setup::{ContactLoss, Letters, Setup, SetupError};
+pub use phases::{ContactSpeed, FittedLine, Phase, Swing, ThreePhases, three_phases};
+pub use setup::{ContactLoss, Letters, Setup};
 pub use si::{SiImpact, YieldCheck};
 pub use simulate::{SimulationError, known_until, simulate, simulate_many};
 pub use simulation::{
     ClosedForm, Contact, ContactDeviation, Difference, EnergyBook, EnergyPoint, Integrator, NoRest,
     Path, Piece, REST_FRACTION, Regime, Rest, Settings, Simulation, Stop, Turn,
 };
-pub use trial::{Attempt, ImpactError};
+pub use trial::Attempt;
 pub use units::{Elastic, FIRST_YIELD, Modulus, Units};

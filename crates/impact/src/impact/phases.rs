@@ -24,16 +24,15 @@
 use std::f64::consts::PI;
 use std::fmt;
 
-use num_complex::Complex64;
-use thiserror::Error;
-
 use super::collision::{Collision, CollisionError};
 use super::contact::line::LineContact;
+use super::error::ImpactError;
 use super::form::{Form, Term};
-use super::linearisation::{self, Line, LinearisationError, Rule};
+use super::linearisation::{self, Line, Rule};
 use crate::decimal::significant;
 use crate::series::terms;
 use crate::symbol::Symbol;
+use num_complex::Complex64;
 
 /// One impact: x'' + f(x) + gamma F(x - x_c) = 0, released at rest from x = -amplitude towards the
 /// barrier.
@@ -127,38 +126,10 @@ pub struct Phase {
     pub form: Form,
 }
 
-/// Why there are no three phases.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[non_exhaustive]
-pub enum PhasesError {
-    /// The law of the frequency ends below this amplitude.
-    #[error(
-        "omega^2 = {frequency_squared} at A = {amplitude}: the frequency law does not reach this amplitude; lower the \
-         amplitude, or use a law of higher order"
-    )]
-    BeyondTheLaw {
-        /// Its value.
-        frequency_squared: f64,
-        /// The amplitude.
-        amplitude: f64,
-    },
-    /// The linear stiffness is negative enough to undo the contact, or not a number.
-    #[error(
-        "the linear stiffness f'(0) = {0} leaves no oscillation in the contact: give the slope of the force at x = 0"
-    )]
-    LinearStiffness(f64),
-    /// The elastic force could not be replaced by a line.
-    #[error(transparent)]
-    Linearisation(#[from] LinearisationError),
-    /// Nothing hits the barrier.
-    #[error(transparent)]
-    Collision(#[from] CollisionError),
-}
-
 /// The closed form of the motion, with this speed of contact.
 ///
 /// # Errors
-/// [`PhasesError`], each with what to change: a barrier out of reach, no stiffness, an amplitude
+/// [`ImpactError`], each with what to change: a barrier out of reach, no stiffness, an amplitude
 /// beyond the frequency law or outside the well.
 ///
 /// ```
@@ -179,7 +150,7 @@ pub enum PhasesError {
 /// assert!(motion.duration < 0.02 * motion.period);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, PhasesError> {
+pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, ImpactError> {
     let &Swing { amplitude, barrier, stiffness, frequency_squared, linear_stiffness, .. } = swing;
     check(swing)?;
     let frequency = frequency_squared.sqrt();
@@ -195,7 +166,7 @@ pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, 
     // In equation (15) the swing pulls with k x.
     let beside = [linear_stiffness * barrier, linear_stiffness];
     let contact = LineContact::new(line, stiffness, beside, speed)
-        .ok_or(PhasesError::LinearStiffness(linear_stiffness))?;
+        .ok_or(ImpactError::LinearStiffness(linear_stiffness))?;
 
     let phase = (barrier / amplitude).acos();
     // acos(-x_c/A) = pi - acos(x_c/A): time of approach and of return.
@@ -236,17 +207,17 @@ pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, 
     })
 }
 
-fn check(swing: &Swing) -> Result<(), PhasesError> {
+fn check(swing: &Swing) -> Result<(), ImpactError> {
     let &Swing { amplitude, frequency_squared, linear_stiffness, .. } = swing;
     if !(amplitude.is_finite() && amplitude > 0.0) {
         return Err(CollisionError::Amplitude(amplitude).into());
     }
     swing.collision().check()?;
     if !(frequency_squared.is_finite() && frequency_squared > 0.0) {
-        return Err(PhasesError::BeyondTheLaw { frequency_squared, amplitude });
+        return Err(ImpactError::BeyondTheLaw { frequency_squared, amplitude });
     }
     if !linear_stiffness.is_finite() {
-        return Err(PhasesError::LinearStiffness(linear_stiffness));
+        return Err(ImpactError::LinearStiffness(linear_stiffness));
     }
     Ok(())
 }
@@ -567,22 +538,22 @@ mod tests {
         }
         assert!(matches!(
             refuse(Swing { barrier: -1.5, ..usual }),
-            PhasesError::Collision(CollisionError::ReleasedBehindBarrier { .. })
+            ImpactError::Collision(CollisionError::ReleasedBehindBarrier { .. })
         ));
         assert!(matches!(
             refuse(Swing { barrier: f64::NAN, ..usual }),
-            PhasesError::Collision(CollisionError::Barrier(_))
+            ImpactError::Collision(CollisionError::Barrier(_))
         ));
         for stiffness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(
                 refuse(Swing { stiffness, ..usual }),
-                PhasesError::Collision(CollisionError::Stiffness(_))
+                ImpactError::Collision(CollisionError::Stiffness(_))
             ));
         }
         for amplitude in [0.0, -1.5, f64::INFINITY] {
             assert!(matches!(
                 refuse(Swing { amplitude, ..usual }),
-                PhasesError::Collision(CollisionError::Amplitude(_))
+                ImpactError::Collision(CollisionError::Amplitude(_))
             ));
         }
         let beyond = refuse(Swing { amplitude: 3.0, frequency_squared: 1.0 - 9.0 / 8.0, ..usual });
@@ -590,7 +561,7 @@ mod tests {
         for amplitude in [std::f64::consts::PI, 3.5] {
             let outside = refuse(Swing { amplitude, ..usual });
             assert!(
-                matches!(outside, PhasesError::Collision(CollisionError::OutsideTheWell { .. })),
+                matches!(outside, ImpactError::Collision(CollisionError::OutsideTheWell { .. })),
                 "{outside}"
             );
         }
@@ -598,7 +569,7 @@ mod tests {
         let hill = |x: f64| -(3.0 * x).sin();
         let outside = refuse(Swing { restoring_force: &hill, amplitude: 0.9, ..usual });
         assert!(
-            matches!(outside, PhasesError::Collision(CollisionError::OutsideTheWell { .. })),
+            matches!(outside, ImpactError::Collision(CollisionError::OutsideTheWell { .. })),
             "{outside}"
         );
     }

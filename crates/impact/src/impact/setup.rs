@@ -18,6 +18,7 @@ use num_integer::Integer as _;
 use num_traits::{Signed, ToPrimitive};
 
 use super::contact::ContactLaw;
+use super::error::ImpactError;
 use super::hertz::DEFAULT_STIFFNESS;
 use super::linearisation::Rule;
 use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Side};
@@ -27,10 +28,8 @@ use crate::conservative::force::NearRest;
 use crate::equilibrium::{centred, no_bottom, with_numbers_where_needed};
 use crate::exact::rational::ratio;
 use crate::exact::{Integer, Rational};
-use crate::expr::{
-    CompiledFunction, Equation, EvaluationError, Expr, ExprError, Function, LostDigits, Node,
-};
-use crate::oscillator::{Oscillator, OscillatorError};
+use crate::expr::{CompiledFunction, Equation, Expr, ExprError, Function, Node};
+use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Degrees, Method};
 use crate::symbol::{Symbol, fresh};
 use crate::values::Values;
@@ -125,82 +124,6 @@ impl Default for Setup {
             step_limit: 250_000,
         }
     }
-}
-
-/// Why there is no equation of an impact.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum SetupError {
-    /// The swing is no oscillator.
-    #[error(transparent)]
-    Oscillator(#[from] OscillatorError),
-    /// The force of the swing is not one of the position alone.
-    #[error(
-        "an impact in closed form needs a swing that keeps its energy, a force of the position alone, but `{term}` is more: \
-         leave it out, or follow the motion by `lindstedt simulate`"
-    )]
-    NotOfPosition {
-        /// The term.
-        term: String,
-    },
-    /// A swing that is infinitely fast on its way.
-    #[error(
-        "the swing goes through x = {place}, where the force `{force}` and its speed are infinite: `impact` does not follow it through such a \
-         place; give a barrier on the side of the release"
-    )]
-    InfinitelyFast {
-        /// The force.
-        force: String,
-        /// Where.
-        place: f64,
-    },
-    /// A release or a barrier so far out that the force of the swing has no digits there.
-    #[error(transparent)]
-    LostDigits(#[from] LostDigits),
-    /// A parameter without a value.
-    #[error("a value is needed for `{name}`")]
-    NoValue {
-        /// The parameter.
-        name: Symbol,
-    },
-    /// A swing about which the paper says nothing.
-    #[error(
-        "the paper's cosine is that of a swing about x = 0 with f(-x) = -f(x), but the force is `{force}`"
-    )]
-    NotOdd {
-        /// The force.
-        force: String,
-    },
-    /// A contact that loses energy, in the paper's reading.
-    #[error("its equations (13) to (16) are those of a contact that loses nothing")]
-    LosesEnergy,
-    /// A contact that loses energy, from inside the barrier.
-    #[error(
-        "a release inside the barrier is the deepest point of a cycle only where nothing is lost: release the motion outside, or leave \
-         the loss out"
-    )]
-    InsideWithLoss,
-    /// A contact that loses energy by a law that has no closed form.
-    #[error(
-        "a contact that loses energy needs a force that is a power of the depth, such as `gamma*d^(3/2)`, but it is `{force}`: give \
-         another one, or leave the loss out"
-    )]
-    NoPower {
-        /// The force.
-        force: String,
-    },
-    /// A value for nothing.
-    #[error("there is no parameter `{name}`, neither in the swing nor in the force of the barrier")]
-    Unknown {
-        /// The name.
-        name: Symbol,
-    },
-    /// A force that cannot be evaluated.
-    #[error(transparent)]
-    Evaluation(#[from] EvaluationError),
-    /// A step of algebra failed.
-    #[error(transparent)]
-    Expression(#[from] ExprError),
 }
 
 /// The letters of an equation with a barrier.
@@ -376,7 +299,7 @@ impl Setup {
     /// # Errors
     /// A swing that is none or whose force depends on more than the position; a parameter without a
     /// value.
-    pub(super) fn equations(&self) -> Result<Equations, SetupError> {
+    pub(super) fn equations(&self) -> Result<Equations, ImpactError> {
         let swing = match &self.swing {
             Some(swing) => swing.clone(),
             None => Oscillator::parse(FREE_SWING)?,
@@ -386,7 +309,7 @@ impl Setup {
             .into_iter()
             .find(|part| !part.is_zero())
         {
-            return Err(SetupError::NotOfPosition {
+            return Err(ImpactError::NotOfPosition {
                 term: term.terms().first().unwrap_or(term).to_string(),
             });
         }
@@ -394,7 +317,7 @@ impl Setup {
         let acceleration = x.derivative().derivative();
         let mass = swing.residual.differentiate(acceleration)?;
         if mass.contains(x) {
-            return Err(SetupError::NotOfPosition {
+            return Err(ImpactError::NotOfPosition {
                 term: (&mass * &Expr::from(acceleration)).to_string(),
             });
         }
@@ -405,7 +328,7 @@ impl Setup {
                 || of_force && *name != letters.stiffness && *name != letters.depth
         };
         if let Some((name, _)) = self.values.iter().find(|(name, _)| !own(name)) {
-            return Err(SetupError::Unknown { name });
+            return Err(ImpactError::Unknown { name });
         }
         let depth = Expr::from(letters.depth);
         let hertz = Expr::power(&depth, &Expr::number(ratio(3, 2)))?;
@@ -429,7 +352,7 @@ impl Setup {
             let expression = in_numbers(expression)?;
             let known = [argument, letters.stiffness, Symbol::new("pi")];
             match expression.symbols().into_iter().find(|name| !known.contains(name)) {
-                Some(name) => Err(SetupError::NoValue { name }),
+                Some(name) => Err(ImpactError::NoValue { name }),
                 None => Ok(CompiledFunction::new(&expression, &[argument, letters.stiffness])?),
             }
         };
@@ -445,7 +368,7 @@ impl Setup {
             position.and_then(|position| position.evaluate(&[].into()).ok()).unwrap_or(0.0);
         let through = (self.release - equilibrium) * (self.barrier - equilibrium) <= 0.0;
         if through && centred.is_some_and(|centred| centred.endless) {
-            return Err(SetupError::InfinitelyFast {
+            return Err(ImpactError::InfinitelyFast {
                 force: swing.force.to_string(),
                 place: equilibrium,
             });

@@ -9,12 +9,13 @@ use super::collision::{Collision, CollisionError};
 use super::contact::hunt_crossley::{damping_for, restitution};
 use super::contact::power_law::exponent_of;
 use super::contact::{ContactError, ContactLaw, ContactRow, HuntCrossley, Touch, comparison};
-use super::derived::{DerivedContact, Flight, NoFlight, phases_of};
+use super::derived::{DerivedContact, Flight, phases_of};
+use super::error::ImpactError;
 use super::judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation};
-use super::phases::{PhasesError, ThreePhases};
-use super::setup::{ContactLoss, Equations, Setup, SetupError};
+use super::phases::ThreePhases;
+use super::setup::{ContactLoss, Equations, Setup};
+use crate::method;
 use crate::method::table::{Choice, Entry};
-use crate::method::{self, Refusal};
 use crate::numeric::ode::Options;
 use crate::solution::{Counts, Degrees, Method, Solution};
 
@@ -31,51 +32,6 @@ pub struct Attempt {
     /// tolerance already. Where the contact is not the exact one, that of the approach. Or why
     /// there is none.
     pub error: Result<f64, String>,
-}
-
-/// Why there is no impact to report.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ImpactError {
-    /// There is no equation of an impact.
-    #[error(transparent)]
-    Setup(#[from] SetupError),
-    /// Nothing hits the barrier.
-    #[error(transparent)]
-    Collision(#[from] CollisionError),
-    /// The law could not be derived.
-    #[error(transparent)]
-    Law(#[from] Refusal),
-    /// There are no three phases.
-    #[error(transparent)]
-    Phases(#[from] PhasesError),
-    /// The swing of the derived column could not be derived.
-    #[error(transparent)]
-    Flight(#[from] NoFlight),
-    /// There is no contact of that damping, or none to compare with.
-    #[error(transparent)]
-    Contact(#[from] ContactError),
-    /// The true motion could not be followed.
-    #[error(transparent)]
-    Truth(#[from] TrueImpactError),
-    /// No reading applies.
-    #[error("no closed form: the paper's reading does not apply, {paper}; {}", attempts(.tried))]
-    NoReading {
-        /// Why not the paper's.
-        paper: String,
-        /// What else was tried.
-        tried: Vec<Attempt>,
-    },
-}
-
-fn attempts(tried: &[Attempt]) -> String {
-    let reason = |attempt: &Attempt| {
-        let reason = attempt.error.as_ref().err()?;
-        Some(format!("{}: {reason}", attempt.method.title()))
-    };
-    let mut reasons: Vec<String> = tried.iter().filter_map(reason).collect();
-    reasons.dedup();
-    reasons.join("; ")
 }
 
 /// The question of an impact with its true motion.
@@ -144,7 +100,7 @@ impl Trial<'_> {
         let seen = |error: CollisionError| error.seen_from(sign, origin);
         let inside = collision.release > collision.barrier && collision.barrier.is_finite();
         if inside && setup.loss.is_some() {
-            return Err(SetupError::InsideWithLoss.into());
+            return Err(ImpactError::InsideWithLoss);
         }
         let collision = Collision {
             release: match inside {
@@ -164,7 +120,7 @@ impl Trial<'_> {
         if let (Some(_), None, Some(force)) =
             (setup.loss, exponent_of(collision.elastic_force), &setup.force)
         {
-            return Err(SetupError::NoPower { force: force.to_string() }.into());
+            return Err(ImpactError::NoPower { force: force.to_string() });
         }
         let collision = Collision { damping, ..collision };
         let options = Options {
@@ -256,17 +212,20 @@ impl Trial<'_> {
             }
             last = solution.cloned();
             // What refuses an order refuses those above it; the first may be too low.
-            let refused =
-                matches!(flight, Err(NoFlight::Refusal(_))) && order.is_none_or(|order| order > 2);
+            let refused = matches!(flight, Err(ImpactError::Refusal(_)))
+                && order.is_none_or(|order| order > 2);
             let found = flight.and_then(|flight| self.with_contact(flight));
             // A law that does not apply to this contact does so at no order.
-            let no_law = matches!(found, Err(NoFlight::Contact(_)))
+            let no_law = matches!(found, Err(ImpactError::Contact(_)))
                 && self.contact(self.energy_speed).is_err();
             tried.push(Attempt {
                 method,
                 order,
                 degrees,
-                error: found.as_ref().map(|found| found.error).map_err(|reason| reason.of(method)),
+                error: found
+                    .as_ref()
+                    .map(|found| found.error)
+                    .map_err(|reason| reason.without_title(method)),
             });
             best = closer(best, found.ok());
             // Orders that bring nothing closer for long: an expansion beyond its radius.
@@ -289,7 +248,7 @@ impl Trial<'_> {
     }
 
     /// The phases of this swing, and how far they are from the truth.
-    fn with_contact(&self, flight: Flight) -> Result<Derived, NoFlight> {
+    fn with_contact(&self, flight: Flight) -> Result<Derived, ImpactError> {
         let (touch, speed) = flight.touch(self.setup.barrier)?;
         let contact = self.contact(speed)?;
         let phases =

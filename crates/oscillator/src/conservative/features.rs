@@ -43,12 +43,12 @@ pub struct Feature {
 /// The arguments inside a force at whose zeros and stationary points it may turn fast.
 #[derive(Clone, Debug, Default)]
 pub struct Features {
-    parts: Vec<Part>,
+    parts: Vec<InnerFunction>,
 }
 
 /// How a function answers to its argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
+enum FunctionKind {
     /// It breaks where the argument is zero.
     Corner,
     /// It breaks where the argument is plus or minus one.
@@ -60,8 +60,8 @@ enum Kind {
 }
 
 #[derive(Clone, Debug)]
-struct Part {
-    kind: Kind,
+struct InnerFunction {
+    kind: FunctionKind,
     argument: CompiledFunction,
     slope: CompiledFunction,
     curvature: CompiledFunction,
@@ -113,7 +113,7 @@ impl Features {
 
     /// Whether some part of it goes up and down again and again, as a sine does.
     pub fn waves(&self) -> bool {
-        self.parts.iter().any(|part| part.kind == Kind::Scale { waves: true })
+        self.parts.iter().any(|part| part.kind == FunctionKind::Scale { waves: true })
     }
 
     /// The places between `from` and `to`, and a little beyond, in order.
@@ -133,7 +133,7 @@ impl Features {
             grid.extend(graded(&found, low, high));
             grid.sort_by(f64::total_cmp);
             let features = part.features(&grid);
-            if part.kind == (Kind::Scale { waves: true }) {
+            if part.kind == (FunctionKind::Scale { waves: true }) {
                 let waves = variation(&part.argument, &grid);
                 points = points.max((2.0 * waves) as usize).min(MOST_POINTS);
             }
@@ -190,11 +190,11 @@ fn graded(features: &[Feature], low: f64, high: f64) -> Vec<f64> {
 
 /// What a node adds: its argument, where that contains the coordinate and the node can break or
 /// turn fast.
-fn part(expr: &Expr, coordinate: Symbol) -> Option<Part> {
+fn part(expr: &Expr, coordinate: Symbol) -> Option<InnerFunction> {
     let (kind, argument) = match expr.node() {
         Node::Power(base, exponent) if exponent.contains(coordinate) => {
             let logarithm = Expr::function(Function::Log, vec![base.clone()]).ok()?;
-            (Kind::Scale { waves: false }, &logarithm * exponent)
+            (FunctionKind::Scale { waves: false }, &logarithm * exponent)
         }
         Node::Power(base, exponent) => {
             let exponent = exponent.as_number()?;
@@ -203,18 +203,18 @@ fn part(expr: &Expr, coordinate: Symbol) -> Option<Part> {
             if ordinary {
                 return None;
             }
-            (Kind::Power(size), base.clone())
+            (FunctionKind::Power(size), base.clone())
         }
         Node::Function(function, arguments) => {
             use Function::{
                 Absolute, Acos, Asin, Cos, Log, Maximum, Minimum, Sign, Sin, Step, Tan,
             };
             let kind = match function {
-                Absolute | Sign | Step | Maximum | Minimum => Kind::Corner,
-                Asin | Acos => Kind::Inverse,
-                Log => Kind::Power(1.0),
-                Sin | Cos | Tan => Kind::Scale { waves: true },
-                _ => Kind::Scale { waves: false },
+                Absolute | Sign | Step | Maximum | Minimum => FunctionKind::Corner,
+                Asin | Acos => FunctionKind::Inverse,
+                Log => FunctionKind::Power(1.0),
+                Sin | Cos | Tan => FunctionKind::Scale { waves: true },
+                _ => FunctionKind::Scale { waves: false },
             };
             let argument = match arguments.as_slice() {
                 [one] => one.clone(),
@@ -231,7 +231,7 @@ fn part(expr: &Expr, coordinate: Symbol) -> Option<Part> {
     let slope = argument.differentiate(coordinate).ok()?;
     let curvature = slope.differentiate(coordinate).ok()?;
     let compiled = |expr: &Expr| CompiledFunction::new(expr, &[coordinate]).ok();
-    Some(Part {
+    Some(InnerFunction {
         kind,
         polynomial: polynomial(&argument, coordinate),
         argument: compiled(&argument)?,
@@ -265,9 +265,9 @@ fn variation(argument: &CompiledFunction, grid: &[f64]) -> f64 {
     changes.filter(|change| change.is_finite()).sum()
 }
 
-impl Part {
+impl InnerFunction {
     fn features(&self, grid: &[f64]) -> Vec<Feature> {
-        let levels: &[f64] = if self.kind == Kind::Inverse { &[-1.0, 1.0] } else { &[0.0] };
+        let levels: &[f64] = if self.kind == FunctionKind::Inverse { &[-1.0, 1.0] } else { &[0.0] };
         let (low, high) = (grid[0], grid[grid.len() - 1]);
         let mut places = match &self.polynomial {
             Some(coefficients) => {
@@ -288,7 +288,7 @@ impl Part {
         }
         let feature = |place: f64| {
             let width = self.width(place);
-            Feature { place, width, singular: width == 0.0 && self.kind != Kind::Corner }
+            Feature { place, width, singular: width == 0.0 && self.kind != FunctionKind::Corner }
         };
         places.into_iter().map(feature).filter(|feature| !feature.width.is_nan()).collect()
     }
@@ -297,15 +297,15 @@ impl Part {
         let [value, slope, curvature] = [&self.argument, &self.slope, &self.curvature]
             .map(|function| function.call(&[place]).abs());
         let change = match self.kind {
-            Kind::Corner | Kind::Inverse => 0.0,
-            Kind::Scale { .. } => 1.0,
-            Kind::Power(exponent) => value / exponent,
+            FunctionKind::Corner | FunctionKind::Inverse => 0.0,
+            FunctionKind::Scale { .. } => 1.0,
+            FunctionKind::Power(exponent) => value / exponent,
         };
         // The smaller of the distances over which the linear and the quadratic part change that
         // much.
         let width = f64::min(change / slope, (2.0 * change / curvature).sqrt());
         match self.kind {
-            Kind::Corner | Kind::Inverse => 0.0,
+            FunctionKind::Corner | FunctionKind::Inverse => 0.0,
             _ if width.is_nan() => f64::min(0.0, width),
             _ => width,
         }

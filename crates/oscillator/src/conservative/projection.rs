@@ -123,9 +123,12 @@ fn wave_family(function: Function) -> Option<Family> {
     }
 }
 
-type Wave = (Function, Expr);
+type Trigonometric = (Function, Expr);
 
-fn product_to_sum((f, u): &Wave, (g, v): &Wave) -> Option<Vec<(Expr, Option<Wave>)>> {
+fn product_to_sum(
+    (f, u): &Trigonometric,
+    (g, v): &Trigonometric,
+) -> Option<Vec<(Expr, Option<Trigonometric>)>> {
     let (sum, difference) = ((u + v).expand().ok()?, (u - v).expand().ok()?);
     let half = |sign: i64| Expr::number(ratio(sign, 2));
     let both = |function, first: i64, second: i64| {

@@ -7,7 +7,7 @@ use num_traits::Zero;
 use crate::decimal::decimal;
 use crate::exact::Rational;
 use crate::exact::rational::{ratio, to_f64};
-use crate::expr::{Expr, Node, Quotation};
+use crate::expr::{Expr, Node};
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::taylor::taylor;
 use crate::symbol::Symbol;
@@ -47,10 +47,7 @@ pub(super) fn refusal(oscillator: &Oscillator, force: &Expr) -> Option<Oscillato
     Some(OscillatorError::OneSided {
         coordinate,
         side,
-        term: match words {
-            Some(words) => Quotation::new(root.clone(), words),
-            None => root.clone().into(),
-        },
+        term: words.unwrap_or_else(|| root.to_string()),
         odd: format!("sgn({base})*{}", power_of(&format!("abs({base})"))),
         zero: others.then(|| power_of(&format!("max({base}, 0)"))),
     })

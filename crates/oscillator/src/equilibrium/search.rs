@@ -60,7 +60,7 @@ pub(super) fn zeros(value: &dyn Fn(f64) -> f64, centres: &[f64]) -> Vec<Zero> {
         found.push(Zero { position, stable: right > 0.0, reachable: true });
     }
     for side in [1.0, -1.0] {
-        Walk::outwards(value, &places(side, centres), &mut found);
+        ZeroSearch::outwards(value, &places(side, centres), &mut found);
     }
     found
 }
@@ -87,19 +87,19 @@ fn places(side: f64, centres: &[f64]) -> Vec<f64> {
 }
 
 /// A place and the force there.
-type Sample = (f64, f64);
+type ForceSample = (f64, f64);
 
-struct Walk<'a> {
+struct ZeroSearch<'a> {
     value: &'a dyn Fn(f64) -> f64,
     reachable: bool,
     found: Vec<Zero>,
 }
 
-impl Walk<'_> {
+impl ZeroSearch<'_> {
     fn outwards(value: &dyn Fn(f64) -> f64, places: &[f64], found: &mut Vec<Zero>) {
-        let mut walk = Walk { value, reachable: true, found: vec![] };
+        let mut walk = ZeroSearch { value, reachable: true, found: vec![] };
         // The last two places at which the force has a value other than zero, and the zeros since.
-        let (mut before, mut last): (Option<Sample>, Option<Sample>) = (None, None);
+        let (mut before, mut last): (Option<ForceSample>, Option<ForceSample>) = (None, None);
         let mut flat = 0;
         // A pole at zero has no other side to be reached from; beside it a high power is beyond all
         // numbers for a while.
@@ -133,7 +133,7 @@ impl Walk<'_> {
     }
 
     /// What lies between the last place and this one, or about the last.
-    fn between(&mut self, before: Option<Sample>, last: Sample, now: Sample) {
+    fn between(&mut self, before: Option<ForceSample>, last: ForceSample, now: ForceSample) {
         if last.1.signum() != now.1.signum() {
             self.change_of_sign(last.0, now.0);
             return;

@@ -140,13 +140,13 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 }
 
 /// The names of what a derivation introduces, beside those of the equation.
-struct Letters {
+struct DerivationLetters {
     taken: Vec<Symbol>,
     /// `psi`.
     phase: Symbol,
 }
 
-impl Letters {
+impl DerivationLetters {
     fn beside(taken: &[Symbol]) -> Self {
         Self { taken: taken.to_vec(), phase: fresh("psi", taken) }
     }
@@ -244,7 +244,7 @@ impl Averaged {
             limit_cycle: None,
             modulation: Some(Modulation {
                 amplitude: a,
-                phase: Letters::beside(&taken).phase,
+                phase: DerivationLetters::beside(&taken).phase,
                 amplitude_rate,
                 phase_rate,
                 small_with,
@@ -296,7 +296,7 @@ fn of_polynomial(
     taken.extend(definitions.iter().map(|definition| definition.symbol));
     let a = AmplitudeConvention::FirstHarmonic.symbol();
 
-    let letters = Letters::beside(&oscillator.names());
+    let letters = DerivationLetters::beside(&oscillator.names());
     let slow = Slow::new(force, &omega0, a);
     let mut derivation = vec![
         Line::equation(oscillator.coordinate, slow.position.clone()).because("along"),
@@ -567,7 +567,7 @@ impl Projected {
         &self,
         oscillator: &Oscillator,
         amplitude: &Expr,
-        letters: &Letters,
+        letters: &DerivationLetters,
     ) -> Result<Vec<Line>, ExprError> {
         let theta = Expr::from(oscillator.phase());
         Ok(vec![
@@ -599,7 +599,7 @@ fn by_projections(oscillator: &Oscillator, small: &SmallTerms) -> Result<Average
     let a = AmplitudeConvention::FirstHarmonic.symbol();
     let amplitude = Expr::from(a);
     let found = Projected::of(oscillator, small, &amplitude)?;
-    let letters = Letters::beside(&oscillator.names());
+    let letters = DerivationLetters::beside(&oscillator.names());
     let mut derivation = found.along(oscillator, &amplitude, &letters)?;
     let Projected { omega0, root, definitions, sine, cosine, .. } = found;
     let twice = Expr::from(2) * &omega0;

@@ -146,7 +146,7 @@ struct Quadratic {
 }
 
 /// Where the root goes on either side of zero.
-struct Followed {
+struct RootCourse {
     /// Where the sign of the root of D changes.
     crossings: Vec<Rational>,
     /// Where it ends, and whether D says so itself everywhere beyond.
@@ -201,8 +201,8 @@ impl Quadratic {
     }
 
     /// The root on these sides of zero; `None` where its way cannot be told.
-    fn followed(&self, sides: &[i64]) -> Option<Followed> {
-        let mut followed = Followed {
+    fn followed(&self, sides: &[i64]) -> Option<RootCourse> {
+        let mut followed = RootCourse {
             crossings: vec![],
             ends: vec![],
             indeterminate: [2, 0].map(|list: usize| self.lists[list][0].is_zero()),
@@ -214,7 +214,7 @@ impl Quadratic {
     }
 
     /// The root on one side of zero.
-    fn follow(&self, side: i64, followed: &mut Followed) -> Option<()> {
+    fn follow(&self, side: i64, followed: &mut RootCourse) -> Option<()> {
         /// Roots whose crossing is this close, over the place, cross; what is less close is an end.
         const CROSSES: f64 = 0.01;
         let degree: usize = self.lists.iter().map(Vec::len).sum();
@@ -312,7 +312,7 @@ impl Words {
     fn law(
         &self,
         quadratic: &Quadratic,
-        root: &Followed,
+        root: &RootCourse,
     ) -> Result<(Expr, Vec<Definition>), ExprError> {
         let [p, q, r, s] = self.letters.map(Expr::from);
         let two = Expr::from(2);
@@ -375,7 +375,7 @@ impl Words {
     }
 
     /// What the root of D is multiplied by: one up to the first crossing, not real beyond an end.
-    fn sign(&self, root: &Followed) -> Result<Expr, ExprError> {
+    fn sign(&self, root: &RootCourse) -> Result<Expr, ExprError> {
         let s = Expr::from(&Polynomial::term(self.variable.clone(), Rational::one()));
         let before = |place: &Rational| -> Result<Expr, ExprError> {
             let ahead = &Expr::number(place.clone()) - &s;
@@ -395,7 +395,7 @@ impl Words {
     }
 
     /// Where the root crosses the other one and where it ends, if it does.
-    fn note(&self, root: &Followed) -> Option<Note> {
+    fn note(&self, root: &RootCourse) -> Option<Note> {
         let mut crossings: Vec<f64> = root.crossings.iter().map(to_f64).collect();
         crossings.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
         let ends: Vec<(f64, RootEnd)> =

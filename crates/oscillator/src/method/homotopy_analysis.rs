@@ -110,7 +110,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     Ok(solution)
 }
 
-struct Series {
+struct HomotopySeries {
     frequency: Vec<FourierSeries<Polynomials>>,
     displacement: Vec<FourierSeries<Polynomials>>,
 }
@@ -120,8 +120,8 @@ fn expand(
     order: usize,
     hbar: Polynomial,
     solution: &mut Solution,
-) -> Result<Series, Refusal> {
-    let mut expansion = Expansion::new(force, order, hbar, solution);
+) -> Result<HomotopySeries, Refusal> {
+    let mut expansion = HomotopyExpansion::new(force, order, hbar, solution);
     for m in 1..=order {
         let residual = expansion.residual(m)?;
         let residual = match m {
@@ -137,10 +137,10 @@ fn expand(
 }
 
 /// The series as far as they are known, and what their next order is made of.
-struct Expansion<'a> {
+struct HomotopyExpansion<'a> {
     force: &'a PerturbedForce,
     solution: &'a mut Solution,
-    series: Series,
+    series: HomotopySeries,
     /// The second derivatives of the displacement.
     accelerations: Vec<FourierSeries<Polynomials>>,
     /// The powers of the displacement that stand in the force.
@@ -168,7 +168,7 @@ fn numbered(letter: &str, number: usize) -> Symbol {
     Symbol::new(&format!("{letter}{number}"))
 }
 
-impl<'a> Expansion<'a> {
+impl<'a> HomotopyExpansion<'a> {
     fn new(
         force: &'a PerturbedForce,
         order: usize,
@@ -195,7 +195,7 @@ impl<'a> Expansion<'a> {
             inverse: FourierSeries::zero(POLYNOMIALS),
             linear: force.linear.clone(),
             lines: vec![Line::equation(numbered(&letters[0], 0), start.clone())],
-            series: Series { frequency: vec![], displacement: vec![start] },
+            series: HomotopySeries { frequency: vec![], displacement: vec![start] },
             first_frequency_name: numbered(&letters[1], 0),
             letters,
             solution,

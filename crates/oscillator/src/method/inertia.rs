@@ -191,7 +191,7 @@ type AtNumbers = (f64, FourierSeries<Doubles>);
 pub struct Approach {
     solve: fn(&VariableMass, &Oscillator, &Options) -> Result<Solution, Refusal>,
     /// The answer at numbers, where the law is not explicit.
-    numbers: fn(&Question) -> Option<AtNumbers>,
+    numbers: fn(&EquationAtNumbers) -> Option<AtNumbers>,
 }
 
 /// The true motion.
@@ -629,7 +629,7 @@ pub(super) fn at_numbers(
     let force =
         Force::new(&moving.force, oscillator.coordinate, &Expr::zero(), numbers, amplitude)?;
     let approach = Entry::of(solution.method).inertia.as_ref()?;
-    (approach.numbers)(&Question {
+    (approach.numbers)(&EquationAtNumbers {
         moving: &moving,
         oscillator,
         order: solution.order,
@@ -641,7 +641,7 @@ pub(super) fn at_numbers(
 }
 
 /// An equation at numbers, seen from its equilibrium.
-struct Question<'a> {
+struct EquationAtNumbers<'a> {
     moving: &'a VariableMass,
     oscillator: &'a Oscillator,
     order: u32,
@@ -651,7 +651,7 @@ struct Question<'a> {
     force: &'a Force,
 }
 
-impl Question<'_> {
+impl EquationAtNumbers<'_> {
     /// The slope of the potential.
     fn weighted(&self, x: f64) -> f64 {
         (self.mass)(x) * self.force.at(x)
@@ -663,7 +663,7 @@ impl Question<'_> {
     }
 }
 
-fn exact_at(question: &Question) -> Option<AtNumbers> {
+fn exact_at(question: &EquationAtNumbers) -> Option<AtNumbers> {
     let (mass, weighted) = (question.mass, |x| question.weighted(x));
     let force = energy::Force::smooth(&weighted);
     let (period, cosine) =
@@ -673,14 +673,14 @@ fn exact_at(question: &Question) -> Option<AtNumbers> {
     Some((frequency * frequency, motion))
 }
 
-fn energy_balance_at(question: &Question) -> Option<AtNumbers> {
+fn energy_balance_at(question: &EquationAtNumbers) -> Option<AtNumbers> {
     let amplitude = question.amplitude;
     let eighth = amplitude / f64::sqrt(2.0);
     let rise = integrate_smooth(|x| question.weighted(x), eighth, amplitude, 1e-12).ok()?.0;
     question.one_term(4.0 * rise / (amplitude * amplitude * (question.mass)(eighth)))
 }
 
-fn hamiltonian_at(question: &Question) -> Option<AtNumbers> {
+fn hamiltonian_at(question: &EquationAtNumbers) -> Option<AtNumbers> {
     let amplitude = question.amplitude;
     let growth = compiled(question.oscillator, &question.moving.growth, question.numbers)?;
     let mean = |function: &dyn Fn(f64, f64) -> f64| {
@@ -695,7 +695,7 @@ fn hamiltonian_at(question: &Question) -> Option<AtNumbers> {
     question.one_term(work.ok()? / (amplitude * inertia.ok()?))
 }
 
-fn harmonic_balance_at(question: &Question) -> Option<AtNumbers> {
+fn harmonic_balance_at(question: &EquationAtNumbers) -> Option<AtNumbers> {
     let odd = question.moving.is_odd(question.oscillator).ok()?;
     let harmonics = harmonics(question.order, odd);
     balanced(question.oscillator, question.numbers, &harmonics, question.amplitude)
@@ -712,7 +712,7 @@ fn balanced(
     const FEWEST_STEPS: i32 = 16;
     const SMALLEST_STEP: f64 = 1e-4;
     let first = harmonics.iter().position(|&k| k == 1)?;
-    let balance = Balance::new(oscillator, numbers, harmonics)?;
+    let balance = SampledResidual::new(oscillator, numbers, harmonics)?;
     let (mut part, mut step) = (0.0, 1.0 / f64::from(FEWEST_STEPS));
     let mut unknowns = DVector::zeros(harmonics.len() + 1);
     unknowns[0] = balance.linear()?;
@@ -745,7 +745,7 @@ fn balanced(
 }
 
 /// The equation as typed and its slopes in `x`, `x'` and `x''`, sampled along a motion.
-struct Balance {
+struct SampledResidual {
     /// The residual, then its three slopes.
     functions: Vec<CompiledFunction>,
     arguments: Vec<f64>,
@@ -753,7 +753,7 @@ struct Balance {
     points: usize,
 }
 
-impl Balance {
+impl SampledResidual {
     fn new(
         oscillator: &Oscillator,
         numbers: &BTreeMap<Symbol, f64>,

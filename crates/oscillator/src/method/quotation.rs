@@ -43,7 +43,7 @@ pub(super) fn as_typed(
             OscillatorError::NotSmall { term, .. } | OscillatorError::NotPolynomial(term),
         ) => Some(term),
         Reason::NotOddAbout(..) => None,
-        _ => refusal.quoted.as_mut(),
+        _ => refusal.quoted.as_deref_mut(),
     };
     let found = term.and_then(|term| Some((typed(term, oscillator, centred)?, term)));
     // It may be the factor of the acceleration that brings the velocity in: then the term is shown

@@ -18,7 +18,7 @@ pub struct Refusal {
     /// What is in the way.
     pub reason: Reason,
     refuser: Option<Refuser>,
-    pub(super) quoted: Option<Quotation>,
+    pub(super) quoted: Option<Box<Quotation>>,
 }
 
 /// What is in the way of an answer. A term of the equation, where there is one to name, is that of
@@ -219,7 +219,7 @@ impl std::error::Error for Refusal {}
 impl Refusal {
     /// The same with the term that is in the way.
     pub(super) fn about(self, term: &Expr) -> Self {
-        Self { quoted: Some(term.clone().into()), ..self }
+        Self { quoted: Some(Box::new(term.clone().into())), ..self }
     }
 
     /// The refusal of a term that damps, or feeds, as it stands in the force.
@@ -243,7 +243,7 @@ impl Refusal {
     pub fn term(&self) -> Option<&str> {
         match &self.reason {
             Reason::Oscillator(error) => error.term(),
-            _ => self.quoted.as_ref().map(Quotation::words),
+            _ => self.quoted.as_ref().map(|term| term.words()),
         }
     }
 
@@ -434,7 +434,7 @@ impl Refusal {
             ),
             Reason::NoProjection => (
                 format!("knows no closed form for the first harmonic of `{term}`"),
-                match self.quoted.as_ref().is_some_and(turns_with_both) {
+                match self.quoted.as_deref().is_some_and(turns_with_both) {
                     true => words("a function of x and x' together has none; in factors of their own both have one, as sgn(x)*sgn(x') for sgn(x*x'); ")
                         .then(IN_NUMBERS),
                     false => words("powers of x and x', their sizes and signs, and (2/pi)*atan(k*x') have one"),

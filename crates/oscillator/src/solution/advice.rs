@@ -9,10 +9,10 @@ use crate::symbol::Symbol;
 
 /// A sentence with options in it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Advice(Vec<Part>);
+pub struct Advice(Vec<AdvicePart>);
 
 #[derive(Clone, Debug, PartialEq)]
-enum Part {
+enum AdvicePart {
     Words(String),
     Choose(Setting),
 }
@@ -49,28 +49,28 @@ pub enum Setting {
 impl Advice {
     /// A sentence without options, or the beginning of one.
     pub fn words(words: impl Into<String>) -> Self {
-        Self(vec![Part::Words(words.into())])
+        Self(vec![AdvicePart::Words(words.into())])
     }
 
     /// The sentence with an option at its end.
     #[must_use]
     pub fn choose(mut self, setting: Setting) -> Self {
-        self.0.push(Part::Choose(setting));
+        self.0.push(AdvicePart::Choose(setting));
         self
     }
 
     /// The sentence with words at its end.
     #[must_use]
     pub fn then(mut self, words: impl Into<String>) -> Self {
-        self.0.push(Part::Words(words.into()));
+        self.0.push(AdvicePart::Words(words.into()));
         self
     }
 
     /// The sentence with each option spelt by `option`.
     pub fn spelt(&self, option: impl Fn(&Setting) -> String) -> String {
-        let part = |part: &Part| match part {
-            Part::Words(words) => words.clone(),
-            Part::Choose(setting) => option(setting),
+        let part = |part: &AdvicePart| match part {
+            AdvicePart::Words(words) => words.clone(),
+            AdvicePart::Choose(setting) => option(setting),
         };
         self.0.iter().map(part).collect()
     }

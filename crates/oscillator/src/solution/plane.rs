@@ -165,7 +165,7 @@ impl Powers {
 }
 
 /// One wave of the phase, `P + P_c cos(g theta) + P_s sin(g theta)`, in powers of the amplitude.
-type Wave = [Powers; 3];
+type PhaseWave = [Powers; 3];
 
 /// Slow equations in the plane at numbers.
 pub(super) struct Field {
@@ -280,7 +280,7 @@ impl Field {
         }
         let [[rate_cos, rate_sin], [turn_cos, turn_sin]] = harmonics.remove(&common)?;
         let [[rate, _], [turn, _]] = still;
-        let waves: [Wave; 2] = [[rate, rate_cos, rate_sin], [turn, turn_cos, turn_sin]];
+        let waves: [PhaseWave; 2] = [[rate, rate_cos, rate_sin], [turn, turn_cos, turn_sin]];
         let [determinant, cosine, sine] = solved(&waves);
         if determinant.is_zero() {
             return None;
@@ -488,7 +488,9 @@ enum Look {
 }
 
 /// `D`, `D cos(g theta)` and `D sin(g theta)`.
-fn solved([[rate, rate_cos, rate_sin], [turn, turn_cos, turn_sin]]: &[Wave; 2]) -> [Powers; 3] {
+fn solved(
+    [[rate, rate_cos, rate_sin], [turn, turn_cos, turn_sin]]: &[PhaseWave; 2],
+) -> [Powers; 3] {
     [
         rate_cos.product(turn_sin).minus(&rate_sin.product(turn_cos)),
         rate_sin.product(turn).minus(&rate.product(turn_sin)),

@@ -24,7 +24,7 @@ pub(super) fn steady_states(
     times: f64,
     value_of: &dyn Fn(Symbol) -> Option<f64>,
 ) -> Option<Vec<SteadyState>> {
-    let rates = Rates::new(solution, modulation, times, value_of)?;
+    let rates = PolarRates::new(solution, modulation, times, value_of)?;
     let mut states: Vec<SteadyState> =
         rates.amplitudes().into_iter().filter_map(|amplitude| rates.state(amplitude)).collect();
     states.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
@@ -33,7 +33,7 @@ pub(super) fn steady_states(
 }
 
 /// The rates of amplitude and phase at numbers, and their slopes by both.
-struct Rates {
+struct PolarRates {
     times: f64,
     amplitude: CompiledFunction,
     phase: CompiledFunction,
@@ -41,12 +41,12 @@ struct Rates {
 }
 
 /// The coefficients of the waves at an amplitude.
-struct Waves {
+struct WaveCoefficients {
     rate: [f64; 3],
     turn: [f64; 3],
 }
 
-impl Waves {
+impl WaveCoefficients {
     /// `D`, `D cos(psi)` and `D sin(psi)`.
     fn solved(&self) -> [f64; 3] {
         let ([rate, rate_cos, rate_sin], [turn, turn_cos, turn_sin]) = (self.rate, self.turn);
@@ -58,7 +58,7 @@ impl Waves {
     }
 }
 
-impl Rates {
+impl PolarRates {
     fn new(
         solution: &Solution,
         modulation: &Modulation,
@@ -88,13 +88,13 @@ impl Rates {
     }
 
     /// Three phases tell a wave.
-    fn waves(&self, amplitude: f64) -> Waves {
+    fn waves(&self, amplitude: f64) -> WaveCoefficients {
         let wave = |of: &dyn Fn(f64) -> f64| {
             let [ahead, across, behind] = [0.0, 0.5, 1.0].map(|part| of(part * PI));
             let mean = (ahead + behind) / 2.0;
             [mean, (ahead - behind) / 2.0, across - mean]
         };
-        Waves {
+        WaveCoefficients {
             rate: wave(&|phase| self.amplitude.call(&[amplitude, phase])),
             turn: wave(&|phase| amplitude * self.phase.call(&[amplitude, phase]) / self.times),
         }
@@ -152,7 +152,7 @@ impl Rates {
     fn rest(&self) -> Option<SteadyState> {
         /// Near enough, and not so near that rounding counts.
         const NEAR: f64 = 1e-7;
-        let size = |waves: &Waves| waves.rate[1].hypot(waves.rate[2]);
+        let size = |waves: &WaveCoefficients| waves.rate[1].hypot(waves.rate[2]);
         let [near, far] = [NEAR, 100.0 * NEAR].map(|amplitude| self.waves(amplitude));
         let forced = size(&near) > 0.1 * size(&far) && size(&near) > 0.0;
         if forced && near.rate[0] + size(&near) >= 0.0 {

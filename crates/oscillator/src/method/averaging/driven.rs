@@ -20,7 +20,7 @@
 use num_traits::{One as _, ToPrimitive as _, Zero as _};
 
 use super::small_terms::SmallTerms;
-use super::{HIGHEST, Letters, Projected, Series, small_in_words};
+use super::{DerivationLetters, HIGHEST, Projected, Series, small_in_words};
 use crate::derivation::{Formula, Line};
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
@@ -166,7 +166,7 @@ impl UnderDrive<'_> {
             _ => Ok(None),
         };
         for resonance in candidates.iter().copied() {
-            let Some(waves) = waves_at(resonance)?.filter(Waves::reach) else {
+            let Some(waves) = waves_at(resonance)?.filter(DriveWaves::reach) else {
                 continue;
             };
             if let Some(ratio) = near {
@@ -177,7 +177,7 @@ impl UnderDrive<'_> {
                 let refusal = Reason::ResonanceWithoutDamping.to(Method::Averaging);
                 return Err(refusal.about(&driven.term));
             }
-            return Question::new(oscillator, &self.small, drive, projected, resonance.0)
+            return ResonantEquation::new(oscillator, &self.small, drive, projected, resonance.0)
                 .answer(&waves);
         }
         let scaling = self.scaling(1).ok();
@@ -197,12 +197,12 @@ impl UnderDrive<'_> {
 
 /// What a drive adds to `2 omega0 a'` and to `2 omega0 a (theta' - omega0)`: the coefficients of
 /// cos(psi) and sin(psi).
-struct Waves {
+struct DriveWaves {
     sine: [Expr; 2],
     cosine: [Expr; 2],
 }
 
-impl Waves {
+impl DriveWaves {
     /// Whether anything reaches the motion.
     fn reach(&self) -> bool {
         self.sine.iter().chain(&self.cosine).any(|wave| !wave.is_zero())
@@ -213,7 +213,12 @@ impl Waves {
 ///
 /// # Errors
 /// A drive beside what is no power of the coordinate and its velocity.
-fn waves(drive: &Drive, oscillator: &Oscillator, omega0: &Expr, p: u32) -> Result<Waves, Refusal> {
+fn waves(
+    drive: &Drive,
+    oscillator: &Oscillator,
+    omega0: &Expr,
+    p: u32,
+) -> Result<DriveWaves, Refusal> {
     let a = Expr::from(AmplitudeConvention::FirstHarmonic.symbol());
     let mut sums = [[vec![], vec![]], [vec![], vec![]]];
     for driven in &drive.terms {
@@ -244,7 +249,7 @@ fn waves(drive: &Drive, oscillator: &Oscillator, omega0: &Expr, p: u32) -> Resul
     let both = |[cos, sin]: [Result<Expr, ExprError>; 2]| -> Result<[Expr; 2], ExprError> {
         Ok([cos?, sin?])
     };
-    Ok(Waves { sine: both(sine)?, cosine: both(cosine)? })
+    Ok(DriveWaves { sine: both(sine)?, cosine: both(cosine)? })
 }
 
 /// What stands before a wave as a constant and whole powers of coordinate and velocity; `None`
@@ -269,7 +274,7 @@ fn powers(driven: &Driven, coordinate: Symbol) -> Option<(Expr, [u32; 2])> {
 }
 
 /// A driven equation at a resonance.
-struct Question<'a> {
+struct ResonantEquation<'a> {
     oscillator: &'a Oscillator,
     small: &'a SmallTerms,
     drive: &'a Drive,
@@ -281,7 +286,7 @@ struct Question<'a> {
     phase: Symbol,
 }
 
-impl<'a> Question<'a> {
+impl<'a> ResonantEquation<'a> {
     fn new(
         oscillator: &'a Oscillator,
         small: &'a SmallTerms,
@@ -309,7 +314,7 @@ impl<'a> Question<'a> {
         Expr::divide(expression, &(Expr::from(2) * &self.projected.omega0))?.expand()
     }
 
-    fn answer(self, waves: &Waves) -> Result<Solution, Refusal> {
+    fn answer(self, waves: &DriveWaves) -> Result<Solution, Refusal> {
         let (a, p) = (Expr::from(self.a), Expr::from(i64::from(self.p)));
         let rate = self.halved(&self.projected.sine)?;
         let bend = self.halved(&self.projected.cosine)?;
@@ -418,7 +423,7 @@ impl<'a> Question<'a> {
         [amplitude_rate, phase_rate]: [&Expr; 2],
         response: &Response,
     ) -> Result<Vec<Line>, ExprError> {
-        let letters = Letters::beside(&self.oscillator.names());
+        let letters = DerivationLetters::beside(&self.oscillator.names());
         let mut lines = self.projected.along(self.oscillator, &Expr::from(self.a), &letters)?;
         let theta = Expr::from(self.oscillator.phase());
         let turned = &(Expr::from(i64::from(self.p)) * theta) + &Expr::from(self.phase);

@@ -25,7 +25,7 @@ use std::collections::BTreeMap;
 use num_traits::{One as _, Signed as _, Zero as _};
 
 use super::small_terms::letters;
-use super::{Letters, action};
+use super::{DerivationLetters, action};
 use crate::conservative::force::Force;
 use crate::conservative::power::Power;
 use crate::decimal::rounded;
@@ -192,7 +192,7 @@ impl Shape {
 }
 
 /// The symbols of an answer.
-struct Names {
+struct AnswerSymbols {
     taken: Vec<Symbol>,
     /// `a`, the amplitude of the first harmonic.
     amplitude: Symbol,
@@ -204,13 +204,13 @@ struct Names {
     turning: Symbol,
 }
 
-impl Names {
+impl AnswerSymbols {
     fn beside(oscillator: &Oscillator) -> Self {
         let taken = oscillator.names();
         let [first, turning] = ["chi", "r"].map(|name| fresh(name, &taken));
         Self {
             amplitude: AmplitudeConvention::FirstHarmonic.symbol(),
-            phase: Letters::beside(&taken).phase,
+            phase: DerivationLetters::beside(&taken).phase,
             first,
             turning,
             taken,
@@ -232,9 +232,9 @@ impl SlowEquations {
         oscillator: &Oscillator,
         parts: &Parts,
         restoring: &PurePower,
-        names: &Names,
+        names: &AnswerSymbols,
     ) -> Result<Self, Refusal> {
-        let Names { amplitude, phase, first, turning, .. } = *names;
+        let AnswerSymbols { amplitude, phase, first, turning, .. } = *names;
         let (mut rates, mut turning_rates) = (vec![], vec![]);
         for term in parts.damping.terms() {
             let Some((power, size)) = restoring.drain(term, oscillator.coordinate) else {
@@ -271,7 +271,11 @@ impl SlowEquations {
     }
 
     /// The slow equations with the motion from its release, and what names of that stand for.
-    fn released(&self, names: &Names, small_with: Vec<Symbol>) -> (Modulation, Vec<Definition>) {
+    fn released(
+        &self,
+        names: &AnswerSymbols,
+        small_with: Vec<Symbol>,
+    ) -> (Modulation, Vec<Definition>) {
         let mut release = Release {
             amplitude: Expr::from(names.first) * Expr::from(AmplitudeConvention::Initial.symbol()),
             phase: Expr::zero(),
@@ -307,7 +311,7 @@ pub(super) fn solve(
     options: &Options,
 ) -> Result<Solution, Refusal> {
     refuse_other_orders(parts, options)?;
-    let names = Names::beside(oscillator);
+    let names = AnswerSymbols::beside(oscillator);
     let Some(shape) = Shape::of(restoring, oscillator, parts) else {
         return Err(Reason::NoProjection.to(Method::Averaging).about(&parts.restoring));
     };

@@ -275,7 +275,7 @@ impl Asked<'_> {
             return Ok(None);
         }
         let still = question.expand(true)?;
-        let found = Found { still: Slow::new(&still, &question), slow, expansion };
+        let found = DrivenExpansion { still: Slow::new(&still, &question), slow, expansion };
         question.answer(&found).map(Some)
     }
 }
@@ -482,7 +482,7 @@ impl<'a> Question<'a> {
 }
 
 /// What an expansion of a driven motion found.
-struct Found {
+struct DrivenExpansion {
     expansion: Expansion,
     slow: Slow,
     /// Without damping and drive.
@@ -490,8 +490,8 @@ struct Found {
 }
 
 impl Question<'_> {
-    fn answer(&self, found: &Found) -> Result<Solution, Refusal> {
-        let Found { expansion, slow, still } = found;
+    fn answer(&self, found: &DrivenExpansion) -> Result<Solution, Refusal> {
+        let DrivenExpansion { expansion, slow, still } = found;
         let (p, q) = self.resonance;
         let (names, scaling, drive) = (&self.names, self.scaling, self.drive);
         let rates = slow.rates(self)?;

@@ -252,7 +252,7 @@ pub(super) fn motion(
 /// without a singular origin.
 fn plane(question: &Question, expansion: &Expansion, coordinates: [Symbol; 2]) -> Plane {
     let names = &question.names;
-    let mut parts: BTreeMap<Part, BTreeMap<usize, Complex>> = BTreeMap::new();
+    let mut parts: BTreeMap<SlowPart, BTreeMap<usize, Complex>> = BTreeMap::new();
     for (k, rate) in expansion.rates.iter().enumerate().skip(1) {
         for (terms, imaginary) in [(&rate.real, false), (&rate.imaginary, true)] {
             for (monomial, number) in terms.terms() {
@@ -260,9 +260,9 @@ fn plane(question: &Question, expansion: &Expansion, coordinates: [Symbol; 2]) -
                     - monomial.exponent(names.complex.conjugate)
                     - 1;
                 let part = match (turns, imaginary) {
-                    (0, false) => Part::Drains,
-                    (0, true) => Part::Turns,
-                    (turns, _) => Part::Wave(turns.unsigned_abs()),
+                    (0, false) => SlowPart::Drains,
+                    (0, true) => SlowPart::Turns,
+                    (turns, _) => SlowPart::Wave(turns.unsigned_abs()),
                 };
                 let term = in_plane(monomial, number, names, coordinates);
                 let order = parts.entry(part).or_default().entry(k).or_insert_with(Complex::zero);
@@ -291,7 +291,7 @@ fn plane(question: &Question, expansion: &Expansion, coordinates: [Symbol; 2]) -
 
 /// What slow equations are made of, each part with an order of its own that leads.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Part {
+enum SlowPart {
     /// `a'` without the phase.
     Drains,
     /// `psi'` without the phase.

@@ -260,13 +260,13 @@ impl<'a> Plan<'a> {
 /// Coefficients of harmonics: for each a row of the orders at which it is not zero, for each
 /// symmetry of its own, all in one memory.
 pub(super) struct Harmonics<'m> {
-    rows: [Vec<Row>; 2],
+    rows: [Vec<OrderRange>; 2],
     entries: &'m mut [Lanes],
 }
 
 /// Where a row begins, and how many of its orders there are.
 #[derive(Clone, Copy)]
-struct Row {
+struct OrderRange {
     begin: usize,
     length: usize,
 }
@@ -288,11 +288,11 @@ impl<'m> Harmonics<'m> {
     /// So many harmonics, in that much [room](Self::room).
     pub fn new(plan: &Plan, count: usize, entries: &'m mut [Lanes]) -> Self {
         let mut end = 0;
-        let mut rows = |parity: usize| -> Vec<Row> {
+        let mut rows = |parity: usize| -> Vec<OrderRange> {
             let row = |index| {
                 let begin = end;
                 end += Self::orders(plan, index, parity);
-                Row { begin, length: 0 }
+                OrderRange { begin, length: 0 }
             };
             (0..count).map(row).collect()
         };

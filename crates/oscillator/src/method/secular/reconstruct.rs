@@ -56,7 +56,7 @@ pub fn expand(
 ) -> Option<Expansion<Integers>> {
     /// Below, whole numbers are short enough.
     const LONG: usize = 8;
-    let equation = Equation::new(force, highest, *scheme, extent);
+    let equation = SecularEquation::new(force, highest, *scheme, extent);
     let plan = equation.plan(highest)?;
     let beginning = fixed_width::beginning(&plan, supervision.interrupt);
     let slope = match (scheme.amplitude, extent) {
@@ -95,7 +95,7 @@ const ALONE: usize = 40;
 const GUESSED: usize = 32;
 
 /// What is to be expanded.
-struct Equation {
+struct SecularEquation {
     terms: Vec<Term>,
     /// The rate of a sine beside the terms.
     sine: Option<Rational>,
@@ -103,7 +103,7 @@ struct Equation {
     extent: Extent,
 }
 
-impl Equation {
+impl SecularEquation {
     fn new(force: &[ForceTerm<Integers>], highest: usize, scheme: Scheme, extent: Extent) -> Self {
         let terms = force.iter().map(|term| {
             let (numerator, denominator) = term.coefficient.mean();
@@ -129,7 +129,7 @@ impl Equation {
 }
 
 struct Expand<'a> {
-    equation: &'a Equation,
+    equation: &'a SecularEquation,
     plan: &'a Plan<'a>,
     slope: Option<Rational>,
     /// The first ones, in numbers of a fixed width.
@@ -742,7 +742,7 @@ mod tests {
                 let widest =
                     super::expand(force, highest, &scheme, Extent::Motion, Supervision::default());
                 let widest = widest.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
-                let equation = Equation::new(force, highest, scheme, Extent::Motion);
+                let equation = SecularEquation::new(force, highest, scheme, Extent::Motion);
                 let by_primes = Expand {
                     equation: &equation,
                     plan: &equation.plan(highest).expect("a symmetry"),

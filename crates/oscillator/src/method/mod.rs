@@ -3,7 +3,7 @@
 //!
 //! In comes the equation with its [`Options`]; [`solve`] looks at it from its equilibrium and asks
 //! the method of the table. Out goes a law and a motion with exact coefficients, the notes on where
-//! they hold and the derivation; or the reason why not, with the term in the way and [`Advice`] on
+//! they hold and the derivation; or the [`Reason`] why not, with the term in the way and advice on
 //! what to try. At numbers, [`numbers`] gives the frequency and the motion of any answer.
 //!
 //! One file per method, each opening with its reference and equations. To add one: write its file

@@ -31,7 +31,6 @@ pub(super) use drawing::{power_of_ten, written};
 
 /// Colour (Okabe and Ito), dash pattern and width of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(not(feature = "plot"), expect(dead_code))]
 pub struct CurveStyle(&'static str, &'static str, f64);
 
 impl CurveStyle {
@@ -89,6 +88,7 @@ impl CurveStyle {
     pub const BACKBONE: Self = Self("#777777", "none", 0.9);
     /// One of many curves, of which only the whole is to be seen.
     pub const ONE_OF_MANY: Self = Self("#bbbbbb", "none", 0.7);
+    #[cfg(feature = "plot")]
     const GUIDE: Self = Self("#777777", "none", 1.0);
 }
 

@@ -8,7 +8,9 @@ use lindstedt::Symbol;
 use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::numeric::ode::{self, Point, integrate_first_order};
 use lindstedt::series::RecurrenceError;
-use lindstedt::system::{End, Event, Integrator, Options, Path, System, SystemError};
+use lindstedt::system::{
+    End, Event, Integrator, LANES, Options, Path, Solver, System, SystemError, solve_together,
+};
 
 fn expression(text: &str) -> Expr {
     parse_expression(text).unwrap_or_else(|error| panic!("{text}: {error}"))
@@ -500,4 +502,61 @@ fn a_state_that_begins_with_a_high_power_is_followed() {
         let end = path.at(2.0).expect("a state")[0];
         assert!((end / 2.0_f64.powi(14) - 1.0).abs() < 1e-12, "{end}");
     }
+}
+
+/// Motions side by side are what each is alone, to the last bit: with other numbers and starts,
+/// across corners, past events, to an end of their own, and beside equations of another form.
+#[test]
+fn motions_side_by_side_are_what_each_is_alone() {
+    let same = |motions: &[(&Solver, Vec<f64>)], what: &str| {
+        let starts: Vec<(&Solver, &[f64])> =
+            motions.iter().map(|(solver, start)| (*solver, start.as_slice())).collect();
+        let together = solve_together(&starts, 0.0, 20.0);
+        assert_eq!(together.len(), motions.len(), "{what}");
+        for ((solver, start), together) in motions.iter().zip(together) {
+            match (solver.solve(0.0, start, 20.0), together) {
+                (Err(alone), Err(together)) => assert_eq!(alone, together, "{what}"),
+                (Ok(alone), Ok(together)) => {
+                    assert_eq!(alone.reason(), together.reason(), "{what}");
+                    assert_eq!(alone.step_count(), together.step_count(), "{what}");
+                    assert_eq!(alone.occurrences(), together.occurrences(), "{what}");
+                    for part in 0..=100 {
+                        let time = alone.end() * f64::from(part) / 100.0;
+                        assert_eq!(alone.at(time), together.at(time), "{what} at {time}");
+                    }
+                }
+                (alone, together) => panic!("{what}: {alone:?} and {together:?}"),
+            }
+        }
+    };
+    let count = 2 * LANES + 3;
+    let options = Options::default();
+    for (right, events) in [
+        (
+            "-d*v - sin(x) + cos(3*t)/4",
+            vec![Event::record(expression("x")), Event::stop(expression("x - 3"))],
+        ),
+        ("-d*v - x - tanh(20*x)/(1 + exp(-x^2)) + atan(v)*x^(1/3)", vec![]),
+        ("d*x^3", vec![]),
+    ] {
+        let base = system(&["x", "v"], &["v", right], &[("d", 0.3)]).unwrap();
+        let base = base.solver(&events, &options);
+        let number = |index: usize| [("d".into(), 0.3 + 0.01 * index as f64)].into();
+        let solvers: Vec<Solver> = (0..count)
+            .map(|index| base.with_numbers(&number(index)).expect("the same form"))
+            .collect();
+        let starts = (0..count).map(|index| vec![1.0 + 0.1 * index as f64, 0.5]);
+        same(&solvers.iter().zip(starts).collect::<Vec<_>>(), right);
+    }
+    let corners = system(&["x", "v"], &["v", "-x - 30*max(x - 1, 0)^(3/2) - sgn(v)/10"], &[]);
+    let corners = corners.unwrap().solver(&[], &options);
+    let other = system(&["x", "v"], &["v", "-x*abs(x)"], &[]).unwrap().solver(&[], &options);
+    let root = system(&["x", "v"], &["v", "log(x)"], &[]).unwrap().solver(&[], &options);
+    let mut motions: Vec<(&Solver, Vec<f64>)> =
+        (0..count).map(|index| (&corners, vec![0.3 * index as f64, 1.0])).collect();
+    motions.insert(3, (&other, vec![1.0, 0.0]));
+    motions.insert(7, (&root, vec![-1.0, 0.0]));
+    motions.insert(9, (&corners, vec![f64::NAN, 0.0]));
+    same(&motions, "corners");
+    assert!(solve_together(&[], 0.0, 1.0).is_empty());
 }

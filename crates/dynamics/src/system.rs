@@ -36,8 +36,10 @@ use crate::numeric::ode::root::{Until, bisect};
 use crate::series::recurrence::RecurrenceError;
 use crate::symbol::Symbol;
 
+pub use taylor::LANES;
+
 use narrow::Argument;
-use taylor::{Expansion, Step};
+use taylor::{Expansion, Run, Step};
 
 /// Equations ready to be followed.
 ///
@@ -266,7 +268,7 @@ fn is_vanishing([from, to]: [f64; 2]) -> bool {
 
 /// The last place up to this one at which all states are within the range of numbers, where they
 /// leave it before.
-fn end_of_range(length: f64, is_within: impl Fn(f64) -> bool) -> Option<f64> {
+fn end_of_range(length: f64, mut is_within: impl FnMut(f64) -> bool) -> Option<f64> {
     const HALVINGS: u32 = 60;
     if is_within(length) {
         return None;
@@ -419,11 +421,39 @@ impl Solver {
         let (system, events, options) = (&self.system, &self.events, &self.options);
         match &self.expansion {
             Some(expansion) => {
-                taylor::follow(system, [start, end], values, events, options, expansion.clone()?)
+                let expansion = expansion.clone()?;
+                let run = Run::new(system, [start, end], values, events, options, expansion);
+                taylor::follow(run)
             }
             None => runge_kutta::follow(system, [start, end], values, events, options),
         }
     }
+}
+
+/// As [`Solver::solve`] for several motions between the same times, each from its values: those
+/// whose solvers differ in numbers alone go side by side, [`LANES`] at a time, each bit for bit as
+/// it is alone.
+pub fn solve_together(
+    motions: &[(&Solver, &[f64])],
+    start: f64,
+    end: f64,
+) -> Vec<Result<Path, SystemError>> {
+    let mut runs: Vec<Run> = Vec::new();
+    let mut alone = Vec::new();
+    for (solver, values) in motions {
+        let Solver { system, events, options, expansion } = *solver;
+        let is_like = |own: &Expansion| runs.first().is_none_or(|run| run.is_like(own));
+        match expansion {
+            Some(Ok(own)) if is_like(own) && system.check(start, values, end, options).is_ok() => {
+                let times = [start, end];
+                runs.push(Run::new(system, times, values, events, options, own.clone()));
+                alone.push(None);
+            }
+            _ => alone.push(Some(solver.solve(start, values, end))),
+        }
+    }
+    let mut together = taylor::follow_together(runs).into_iter();
+    alone.into_iter().filter_map(|alone| alone.or_else(|| together.next())).collect()
 }
 
 impl System {
@@ -513,7 +543,7 @@ impl System {
         match options.integrator {
             Integrator::Taylor => {
                 let expansion = taylor::expansion(self, events, options.tolerance)?;
-                taylor::follow(self, [start, end], values, events, options, expansion)
+                taylor::follow(Run::new(self, [start, end], values, events, options, expansion))
             }
             Integrator::RungeKutta => {
                 runge_kutta::follow(self, [start, end], values, events, options)

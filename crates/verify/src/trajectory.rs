@@ -30,7 +30,7 @@ use crate::interrupt::Interrupt;
 use crate::mechanics::{Equations, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh};
-use crate::system::{End, Integrator, Options, Path, Solver, System, SystemError};
+use crate::system::{End, Integrator, Options, Path, Solver, System, SystemError, solve_together};
 
 pub use section::{Crossing, MOST_CROSSINGS, Section};
 pub use sensitivity::DISPLACEMENT;
@@ -296,23 +296,21 @@ impl Course {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn follow(self) -> Result<Trajectory, TrajectoryError> {
-        self.followed(None, Accounted::Yes)
+        let first = self.clone().followed_by(Integrator::Taylor, Accounted::Yes);
+        self.or_by_evaluation(first, Accounted::Yes)
     }
 
-    /// [`Course::follow`], with what is ready of another course that has other numbers, or another
-    /// start, alone.
-    fn followed(
+    /// A motion that was followed by its series; where there is none at the start, or it ends, it
+    /// may still be followed by evaluation alone.
+    fn or_by_evaluation(
         self,
-        ready: Option<&Ready>,
+        first: Result<Trajectory, TrajectoryError>,
         accounted: Accounted,
     ) -> Result<Trajectory, TrajectoryError> {
-        let first = self.clone().followed_by(Integrator::Taylor, ready, accounted);
-        // A start without a series, or a series that ends, may still be followed by evaluation
-        // alone.
         match first {
             Ok(motion) if motion.reason != End::Singular => Ok(motion),
             Ok(_) | Err(TrajectoryError::System(SystemError::Start(_))) => {
-                let second = self.followed_by(Integrator::RungeKutta, None, accounted);
+                let second = self.followed_by(Integrator::RungeKutta, accounted);
                 match (&first, &second) {
                     (Ok(one), Ok(other)) if one.end() >= other.end() => first,
                     (Ok(_), Err(_)) => first,
@@ -328,41 +326,69 @@ impl Course {
     /// # Errors
     /// As [`Course::follow`].
     pub fn follow_by(self, integrator: Integrator) -> Result<Trajectory, TrajectoryError> {
-        self.followed_by(integrator, None, Accounted::Yes)
+        self.followed_by(integrator, Accounted::Yes)
     }
 
     fn followed_by(
         self,
         integrator: Integrator,
-        ready: Option<&Ready>,
         accounted: Accounted,
     ) -> Result<Trajectory, TrajectoryError> {
-        let adapted = match ready {
-            Some(ready) => {
-                self.check_start()?;
-                ready.with_numbers(&self)
-            }
-            None => None,
+        let ready = self.ready(integrator)?;
+        let first = ready.solver.solve(0.0, &ready.start(&self), self.duration)?;
+        self.finish(&ready, first, (integrator, accounted))
+    }
+
+    /// Follows several courses by their series, those that differ in numbers and starts alone side
+    /// by side, and accounts for no energy; `ready` is one of them, made ready.
+    fn followed_together(
+        courses: Vec<Self>,
+        ready: Option<&Ready>,
+    ) -> Vec<Result<Trajectory, TrajectoryError>> {
+        let made_ready = |course: &Self| {
+            let adapted = match ready {
+                Some(ready) => course.check_start().map(|()| ready.with_numbers(course))?,
+                None => None,
+            };
+            let ready = adapted.map_or_else(|| course.ready(Integrator::Taylor), Ok)?;
+            let start = ready.start(course);
+            Ok::<_, TrajectoryError>((ready, start))
         };
-        let ready = match adapted {
-            Some(ready) => ready,
-            None => self.ready(integrator)?,
+        let all: Vec<_> = courses.iter().map(made_ready).collect();
+        let motions = all.iter().flatten().map(|(ready, start)| (&ready.solver, start.as_slice()));
+        let duration = courses.first().map_or(0.0, |course| course.duration);
+        let paths = solve_together(&motions.collect::<Vec<_>>(), 0.0, duration);
+        let mut paths = paths.into_iter();
+        let mut first = |course: &Self, ready: &Ready| match paths.next() {
+            Some(path) => course.clone().finish(ready, path?, (Integrator::Taylor, Accounted::No)),
+            None => course.clone().followed_by(Integrator::Taylor, Accounted::No),
         };
-        let mut start = self.start.clone();
-        start.resize(ready.states.len(), 0.0);
+        let followed = |(course, ready): (Self, &Result<(Ready, Vec<f64>), TrajectoryError>)| {
+            let first = match ready {
+                Ok((ready, _)) => first(&course, ready),
+                Err(error) => Err(error.clone()),
+            };
+            course.or_by_evaluation(first, Accounted::No)
+        };
+        courses.into_iter().zip(&all).map(followed).collect()
+    }
+
+    /// A motion whose first stretch has been followed.
+    fn finish(
+        self,
+        ready: &Ready,
+        first: Path,
+        (integrator, accounted): (Integrator, Accounted),
+    ) -> Result<Trajectory, TrajectoryError> {
         let equations = StateEquations {
             states: &ready.states,
             right: &ready.right,
             values: &ready.values,
             critical: &ready.critical,
         };
-        let (pieces, reason) = self.pieces(
-            &ready.solver,
-            &equations,
-            start,
-            &self.options(integrator),
-            ready.recorded,
-        )?;
+        let options = self.options(integrator);
+        let (pieces, reason) =
+            self.pieces(first, &ready.solver, &equations, &options, ready.recorded)?;
         let mut motion = Trajectory {
             course: self,
             integrator,
@@ -472,6 +498,13 @@ struct Ready {
 }
 
 impl Ready {
+    /// The states at the start of a course; no work has been done.
+    fn start(&self, course: &Course) -> Vec<f64> {
+        let mut start = course.start.clone();
+        start.resize(self.states.len(), 0.0);
+        start
+    }
+
     /// These equations take the numbers of a course that differs in its numbers and its start
     /// alone. `None` says that other numbers make other equations.
     fn with_numbers(&self, course: &Course) -> Option<Self> {

@@ -1,5 +1,7 @@
 //! Polynomials of a step: value, and the roots of the series of an event.
 
+use pulp::{Arch, Simd, WithSimd};
+
 use crate::numeric::ode::root::{Until, bisect};
 
 /// The value at `s`.
@@ -7,29 +9,34 @@ pub(super) fn value(series: &[f64], s: f64) -> f64 {
     series.iter().rev().fold(0.0, |sum, coefficient| sum * s + coefficient)
 }
 
-/// The values at several places, each as [`value`] has it: several sums at a time wait less on each
+/// The values at several places, each as [`value`] has it: so many sums at a time wait less on each
 /// other than one.
 pub(super) fn values(series: &[f64], places: &[f64], into: &mut Vec<f64>) {
-    const LANES: usize = 8;
-    for places in places.chunks(LANES) {
-        let mut at = [0.0; LANES];
-        at[..places.len()].copy_from_slice(places);
-        // One by one, so that they stay in registers in unoptimised builds too.
-        let [a, b, c, d, e, f, g, h] = at;
-        let [mut of_a, mut of_b, mut of_c, mut of_d] = [0.0; 4];
-        let [mut of_e, mut of_f, mut of_g, mut of_h] = [0.0; 4];
-        for &coefficient in series.iter().rev() {
-            of_a = of_a * a + coefficient;
-            of_b = of_b * b + coefficient;
-            of_c = of_c * c + coefficient;
-            of_d = of_d * d + coefficient;
-            of_e = of_e * e + coefficient;
-            of_f = of_f * f + coefficient;
-            of_g = of_g * g + coefficient;
-            of_h = of_h * h + coefficient;
+    Arch::new().dispatch(Values { series, places, into });
+}
+
+struct Values<'a> {
+    series: &'a [f64],
+    places: &'a [f64],
+    into: &'a mut Vec<f64>,
+}
+
+impl WithSimd for Values<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        const TOGETHER: usize = 32;
+        for places in self.places.chunks(TOGETHER) {
+            let (mut at, mut sums) = ([0.0; TOGETHER], [0.0; TOGETHER]);
+            at[..places.len()].copy_from_slice(places);
+            for coefficient in self.series.iter().rev() {
+                for (sum, place) in sums.iter_mut().zip(&at) {
+                    *sum = *sum * place + coefficient;
+                }
+            }
+            self.into.extend_from_slice(&sums[..places.len()]);
         }
-        let sums = [of_a, of_b, of_c, of_d, of_e, of_f, of_g, of_h];
-        into.extend_from_slice(&sums[..places.len()]);
     }
 }
 

@@ -107,6 +107,7 @@ pub(super) fn expansion(
         order,
         outputs,
         narrow: system.narrow.iter().map(|argument| argument.kind).collect(),
+        powers: Powers::new(order),
         of_steps: Allowance::new(tolerance, order),
         of_arguments: Allowance::new(CLOSELY, order),
     })
@@ -143,57 +144,61 @@ pub(super) fn first_step(
     Some((reach, (0..values.len()).map(size).collect()))
 }
 
-/// The path between two times from these values, with the expansion of these events.
-pub(super) fn follow(
-    system: &System,
-    [start, end]: [f64; 2],
-    values: &[f64],
-    events: &[Event],
-    options: &Options,
-    mut expansion: Expansion,
-) -> Result<Path, SystemError> {
-    expansion.begin(start, values);
-    let mut run = Run {
-        system,
-        events,
-        options,
-        expansion,
-        start,
-        duration: end - start,
-        time: 0.0,
-        values: values.to_vec(),
-        signs: vec![0.0; events.len()],
-        steps: vec![],
-        occurrences: vec![],
-        stuck: 0,
-        met: None,
-        last: None,
-        halvings: 0,
-    };
-    let reason = loop {
-        if let Some(reason) = run.step()? {
-            break reason;
+/// Motions side by side: a register of 512 bits, or two or four smaller ones.
+pub const LANES: usize = 8;
+
+/// The path of a run.
+pub(super) fn follow(mut run: Run) -> Result<Path, SystemError> {
+    loop {
+        if let Some(reason) = run.before_step() {
+            return Ok(run.finish(reason));
         }
-    };
-    if run.steps.is_empty() {
-        // Nowhere to go: where it starts it is all the same.
-        run.steps.push(Step { start: 0.0, order: 0, coefficients: run.values });
+        run.expansion.compute();
+        if let Some(reason) = run.step()? {
+            return Ok(run.finish(reason));
+        }
     }
-    Ok(Path {
-        end: if reason == End::Reached { end } else { start + run.time },
-        motion: Motion::Taylor { steps: run.steps, start },
-        reason,
-        occurrences: run.occurrences,
-    })
+}
+
+/// The paths of several runs of the same recurrences, in their order: eight of them side by side,
+/// each bit for bit what it is alone.
+pub(super) fn follow_together(mut runs: Vec<Run>) -> Vec<Result<Path, SystemError>> {
+    let Some(first) = runs.first() else { return vec![] };
+    let mut tape: Tape<LANES> = first.expansion.tape.side_by_side();
+    let rates = first.expansion.rates().to_vec();
+    let mut ends: Vec<Option<Result<End, SystemError>>> = runs.iter().map(|_| None).collect();
+    for (runs, ends) in runs.chunks_mut(LANES).zip(ends.chunks_mut(LANES)) {
+        loop {
+            for (lane, (run, end)) in runs.iter_mut().zip(&mut *ends).enumerate() {
+                if end.is_none() {
+                    *end = run.before_step().map(Ok);
+                    tape.load(lane, &run.expansion.tape);
+                }
+            }
+            if ends.iter().all(Option::is_some) {
+                break;
+            }
+            tape.expand(&rates);
+            for (lane, (run, end)) in runs.iter_mut().zip(&mut *ends).enumerate() {
+                if end.is_none() {
+                    run.expansion.take_from(&tape, lane);
+                    *end = run.step().transpose();
+                }
+            }
+        }
+    }
+    let finished = |(run, end): (Run, Result<End, SystemError>)| end.map(|end| run.finish(end));
+    runs.into_iter().zip(ends.into_iter().flatten()).map(finished).collect()
 }
 
 /// A run on its way.
-struct Run<'a> {
+pub(super) struct Run<'a> {
     system: &'a System,
     events: &'a [Event],
     options: &'a Options,
     expansion: Expansion,
     start: f64,
+    end: f64,
     duration: f64,
     /// Since the start.
     time: f64,
@@ -223,22 +228,79 @@ struct Last {
     occurrences: usize,
 }
 
-impl Run<'_> {
-    /// A step on, or one back; answers why the run ends, if it does.
+impl<'a> Run<'a> {
+    /// A run between two times from these values, with the expansion of these events.
+    pub(super) fn new(
+        system: &'a System,
+        [start, end]: [f64; 2],
+        values: &[f64],
+        events: &'a [Event],
+        options: &'a Options,
+        mut expansion: Expansion,
+    ) -> Self {
+        expansion.begin(start, values);
+        Self {
+            system,
+            events,
+            options,
+            expansion,
+            start,
+            end,
+            duration: end - start,
+            time: 0.0,
+            values: values.to_vec(),
+            signs: vec![0.0; events.len()],
+            steps: vec![],
+            occurrences: vec![],
+            stuck: 0,
+            met: None,
+            last: None,
+            halvings: 0,
+        }
+    }
+
+    /// Whether it may go side by side with an expansion.
+    pub(super) fn is_like(&self, expansion: &Expansion) -> bool {
+        self.expansion.tape.is_like(&expansion.tape)
+    }
+
+    /// The path of a run that has ended.
+    fn finish(mut self, reason: End) -> Path {
+        if self.steps.is_empty() {
+            // Nowhere to go: where it starts it is all the same.
+            self.steps.push(Step { start: 0.0, order: 0, coefficients: self.values });
+        }
+        Path {
+            end: if reason == End::Reached { self.end } else { self.start + self.time },
+            motion: Motion::Taylor { steps: self.steps, start: self.start },
+            reason,
+            occurrences: self.occurrences,
+        }
+    }
+
+    /// Puts the expansion where the next step begins, for it to be computed; answers why the run
+    /// ends there, if it does.
+    fn before_step(&mut self) -> Option<End> {
+        let over = self.time >= self.duration;
+        if !over && self.steps.len() >= self.options.step_limit {
+            return Some(End::StepLimit);
+        }
+        if !over && self.options.interrupt.is_requested() {
+            return Some(End::Interrupted);
+        }
+        self.expansion.put(self.start + self.time, &self.values);
+        None
+    }
+
+    /// A step on along the series that were computed, or one back; answers why the run ends, if it
+    /// does.
     ///
     /// # Errors
     /// A state or an event without a value where the run begins.
     fn step(&mut self) -> Result<Option<End>, SystemError> {
         let over = self.time >= self.duration;
-        if !over && self.steps.len() >= self.options.step_limit {
-            return Ok(Some(End::StepLimit));
-        }
-        if !over && self.options.interrupt.is_requested() {
-            return Ok(Some(End::Interrupted));
-        }
         let now = self.start + self.time;
-        let defined =
-            defined(&mut self.expansion, self.system, now, &self.values, self.events.len());
+        let defined = self.defined();
         let last = self.last.take();
         if let Some(last) = last {
             if self.halvings < MOST_HALVINGS
@@ -270,6 +332,21 @@ impl Run<'_> {
         Ok(self.go(reach))
     }
 
+    /// Whether everything has a series here.
+    ///
+    /// # Errors
+    /// The first state or event without one.
+    fn defined(&mut self) -> Result<(), SystemError> {
+        let settled = self.expansion.settle();
+        settled.map_err(|state| SystemError::Start(self.system.state[state]))?;
+        let is_undefined =
+            |event: &usize| !self.expansion.event(*event).iter().all(|value| value.is_finite());
+        match (0..self.events.len()).find(is_undefined) {
+            Some(event) => Err(SystemError::Event(event)),
+            None => Ok(()),
+        }
+    }
+
     /// Why it ends here, where there is no series.
     fn without_value(&self) -> End {
         let before = self.steps.last().map_or(self.time, |step| step.start);
@@ -277,7 +354,7 @@ impl Run<'_> {
     }
 
     /// How far the series reach from here, and nothing is stepped over.
-    fn reach(&self, now: f64) -> f64 {
+    fn reach(&mut self, now: f64) -> f64 {
         let reach = self.expansion.step().min(self.duration - self.time);
         let next = next_critical(&self.system.critical, now);
         let reach = next.map_or(reach, |next| reach.min(next - now));
@@ -291,9 +368,9 @@ impl Run<'_> {
         // A corner within the step ends it, and so does an event that stops.
         let mut corner = self.expansion.first_corner(reach);
         let mut length = corner.map_or(reach, |(_, place)| place);
-        let (expansion, count) = (&self.expansion, self.values.len());
         let range = end_of_range(length, |place| {
-            within_range((0..count).map(|state| value(expansion.state(state), place)))
+            self.expansion.tape.values(place, &mut self.values);
+            within_range(self.values.iter().copied())
         });
         if let Some(end) = range {
             (corner, length) = (None, end);
@@ -323,8 +400,8 @@ impl Run<'_> {
         for state in 0..self.values.len() {
             coefficients.extend_from_slice(self.expansion.state(state));
         }
-        for (state, series) in self.values.iter_mut().zip(coefficients.chunks(order + 1)) {
-            *state = value(series, length);
+        if stop.is_some() || range.is_some() {
+            self.expansion.tape.values(length, &mut self.values);
         }
         self.steps.push(Step { start: time, order, coefficients });
         let whole = corner.is_none() && stop.is_none() && range.is_none();
@@ -389,8 +466,8 @@ impl Run<'_> {
         let mut values = self.values.clone();
         for state in 0..values.len() {
             values[state] += DIGITS * f64::EPSILON * self.values[state].abs();
-            let expanded = values[state] != self.values[state]
-                && self.expansion.expand_once(now, &values).is_ok();
+            let expanded =
+                values[state] != self.values[state] && self.expansion.expand_once(now, &values);
             if expanded {
                 for ((sum, here), (missed, _)) in by_rounding.iter_mut().zip(&here).zip(missed) {
                     *sum += (self.expansion.rate(*missed) - here).abs();
@@ -399,7 +476,7 @@ impl Run<'_> {
             values[state] = self.values[state];
         }
         // It was expanded here before, and is again.
-        let again = self.expansion.expand_once(now, &self.values).is_ok();
+        let again = self.expansion.expand_once(now, &self.values);
         again && missed.iter().zip(by_rounding).all(|((_, apart), sum)| *apart <= sum)
     }
 
@@ -421,26 +498,6 @@ fn next_critical(critical: &[f64], now: f64) -> Option<f64> {
     critical.get(critical.partition_point(|time| *time <= beyond)).copied()
 }
 
-/// Expands everything about a point.
-///
-/// # Errors
-/// The first state or event without a series there.
-fn defined(
-    expansion: &mut Expansion,
-    system: &System,
-    time: f64,
-    values: &[f64],
-    events: usize,
-) -> Result<(), SystemError> {
-    let expanded = expansion.expand(time, values);
-    expanded.map_err(|state| SystemError::Start(system.state[state]))?;
-    let undefined = |event: &usize| !expansion.event(*event).iter().all(|value| value.is_finite());
-    match (0..events).find(undefined) {
-        Some(event) => Err(SystemError::Event(event)),
-        None => Ok(()),
-    }
-}
-
 /// Right sides and events, with their series.
 #[derive(Clone, Debug)]
 pub(super) struct Expansion {
@@ -452,6 +509,7 @@ pub(super) struct Expansion {
     /// The places of the rates, then of the events, then of what may turn faster than the motion.
     outputs: Vec<usize>,
     narrow: Vec<Kind>,
+    powers: Powers,
     /// What the last terms of states, events and corners may be.
     of_steps: Allowance,
     /// Those of arguments of what is narrow.
@@ -468,10 +526,12 @@ impl Expansion {
 
     /// Takes the side of every corner on which this point lies, or to which it is going.
     pub(super) fn begin(&mut self, time: f64, values: &[f64]) {
+        self.put(time, values);
+        let corners = self.tape.corners().count();
         // The argument of one corner may depend on the side of another.
-        for _ in 0..=self.tape.corners().count() {
+        for _ in 0..if corners > 0 { corners + 1 } else { 0 } {
             // Parts without a value on a side not taken yet do not matter here.
-            let _ = self.expand_once(time, values);
+            self.compute();
             if !self.tape.take_sides() {
                 break;
             }
@@ -481,43 +541,70 @@ impl Expansion {
     /// The coefficients of everything about a point.
     ///
     /// # Errors
-    /// The first state whose series has no finite value, or the first of all where a corner has
-    /// none.
+    /// As [`Self::settle`].
     pub(super) fn expand(&mut self, time: f64, values: &[f64]) -> Result<(), usize> {
-        for _ in 0..=self.tape.corners().count() {
-            let result = self.expand_once(time, values);
-            // A corner left behind together with another: the motion is beyond it and going on.
-            let left = self.tape.corners().position(|(series, side)| {
-                let slope = series.get(1).copied().unwrap_or(0.0);
-                series[0] * side < 0.0 && slope * side < 0.0
-            });
-            match left {
-                Some(corner) => self.cross(corner),
-                None => return result,
-            }
-        }
-        self.expand_once(time, values)
+        self.put(time, values);
+        self.compute();
+        self.settle()
     }
 
-    fn expand_once(&mut self, time: f64, values: &[f64]) -> Result<(), usize> {
-        let size = self.states;
+    /// The coefficients of everything about a point, on these sides of the corners; whether there
+    /// are any.
+    fn expand_once(&mut self, time: f64, values: &[f64]) -> bool {
+        self.put(time, values);
+        self.compute();
+        self.check().is_ok()
+    }
+
+    /// Puts the variables where everything is to be expanded.
+    fn put(&mut self, time: f64, values: &[f64]) {
         for (variable, value) in values.iter().chain([&time]).enumerate() {
             self.tape.set(variable, 0, *value);
         }
         if self.order > 0 {
-            self.tape.set(size, 1, 1.0);
+            self.tape.set(self.states, 1, 1.0);
         }
-        for n in 0..=self.order {
-            self.tape.compute(n);
-            if n == self.order {
-                break;
-            }
-            for state in 0..size {
-                self.tape.feed(state, self.outputs[state], n, 1.0);
-            }
+    }
+
+    /// Computes the coefficients of everything.
+    fn compute(&mut self) {
+        self.tape.expand(&self.outputs[..self.states]);
+    }
+
+    /// Takes what was computed for it in a lane.
+    fn take_from(&mut self, tape: &Tape<LANES>, lane: usize) {
+        let places = (0..self.states).chain(self.outputs[self.states..].iter().copied());
+        tape.unload(lane, places, &mut self.tape);
+    }
+
+    /// The places of the rates.
+    fn rates(&self) -> &[usize] {
+        &self.outputs[..self.states]
+    }
+
+    /// Goes over to the other side of corners that were left behind together with another: the
+    /// motion is beyond them and going on.
+    ///
+    /// # Errors
+    /// The first state whose series has no finite value, or the first of all where a corner has
+    /// none.
+    fn settle(&mut self) -> Result<(), usize> {
+        for _ in 0..=self.tape.corners().count() {
+            let left = self.tape.corners().position(|(series, side)| {
+                let slope = series.get(1).copied().unwrap_or(0.0);
+                series[0] * side < 0.0 && slope * side < 0.0
+            });
+            let Some(corner) = left else { break };
+            self.cross(corner);
+            self.compute();
         }
+        self.check()
+    }
+
+    /// Whether states and corners have series.
+    fn check(&self) -> Result<(), usize> {
         let is_defined = |series: &[f64]| series.iter().all(|value| value.is_finite());
-        if let Some(state) = (0..size).find(|&state| !is_defined(self.state(state))) {
+        if let Some(state) = (0..self.states).find(|&state| !is_defined(self.state(state))) {
             return Err(state);
         }
         // A corner with a value and no series, as that of a root that begins here, would not be
@@ -545,32 +632,30 @@ impl Expansion {
     }
 
     /// The longest step within the tolerance of every state, event and argument of a corner.
-    pub(super) fn step(&self) -> f64 {
-        let followed = (0..self.states).map(|state| self.state(state));
+    pub(super) fn step(&mut self) -> f64 {
+        let followed = (0..self.states).map(|state| self.tape.series(state));
         let events = self.outputs.iter().skip(self.states).take(self.events);
         let events = events.map(|output| self.tape.series(*output));
         // What a side has no value for is not looked at.
         let finite = |series: &&[f64]| series.iter().all(|value| value.is_finite());
         let corners = self.tape.corners().map(|(series, _)| series).filter(finite);
-        let mut powers = Powers::new(self.order);
         followed.chain(events).chain(corners).fold(f64::INFINITY, |longest, series| {
-            self.of_steps.reach(series, longest, &mut powers)
+            self.of_steps.reach(series, longest, &mut self.powers)
         })
     }
 
     /// The step, no longer than this, that ends beside the first place that is narrow for it, where
     /// there is one.
-    fn short_of_narrow(&self, longest: f64) -> f64 {
+    fn short_of_narrow(&mut self, longest: f64) -> f64 {
         let arguments = self.outputs.iter().skip(self.states + self.events);
         let mut length = longest;
-        let mut powers = Powers::new(self.order);
         for (kind, output) in self.narrow.iter().zip(arguments) {
             let series = self.tape.series(*output);
             if end_of_step(*kind, series, length).is_none() {
                 continue;
             }
             // Beyond its own reach the series of the argument says nothing.
-            length = self.of_arguments.reach(series, length, &mut powers);
+            length = self.of_arguments.reach(series, length, &mut self.powers);
             if let Some(end) = end_of_step(*kind, series, length) {
                 length = end;
             }
@@ -684,6 +769,9 @@ impl Expansion {
 /// So many of the last terms of a series are looked at: symmetry may leave some of them zero.
 const LAST: usize = 8;
 
+/// What is left of a step that is too long for the tolerance.
+const SHORTER: f64 = 0.9;
+
 /// What the last terms of a series may be, of its size on the step.
 #[derive(Clone, Debug)]
 struct Allowance {
@@ -711,7 +799,6 @@ impl Allowance {
     /// The longest step, no longer than this, on which the last terms of a series of this order are
     /// within the tolerance.
     fn reach(&self, series: &[f64], longest: f64, powers: &mut Powers) -> f64 {
-        const SHORTER: f64 = 0.9;
         const TRIALS: usize = 400;
         let order = self.order;
         let Some(lead) = series.iter().position(|c| *c != 0.0) else {
@@ -729,7 +816,16 @@ impl Allowance {
                 h = h.min((series[lead].abs() / size).powf(1.0 / (k - lead) as f64));
             }
         }
-        for _ in 0..TRIALS {
+        let in_vain = match h.is_finite() {
+            true => self.trials_in_vain(series, lead, powers.of(h)).min(TRIALS),
+            false => 0,
+        };
+        let first_trial = (0..in_vain).fold(h, |h, _| h * SHORTER);
+        // Where powers underflow the trials say something else.
+        let is_known = powers.of(first_trial)[order] >= f64::MIN_POSITIVE;
+        let (mut h, trials) =
+            if is_known { (first_trial, in_vain..TRIALS) } else { (h, 0..TRIALS) };
+        for _ in trials {
             if h.is_infinite() || self.is_within(series, lead, powers.of(h)) {
                 break;
             }
@@ -738,14 +834,31 @@ impl Allowance {
         h
     }
 
+    /// How many trials from the place with these powers on are certain to fail: the size of a
+    /// series falls with the place, so that the last terms have to fall to what they may be of the
+    /// size here.
+    fn trials_in_vain(&self, series: &[f64], lead: usize, powers: &[f64]) -> usize {
+        let size = self.size(series, lead, powers);
+        let first = Self::first(self.order);
+        let trials = (first..self.order + 1).zip(self.parts).map(|(k, part)| {
+            let (term, allowed) = (series[k].abs() * powers[k], part * size);
+            let is_told = k > lead && term.is_finite() && allowed > 1e-280;
+            if is_told { (term / allowed).ln() / (-(k as f64) * SHORTER.ln()) } else { 0.0 }
+        });
+        (trials.fold(0.0, f64::max) - 1e-6) as usize
+    }
+
+    /// How large the leading terms of a series are at the place with these powers.
+    fn size(&self, series: &[f64], lead: usize, powers: &[f64]) -> f64 {
+        let leading = lead..lead.max(self.order / 2) + 1;
+        leading.fold(0.0, |size, k| size.max(series[k].abs() * powers[k]))
+    }
+
     /// Whether the last terms of a series that begins with the order `lead`, at the place with
     /// these powers, are within the tolerance.
     fn is_within(&self, series: &[f64], lead: usize, powers: &[f64]) -> bool {
         let term = |k: usize| series[k].abs() * powers[k];
-        let mut size = 0.0_f64;
-        for k in lead..lead.max(self.order / 2) + 1 {
-            size = size.max(term(k));
-        }
+        let size = self.size(series, lead, powers);
         let first = Self::first(self.order);
         for (k, part) in (first..self.order + 1).zip(self.parts) {
             let is_within = k <= lead || term(k) <= size * part;
@@ -759,6 +872,7 @@ impl Allowance {
 
 /// The powers of one number after the other: most of the series of a step are looked at in the same
 /// place.
+#[derive(Clone, Debug)]
 struct Powers {
     of: f64,
     table: Vec<f64>,

@@ -18,7 +18,6 @@ pub mod tape;
 pub mod taylor;
 pub mod terms;
 pub mod waves;
-pub mod written;
 
 pub use convolution::{Convolutions, Node};
 pub use fourier::{FourierSeries, Resonance, fraction, linear_combination, sum_of_products};

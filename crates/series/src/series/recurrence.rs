@@ -1,9 +1,8 @@
 //! An expression as a list of recurrences for its Taylor coefficients, each part once.
 //!
 //! In: the names of the variables, numbers for every other symbol, expressions. Out: a [`Tape`]
-//! that computes the series of each expression, one order beyond those of the variables given so
-//! far, so that a differential equation can feed its rates back; or, by [`numeric_taylor`], the
-//! series in one variable.
+//! that computes the series of each expression, and of variables whose rates are among them; or, by
+//! [`numeric_taylor`], the series in one variable.
 //!
 //! References: A. Griewank, A. Walther, *Evaluating Derivatives*, 2nd ed., SIAM 2008, chapter 13;
 //! E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed.,
@@ -19,7 +18,7 @@ use crate::expr::{Expr, Function, Node};
 use crate::symbol::Symbol;
 
 use super::guard::Guards;
-use super::tape::{Corner, Operation, Tape};
+use super::tape::{Operation, Program, Tape};
 
 /// Why an expression has no recurrence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -39,7 +38,7 @@ pub enum RecurrenceError {
 /// says where the others are.
 #[derive(Clone, Debug)]
 pub struct Recurrences {
-    tape: Tape,
+    program: Program,
     variables: Vec<Symbol>,
     numbers: BTreeMap<Symbol, f64>,
     known: HashMap<Expr, usize>,
@@ -69,12 +68,12 @@ impl Recurrences {
         numbers: &BTreeMap<Symbol, f64>,
         degree: usize,
     ) -> Self {
-        let mut tape = Tape::new(degree);
+        let mut program = Program::new(degree);
         for (_, degree) in variables {
-            tape.given(*degree);
+            program.variable(*degree);
         }
         Self {
-            tape,
+            program,
             variables: variables.iter().map(|(name, _)| *name).collect(),
             numbers: numbers.clone(),
             known: HashMap::new(),
@@ -96,25 +95,18 @@ impl Recurrences {
         Ok(place)
     }
 
-    /// Lets this name stand for what is at a place.
-    pub(super) fn define(&mut self, name: Symbol, place: usize) {
-        self.known.insert(Expr::symbol(name.name()), place);
-    }
-
     /// What computes the series of all that was added.
     pub fn into_tape(mut self) -> Tape {
-        self.tape.keep_only(&self.outputs);
-        self.tape
+        self.program.keep_only(&self.outputs);
+        Tape::new(self.program)
     }
 
     fn emit(&mut self, operation: Operation) -> usize {
-        self.tape.emit(operation)
+        self.program.emit(operation)
     }
 
     fn constant(&mut self, value: f64) -> usize {
-        let place = self.tape.given(Some(0));
-        self.tape.set(place, 0, value);
-        place
+        self.program.number(value)
     }
 
     fn multiply(&mut self, one: usize, other: usize) -> usize {
@@ -124,13 +116,13 @@ impl Recurrences {
         }
         // The shorter series first, and of two long ones the one computed later: its last
         // coefficient is needed last.
-        let (short, long) = match self.tape.degree(key.0) < self.tape.degree(key.1) {
+        let (short, long) = match self.program.degree(key.0) < self.program.degree(key.1) {
             true => key,
             false => (key.1, key.0),
         };
-        let place = match self.tape.is_number(short) {
+        let place = match self.program.is_number(short) {
             true => self.emit(Operation::Sum([(short, long)].into())),
-            false => self.emit(Operation::Multiply(short, long, self.tape.degree(short))),
+            false => self.emit(Operation::Multiply(short, long, self.program.degree(short))),
         };
         self.products.insert(key, place);
         place
@@ -148,10 +140,10 @@ impl Recurrences {
 
     fn slope(&mut self, mut of: usize) -> usize {
         // A number beside it makes no difference.
-        while let Operation::Sum(terms) = self.tape.operation(of) {
-            let mut changing = terms.iter().filter(|(_, place)| !self.tape.is_number(*place));
+        while let Operation::Sum(terms) = self.program.operation(of) {
+            let mut changing = terms.iter().filter(|(_, place)| !self.program.is_number(*place));
             match (changing.next(), changing.next()) {
-                (Some((weight, place)), None) if self.tape.is_one(*weight) => of = *place,
+                (Some((weight, place)), None) if self.program.is_one(*weight) => of = *place,
                 _ => break,
             }
         }
@@ -203,7 +195,7 @@ impl Recurrences {
         match self.numbers.get(&symbol) {
             Some(number) => {
                 let place = self.constant(*number);
-                self.tape.named.push((symbol, place));
+                self.program.named.push((symbol, place));
                 Ok(place)
             }
             None => Err(RecurrenceError::Unknown(symbol)),
@@ -214,7 +206,7 @@ impl Recurrences {
     fn sum(&mut self, places: &[usize]) -> usize {
         let mut terms = Vec::with_capacity(places.len());
         for place in places {
-            match self.tape.operation(*place) {
+            match self.program.operation(*place) {
                 Operation::Sum(inner) if inner.len() == 1 => terms.extend(inner.iter().copied()),
                 _ => terms.push((self.constant(1.0), *place)),
             }
@@ -230,7 +222,7 @@ impl Recurrences {
         let open = factors.iter().zip(places).filter(|(factor, _)| !is_gate(factor));
         // Numbers first and by themselves: what changes may be shared with another product.
         let (numbers, changing): (Vec<usize>, Vec<usize>) =
-            open.map(|(_, place)| *place).partition(|place| self.tape.is_number(*place));
+            open.map(|(_, place)| *place).partition(|place| self.program.is_number(*place));
         let mut of = |places: Vec<usize>| {
             places.into_iter().reduce(|product, place| self.multiply(product, place))
         };
@@ -244,7 +236,9 @@ impl Recurrences {
             Some(product) => self.scale(coefficient, product),
         };
         for (_, place) in factors.iter().zip(places).filter(|(factor, _)| is_gate(factor)) {
-            if let Operation::Choose { corner, positive, negative } = *self.tape.operation(*place) {
+            if let Operation::Choose { corner, positive, negative } =
+                *self.program.operation(*place)
+            {
                 product = self.emit(Operation::Choose {
                     corner,
                     positive: positive.map(|_| product),
@@ -274,7 +268,7 @@ impl Recurrences {
             let one = self.constant(1.0);
             let result = result.unwrap_or(one);
             return match exponent.is_negative() {
-                true => self.emit(Operation::Divide(one, result, self.tape.degree(result))),
+                true => self.emit(Operation::Divide(one, result, self.program.degree(result))),
                 false => result,
             };
         }
@@ -292,8 +286,8 @@ impl Recurrences {
         self.emit(Operation::Integral {
             of,
             slope,
-            degree: self.tape.degree(slope),
-            rate: self.tape.size() + behind,
+            degree: self.program.degree(slope),
+            rate: self.program.size() + behind,
             first,
         })
     }
@@ -301,7 +295,7 @@ impl Recurrences {
     /// `y' = u'/v`, times a sign.
     fn quotient(&mut self, of: usize, over: usize, sign: f64, first: fn(f64) -> f64) -> usize {
         let slope = self.slope(of);
-        let place = self.tape.size();
+        let place = self.program.size();
         self.emit(Operation::Quotient { of, slope, own: place + 1, over, sign, first });
         self.slope(place);
         place
@@ -322,8 +316,13 @@ impl Recurrences {
         };
         let sign = if hyperbolic { 1.0 } else { -1.0 };
         let slope = self.slope(of);
-        let place =
-            self.emit(Operation::Waves { of, slope, degree: self.tape.degree(slope), sign, first });
+        let place = self.emit(Operation::Waves {
+            of,
+            slope,
+            degree: self.program.degree(slope),
+            sign,
+            first,
+        });
         let places = [place, self.emit(Operation::SecondWave)];
         self.waves.insert((of, hyperbolic), places);
         places
@@ -362,7 +361,7 @@ impl Recurrences {
     fn choose(&mut self, argument: &Expr, place: usize, sides: [Option<usize>; 2]) -> usize {
         let guard = self.guards.find_or_add(argument);
         if guard.is_new {
-            self.tape.corners.push(Corner { argument: place, side: 1.0 });
+            self.program.corners.push(place);
         }
         let [positive, negative] = match guard.is_aligned {
             true => sides,
@@ -455,7 +454,7 @@ pub fn numeric_taylor(
     }
     // The argument of one corner may depend on the side of another.
     for _ in 0..=tape.corners().count() {
-        (0..=degree).for_each(|order| tape.compute(order));
+        tape.expand(&[]);
         if !tape.take_sides() {
             break;
         }
@@ -515,7 +514,7 @@ mod tests {
             for text in texts {
                 recurrences.add(&parse_expression(text).expect(text)).expect(text);
             }
-            recurrences.tape.size()
+            recurrences.program.size()
         };
         assert_eq!(count(&["sin(x)"]), count(&["sin(x)", "cos(x)", "sin(x)"]));
         assert_eq!(count(&["sgn(x)*exp(x^2)", "exp(x^2)"]), count(&["sgn(x)*exp(x^2)"]));

@@ -1,25 +1,33 @@
-//! Taylor coefficients of many quantities at once: a list of recurrences, computed order by order.
+//! Taylor coefficients of many quantities at once: a list of recurrences, computed order by order,
+//! for one motion or for several side by side.
 //!
-//! In: operations in an order in which they can be computed, and the coefficients of the variables.
-//! Out: those of everything else, one order beyond what the variables have so far. With
-//! `u = u_0 + u_1 s + ...`:
+//! In: operations in an order in which they can be computed, and the values of the variables.
+//! Out: the coefficients of everything. With `u = u_0 + u_1 s + ...`:
 //!
 //! ```text
 //! (u v)_n = sum_k u_k v_(n-k)            p = u^a:   n u_0 p_n = sum_(k=1..n) (a k - n + k) u_k p_(n-k)
 //! q = u/v:  v_0 q_n = u_n - sum_(k=1..n) v_k q_(n-k)
 //! y' = u' g:   n y_n = sum_(k=1..n) k u_k g_(n-k)          exp: g = y;  tan: g = 1 + y^2;  sin: g = cos
 //! y' = u'/v:   n v_0 y_n = n u_n - sum_(0<k<n) k y_k v_(n-k)      log: v = u;  atan: v = 1 + u^2
+//! y' = F:      (n + 1) y_(n+1) = F_n
 //! ```
 //!
 //! An order costs one product sum for each product, quotient and integral: `n` multiplications, or
 //! fewer where an operand is a number or grows like time.
+//!
+//! `L` motions go through the same operations side by side, each with its own numbers. The lanes
+//! never touch each other and no operation is fused or reordered: each gets bit for bit what it
+//! gets alone.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::Arc;
+
+use pulp::{Arch, Simd, WithSimd};
 
 use crate::symbol::Symbol;
 
-/// What a place holds; operands are places of series.
+/// One instruction. Its operands, and its result, are series with a number each, their place.
 #[derive(Clone, Debug)]
 pub(super) enum Operation {
     /// A variable or a number: nothing to compute.
@@ -72,56 +80,54 @@ impl Operation {
     }
 }
 
-/// Where an expression has another formula on either side: the sign of a series, and the side that
-/// is taken.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Corner {
-    pub(super) argument: usize,
-    pub(super) side: f64,
-}
-
-/// Operations and the series of all of them.
+/// The instructions of a system of expressions, in an order in which they can be followed, and what
+/// they begin with.
 #[derive(Clone, Debug)]
-pub struct Tape {
+pub(super) struct Program {
     /// Coefficients in a series.
     length: usize,
     operations: Vec<Operation>,
     /// The order from which a series is zero, where there is one.
     degrees: Vec<Option<usize>>,
+    /// The value of each number that is given; 0 elsewhere.
+    values: Vec<f64>,
     /// Places of what changes with the order, and of what is only a number.
     changing: Vec<usize>,
     numbers: Vec<usize>,
-    /// The coefficients of each place.
-    series: Vec<Box<[f64]>>,
     /// The place of the slope of each variable that is fed.
     slopes: Vec<Option<usize>>,
-    /// `1/n`.
-    inverse: Vec<f64>,
-    pub(super) corners: Vec<Corner>,
+    /// The arguments whose signs choose between formulas.
+    pub(super) corners: Vec<usize>,
     /// The letters with a number, each with its place.
     pub(super) named: Vec<(Symbol, usize)>,
 }
 
-impl Tape {
+impl Program {
     /// Nothing yet; series are to have the orders up to this one.
     pub(super) fn new(degree: usize) -> Self {
         Self {
             length: degree + 1,
             operations: vec![],
             degrees: vec![],
+            values: vec![],
             changing: vec![],
             numbers: vec![],
-            series: vec![],
             slopes: vec![],
-            inverse: (0..degree + 2).map(|n| 1.0 / n as f64).collect(),
             corners: vec![],
             named: vec![],
         }
     }
 
-    /// Adds a variable or a number that is zero beyond this order, if it is.
-    pub(super) fn given(&mut self, degree: Option<usize>) -> usize {
+    /// Adds a variable that is zero beyond this order, if it is.
+    pub(super) fn variable(&mut self, degree: Option<usize>) -> usize {
         self.push(Operation::Given, degree)
+    }
+
+    /// Adds a number.
+    pub(super) fn number(&mut self, value: f64) -> usize {
+        let place = self.push(Operation::Given, Some(0));
+        self.values[place] = value;
+        place
     }
 
     /// Adds an operation; answers its place.
@@ -158,7 +164,7 @@ impl Tape {
     fn push(&mut self, operation: Operation, degree: Option<usize>) -> usize {
         self.operations.push(operation);
         self.degrees.push(degree);
-        self.series.push(vec![0.0; self.length].into());
+        self.values.push(0.0);
         self.slopes.push(None);
         self.operations.len() - 1
     }
@@ -186,14 +192,13 @@ impl Tape {
     /// Whether a place holds the number one, given as such.
     pub(super) fn is_one(&self, place: usize) -> bool {
         let given = matches!(self.operations[place], Operation::Given);
-        given && self.is_number(place) && self.series(place)[0] == 1.0
+        given && self.is_number(place) && self.values[place] == 1.0
     }
 
     /// Leaves out what is needed neither for these places nor for a corner.
     pub(super) fn keep_only(&mut self, outputs: &[usize]) {
         let mut needed = vec![false; self.operations.len()];
-        let corners = self.corners.iter().map(|corner| corner.argument);
-        let mut open: Vec<usize> = outputs.iter().copied().chain(corners).collect();
+        let mut open: Vec<usize> = outputs.iter().chain(&self.corners).copied().collect();
         while let Some(place) = open.pop() {
             if !std::mem::replace(&mut needed[place], true) {
                 open.extend(self.operations[place].operands(place));
@@ -202,23 +207,44 @@ impl Tape {
         self.changing.retain(|place| needed[*place]);
         self.numbers.retain(|place| needed[*place]);
     }
+}
+
+/// The series of a system of expressions along `L` motions.
+#[derive(Clone, Debug)]
+pub struct Tape<const L: usize = 1> {
+    program: Arc<Program>,
+    /// Place by place its coefficients.
+    series: Vec<[f64; L]>,
+    /// On which side of each corner the motions are taken to be.
+    sides: Vec<[f64; L]>,
+}
+
+impl Tape {
+    /// The variables are zero.
+    pub(super) fn new(program: Program) -> Self {
+        let mut series = vec![[0.0]; program.length * program.size()];
+        for (coefficients, value) in series.chunks_mut(program.length).zip(&program.values) {
+            coefficients[0] = [*value];
+        }
+        Self { series, sides: vec![[1.0]; program.corners.len()], program: program.into() }
+    }
 
     /// Sets a coefficient of a variable.
     pub fn set(&mut self, place: usize, order: usize, value: f64) {
-        self.series[place][order] = value;
+        self.series[place * self.program.length + order] = [value];
     }
 
     /// Sets the numbers of letters anew; `false` where the operations may be others for these
     /// numbers, and where one is missing. With corners the numbers say which of them are one.
     #[must_use]
     pub fn set_numbers(&mut self, numbers: &BTreeMap<Symbol, f64>) -> bool {
-        for index in 0..self.named.len() {
-            let (name, place) = self.named[index];
+        for index in 0..self.program.named.len() {
+            let (name, place) = self.program.named[index];
             let before = self.series(place)[0];
             match numbers.get(&name) {
                 Some(number) if number.to_bits() == before.to_bits() => {}
                 // A factor of one may be left out.
-                Some(number) if self.corners.is_empty() && *number != 1.0 && before != 1.0 => {
+                Some(number) if self.sides.is_empty() && *number != 1.0 && before != 1.0 => {
                     self.set(place, 0, *number)
                 }
                 _ => return false,
@@ -229,173 +255,308 @@ impl Tape {
 
     /// The series at a place; what has no value is not a finite number.
     pub fn series(&self, place: usize) -> &[f64] {
-        &self.series[place]
+        self.row(place).as_flattened()
     }
 
-    /// Computes the coefficients of this order of everything, where those of the variables and all
-    /// lower ones are known.
-    pub fn compute(&mut self, order: usize) {
-        let numbers: &[usize] = if order == 0 { &self.numbers } else { &[] };
-        let inverse = self.inverse[order];
-        for &place in numbers.iter().chain(&self.changing) {
-            let operation = &self.operations[place];
-            compute_at(operation, place, &mut self.series, &self.corners, (order, inverse));
-        }
-    }
-
-    /// `(n + 1) y_(n+1) = unit F_n`: hands a rate back to its variable, in this unit of time.
-    pub fn feed(&mut self, variable: usize, rate: usize, order: usize, unit: f64) {
-        let inverse = self.inverse[order + 1];
-        let rate = self.series[rate][order];
-        let slope = unit * rate;
-        self.series[variable][order + 1] = inverse * slope;
-        if let Some(place) = self.slopes[variable] {
-            self.series[place][order + 1] = slope;
-        }
-    }
-}
-
-/// Computes the coefficient of order `n` of what is at a place; `inverse` is `1/n`.
-fn compute_at(
-    operation: &Operation,
-    place: usize,
-    series: &mut [Box<[f64]>],
-    corners: &[Corner],
-    (n, inverse): (usize, f64),
-) {
-    let row = |place: usize| &*series[place];
-    let at = |place: usize, order: usize| series[place][order];
-    let coefficient = match operation {
-        Operation::Given | Operation::SecondWave => return,
-        Operation::Sum(terms) => {
-            let mut sum = 0.0;
-            for (weight, place) in terms {
-                sum += at(*weight, 0) * at(*place, n);
-            }
-            sum
-        }
-        Operation::Multiply(a, b, degree) => products(row(*a), row(*b), 0..n.min(*degree) + 1, n),
-        Operation::Divide(a, b, degree) => {
-            let known = products(row(*b), row(place), 1..n.min(*degree) + 1, n);
-            (at(*a, n) - known) / at(*b, 0)
-        }
-        Operation::Slope(a) => n as f64 * at(*a, n),
-        Operation::Power { base, exponent, first } if n == 0 => first(at(*base, 0), *exponent),
-        // What is zero altogether, as behind a closed corner, has zero for its roots.
-        Operation::Power { base, exponent, .. }
-            if *exponent > 0.0 && row(*base)[..=n].iter().all(|c| *c == 0.0) =>
-        {
-            0.0
-        }
-        Operation::Power { base, exponent, .. } => {
-            let weight = |k: usize| exponent * k as f64 - (n - k) as f64;
-            let sum: f64 = (1..=n).map(|k| weight(k) * at(*base, k) * at(place, n - k)).sum();
-            sum / (n as f64 * at(*base, 0))
-        }
-        Operation::Integral { of, first, .. } | Operation::Quotient { of, first, .. } if n == 0 => {
-            first(at(*of, 0))
-        }
-        Operation::Integral { slope, degree, rate, .. } => {
-            inverse * products(row(*slope), row(*rate), 1..n.min(*degree) + 1, n)
-        }
-        Operation::Quotient { slope, own, over, sign, .. } => {
-            let known = products(row(*own), row(*over), 1..n, n);
-            (sign * at(*slope, n) - known) * inverse / at(*over, 0)
-        }
-        Operation::Waves { of, slope, degree, sign, first } => {
-            let [one, other] = match n {
-                0 => first.map(|first| first(at(*of, 0))),
-                _ => {
-                    let orders = 1..n.min(*degree) + 1;
-                    let sums = products_with(row(*slope), [row(place + 1), row(place)], orders, n);
-                    [inverse * sums[0], sign * inverse * sums[1]]
-                }
-            };
-            series[place + 1][n] = other;
-            one
-        }
-        Operation::Choose { corner, positive, negative } => {
-            let Corner { argument, side } = &corners[*corner];
-            let chosen = if *side > 0.0 { positive } else { negative };
-            match at(*argument, 0).is_finite() {
-                true => chosen.map_or(0.0, |chosen| at(chosen, n)),
-                // Without a value it has no side.
-                false => f64::NAN,
+    /// The values of the first variables at `s`: all at once, so that each sum waits for itself
+    /// alone.
+    pub fn values(&self, s: f64, into: &mut [f64]) {
+        into.fill(0.0);
+        for order in (0..self.program.length).rev() {
+            let coefficients = self.series.iter().skip(order).step_by(self.program.length);
+            for (value, [coefficient]) in into.iter_mut().zip(coefficients) {
+                *value = *value * s + coefficient;
             }
         }
-    };
-    series[place][n] = coefficient;
-}
+    }
 
-impl Tape {
     /// The series whose signs choose between formulas (`abs`, `sgn`, `H`, `max`, `min`), and on
     /// which side of zero they are taken to be.
     pub fn corners(&self) -> impl Iterator<Item = (&[f64], f64)> {
-        let argument = |corner: &Corner| (self.series(corner.argument), corner.side);
-        self.corners.iter().map(argument)
+        let arguments = self.program.corners.iter().map(|argument| self.series(*argument));
+        arguments.zip(self.sides.iter().map(|[side]| *side))
     }
 
     /// Takes the other side of a corner, by its number in [`corners`](Self::corners).
     pub fn cross(&mut self, corner: usize) {
-        self.corners[corner].side *= -1.0;
+        self.sides[corner][0] *= -1.0;
     }
 
     /// Takes the side of every corner on which its series lies, or to which it is going; whether
     /// one of them is another now.
     pub fn take_sides(&mut self) -> bool {
         let mut changed = false;
-        for index in 0..self.corners.len() {
-            let Corner { argument, side } = self.corners[index];
-            let first =
-                self.series(argument).iter().find(|value| value.is_finite() && **value != 0.0);
-            if let Some(first) = first.filter(|first| first.signum() != side) {
-                self.corners[index].side = first.signum();
+        for (corner, argument) in self.program.corners.iter().enumerate() {
+            let series = self.row(*argument).as_flattened();
+            let first = series.iter().find(|value| value.is_finite() && **value != 0.0);
+            if let Some(first) = first.filter(|first| first.signum() != self.sides[corner][0]) {
+                self.sides[corner] = [first.signum()];
                 changed = true;
             }
         }
         changed
     }
+
+    /// The same operations for several motions, all of which begin as this one.
+    pub fn side_by_side<const L: usize>(&self) -> Tape<L> {
+        Tape {
+            program: self.program.clone(),
+            series: self.series.iter().map(|[value]| [*value; L]).collect(),
+            sides: self.sides.iter().map(|[side]| [*side; L]).collect(),
+        }
+    }
+
+    /// Whether the operations of another one are these, so that both may go side by side.
+    pub fn is_like(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.program, &other.program)
+    }
+}
+
+impl<const L: usize> Tape<L> {
+    /// The motion of one lane takes its variables, numbers and sides from a tape of its own with
+    /// the same operations.
+    pub fn load(&mut self, lane: usize, own: &Tape) {
+        let length = self.program.length;
+        let given = self.program.operations.iter().zip(self.series.chunks_mut(length));
+        for ((operation, series), own) in given.zip(own.series.chunks(length)) {
+            if matches!(operation, Operation::Given) {
+                for (coefficients, [own]) in series.iter_mut().zip(own).take(2) {
+                    coefficients[lane] = *own;
+                }
+            }
+        }
+        for (sides, [own]) in self.sides.iter_mut().zip(&own.sides) {
+            sides[lane] = *own;
+        }
+    }
+
+    /// Hands the series of one lane at these places, and those of the corners, to a tape of its
+    /// own with the same operations.
+    pub fn unload(&self, lane: usize, places: impl Iterator<Item = usize>, own: &mut Tape) {
+        let length = self.program.length;
+        for place in places.chain(self.program.corners.iter().copied()) {
+            let own = &mut own.series[place * length..][..length];
+            for (own, coefficients) in own.iter_mut().zip(self.row(place)) {
+                *own = [coefficients[lane]];
+            }
+        }
+    }
+
+    fn row(&self, place: usize) -> &[[f64; L]] {
+        let length = self.program.length;
+        &self.series[place * length..][..length]
+    }
+
+    /// Computes the coefficients of everything from the values of the variables; those of the first
+    /// variables grow by the rates at these places.
+    pub fn expand(&mut self, rates: &[usize]) {
+        Arch::new().dispatch(Expansion { tape: self, rates });
+    }
+}
+
+/// All orders of a tape; always compiled into its caller, so that it gets the widest registers
+/// there are.
+struct Expansion<'a, const L: usize> {
+    tape: &'a mut Tape<L>,
+    rates: &'a [usize],
+}
+
+impl<const L: usize> WithSimd for Expansion<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Tape { program, series, sides } = self.tape;
+        let length = program.length;
+        let mut inverse = f64::INFINITY;
+        for order in 0..length {
+            let numbers: &[usize] = if order == 0 { &program.numbers } else { &[] };
+            for &place in numbers.iter().chain(&program.changing) {
+                compute(program, (sides, series), place, (order, inverse));
+            }
+            if order + 1 == length {
+                break;
+            }
+            inverse = 1.0 / (order + 1) as f64;
+            for (variable, rate) in self.rates.iter().enumerate() {
+                let rate = series[rate * length + order];
+                series[variable * length + order + 1] = each(|lane| inverse * rate[lane]);
+                if let Some(slope) = program.slopes[variable] {
+                    series[slope * length + order + 1] = rate;
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn each<const L: usize>(value: impl Fn(usize) -> f64) -> [f64; L] {
+    let mut result = [0.0; L];
+    for (lane, entry) in result.iter_mut().enumerate() {
+        *entry = value(lane);
+    }
+    result
+}
+
+/// Computes the coefficient of order `n` of what is at a place; `inverse` is `1/n`.
+#[inline(always)]
+fn compute<const L: usize>(
+    program: &Program,
+    (sides, series): (&[[f64; L]], &mut [[f64; L]]),
+    place: usize,
+    (n, inverse): (usize, f64),
+) {
+    let length = program.length;
+    let row = |place: usize| &series[place * length..][..length];
+    let at = |place: usize, order: usize| series[place * length + order];
+    let coefficient = match &program.operations[place] {
+        Operation::Given | Operation::SecondWave => return,
+        Operation::Sum(terms) => {
+            let mut sum = [0.0; L];
+            for (weight, place) in terms {
+                let (weight, term) = (at(*weight, 0), at(*place, n));
+                for lane in 0..L {
+                    sum[lane] += weight[lane] * term[lane];
+                }
+            }
+            sum
+        }
+        Operation::Multiply(a, b, degree) => products(row(*a), row(*b), 0..n.min(*degree) + 1, n),
+        Operation::Divide(a, b, degree) => {
+            let known = products(row(*b), row(place), 1..n.min(*degree) + 1, n);
+            let (a, b) = (at(*a, n), at(*b, 0));
+            each(|lane| (a[lane] - known[lane]) / b[lane])
+        }
+        Operation::Slope(a) => {
+            let a = at(*a, n);
+            each(|lane| n as f64 * a[lane])
+        }
+        Operation::Power { base, exponent, first } if n == 0 => {
+            let base = at(*base, 0);
+            each(|lane| first(base[lane], *exponent))
+        }
+        Operation::Power { base, exponent, .. } => {
+            let (base, own) = (row(*base), row(place));
+            let mut sum = [-0.0; L];
+            let mut vanishes = [*exponent > 0.0 && n > 0; L];
+            for k in 0..=n {
+                let weight = exponent * k as f64 - (n - k) as f64;
+                for lane in 0..L {
+                    vanishes[lane] &= base[k][lane] == 0.0;
+                    if k > 0 {
+                        sum[lane] += weight * base[k][lane] * own[n - k][lane];
+                    }
+                }
+            }
+            // What is zero altogether, as behind a closed corner, has zero for its roots.
+            each(|lane| match vanishes[lane] {
+                true => 0.0,
+                false => sum[lane] / (n as f64 * base[0][lane]),
+            })
+        }
+        Operation::Integral { of, first, .. } | Operation::Quotient { of, first, .. } if n == 0 => {
+            let of = at(*of, 0);
+            each(|lane| first(of[lane]))
+        }
+        Operation::Integral { slope, degree, rate, .. } => {
+            let sum = products(row(*slope), row(*rate), 1..n.min(*degree) + 1, n);
+            each(|lane| inverse * sum[lane])
+        }
+        Operation::Quotient { slope, own, over, sign, .. } => {
+            let known = products(row(*own), row(*over), 1..n, n);
+            let (slope, over) = (at(*slope, n), at(*over, 0));
+            each(|lane| (sign * slope[lane] - known[lane]) * inverse / over[lane])
+        }
+        Operation::Waves { of, slope, degree, sign, first } => {
+            let [one, other] = match n {
+                0 => {
+                    let of = at(*of, 0);
+                    first.map(|first| each(|lane| first(of[lane])))
+                }
+                _ => {
+                    let orders = 1..n.min(*degree) + 1;
+                    let others = [row(place + 1), row(place)];
+                    let [one, other] = products_with(row(*slope), others, orders, n);
+                    [each(|lane| inverse * one[lane]), each(|lane| sign * inverse * other[lane])]
+                }
+            };
+            series[(place + 1) * length + n] = other;
+            one
+        }
+        Operation::Choose { corner, positive, negative } => {
+            let (argument, side) = (at(program.corners[*corner], 0), sides[*corner]);
+            let [positive, negative] =
+                [positive, negative].map(|chosen| chosen.map_or([0.0; L], |chosen| at(chosen, n)));
+            each(|lane| match argument[lane].is_finite() {
+                true if side[lane] > 0.0 => positive[lane],
+                true => negative[lane],
+                // Without a value it has no side.
+                false => f64::NAN,
+            })
+        }
+    };
+    series[place * length + n] = coefficient;
 }
 
 /// `sum_k a_k b_(n-k)` over these orders. Two sums, of even and of odd k: half the waiting of one
 /// on the other.
-fn products(a: &[f64], b: &[f64], orders: Range<usize>, n: usize) -> f64 {
+#[inline(always)]
+fn products<const L: usize>(
+    a: &[[f64; L]],
+    b: &[[f64; L]],
+    orders: Range<usize>,
+    n: usize,
+) -> [f64; L] {
     if orders.is_empty() {
-        return 0.0;
+        return [0.0; L];
     }
     let (a, b) = (&a[orders.clone()], &b[n + 1 - orders.end..=n - orders.start]);
-    let (mut even, mut odd) = (0.0, 0.0);
+    let (mut even, mut odd) = ([0.0; L], [0.0; L]);
     let (pairs, backwards) = (a.chunks_exact(2), b.rchunks_exact(2));
     let last = pairs.remainder().iter().zip(backwards.remainder());
     for (a, b) in pairs.zip(backwards) {
-        even += a[0] * b[1];
-        odd += a[1] * b[0];
+        for lane in 0..L {
+            even[lane] += a[0][lane] * b[1][lane];
+            odd[lane] += a[1][lane] * b[0][lane];
+        }
     }
     for (a, b) in last {
-        even += a * b;
+        for lane in 0..L {
+            even[lane] += a[lane] * b[lane];
+        }
     }
-    even + odd
+    each(|lane| even[lane] + odd[lane])
 }
 
 /// As [`products`], of one series with two others.
-fn products_with(a: &[f64], [b, c]: [&[f64]; 2], orders: Range<usize>, n: usize) -> [f64; 2] {
+#[inline(always)]
+fn products_with<const L: usize>(
+    a: &[[f64; L]],
+    [b, c]: [&[[f64; L]]; 2],
+    orders: Range<usize>,
+    n: usize,
+) -> [[f64; L]; 2] {
     if orders.is_empty() {
-        return [0.0; 2];
+        return [[0.0; L]; 2];
     }
     let a = &a[orders.clone()];
     let [b, c] = [b, c].map(|other| &other[n + 1 - orders.end..=n - orders.start]);
-    let (mut even, mut odd) = ([0.0; 2], [0.0; 2]);
+    let (mut even, mut odd) = ([[0.0; L]; 2], [[0.0; L]; 2]);
     let (pairs, [of_b, of_c]) = (a.chunks_exact(2), [b, c].map(|other| other.rchunks_exact(2)));
     let last = pairs.remainder().iter().zip(of_b.remainder().iter().zip(of_c.remainder()));
     for (a, (b, c)) in pairs.zip(of_b.zip(of_c)) {
-        even[0] += a[0] * b[1];
-        odd[0] += a[1] * b[0];
-        even[1] += a[0] * c[1];
-        odd[1] += a[1] * c[0];
+        for lane in 0..L {
+            even[0][lane] += a[0][lane] * b[1][lane];
+            odd[0][lane] += a[1][lane] * b[0][lane];
+            even[1][lane] += a[0][lane] * c[1][lane];
+            odd[1][lane] += a[1][lane] * c[0][lane];
+        }
     }
     for (a, (b, c)) in last {
-        even[0] += a * b;
-        even[1] += a * c;
+        for lane in 0..L {
+            even[0][lane] += a[lane] * b[lane];
+            even[1][lane] += a[lane] * c[lane];
+        }
     }
-    [even[0] + odd[0], even[1] + odd[1]]
+    [each(|lane| even[0][lane] + odd[0][lane]), each(|lane| even[1][lane] + odd[1][lane])]
 }

@@ -23,7 +23,7 @@ use crate::exact::{from_f64, ratio};
 use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
 use crate::mechanics::{Rates, linear};
 use crate::symbol::{Symbol, fresh_stem};
-use crate::system::{End, Event, Options, Solver, System};
+use crate::system::{End, Event, Options, Path, Solver, System};
 
 /// A speed that rounding leaves of one that is zero, beside speeds and places of one.
 const AT_REST: f64 = 1e-9;
@@ -108,17 +108,17 @@ impl Layout {
 
 impl Course {
     /// The motion stretch by stretch, each as the equations say or with something held by friction,
-    /// and why it ends.
+    /// and why it ends. The first stretch has been followed, as the equations say.
     pub(super) fn pieces(
         &self,
+        first: Path,
         solver: &Solver,
         equations: &StateEquations,
-        start: Vec<f64>,
         options: &Options,
         recorded: usize,
     ) -> Result<(Vec<Piece>, End), TrajectoryError> {
         let (mut pieces, mut regimes) = (Vec::new(), Regimes::new());
-        let (mut from, mut state) = (0.0, start);
+        let (mut first, mut from, mut state) = (Some(first), 0.0, Vec::new());
         let (mut idle, mut holds) = (0, 0);
         let reason = loop {
             let piece = match regimes.iter().all(|(_, regime)| *regime == Regime::Typed) {
@@ -126,7 +126,10 @@ impl Course {
                     recorded,
                     layout: None,
                     from,
-                    path: solver.solve(from, &state, self.duration)?,
+                    path: match first.take() {
+                        Some(first) => first,
+                        None => solver.solve(from, &state, self.duration)?,
+                    },
                 },
                 false => match self.stretch(equations, &regimes, from, &mut state, options)? {
                     Some(piece) => piece,

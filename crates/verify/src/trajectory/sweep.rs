@@ -5,10 +5,10 @@
 //! order, whatever the number of threads; where somebody asks to stop, those that were begun. With
 //! a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
 
-use super::{Accounted, Course, Crossing, TrajectoryError};
-use crate::parallel::each;
+use super::{Course, Crossing, TrajectoryError};
+use crate::parallel::{each, threads};
 use crate::symbol::Symbol;
-use crate::system::{End, Integrator};
+use crate::system::{End, Integrator, LANES};
 
 /// What one of many motions leaves behind.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,8 +30,9 @@ pub struct SweptMotion {
 }
 
 /// Follows the course at every one of the values; `progress` hears of each motion that is done.
-/// Costs a motion each, on all cores. Once the interrupt of the course asks for it, no other motion
-/// is begun; those that had come past the time `after` are handed back.
+/// Costs a motion each, or less where eight of them go side by side, on all cores. Once the
+/// interrupt of the course asks for it, no other motion is begun; those that had come past the time
+/// `after` are handed back.
 ///
 /// # Errors
 /// The number, counted from zero, of the first motion that cannot begin, and why.
@@ -67,29 +68,37 @@ pub fn sweep(
     };
     // The equations are made ready once, if they can be, and take other numbers for each motion.
     let ready = grid.first().and_then(|first| at(first).ready(Integrator::Taylor).ok());
-    let one = |&(number, values): &(usize, &Vec<f64>)| {
-        if course.interrupt.is_requested() {
-            return Ok(None);
-        }
-        let after = course.after;
-        let motion =
-            at(values).followed(ready.as_ref(), Accounted::No).map_err(|error| (number, error))?;
-        progress();
-        // One that was cut off before it counts has nothing to show.
-        if motion.reason() == End::Interrupted && motion.end() < after {
-            return Ok(None);
-        }
-        Ok(Some(SweptMotion {
-            values: values.clone(),
-            end: motion.end(),
-            state: motion.at(motion.end()).unwrap_or_default(),
-            extremes: motion.extremes(),
-            crossings: motion.crossings().to_vec(),
-            touches: motion.touches().to_vec(),
-            reason: motion.reason(),
-        }))
-    };
+    // Side by side on one thread, and on all threads.
+    let size = grid.len().div_ceil(threads()).clamp(1, LANES);
     let numbered: Vec<_> = grid.iter().enumerate().collect();
-    let motions: Result<Vec<Option<SweptMotion>>, _> = each(&numbered, one).into_iter().collect();
+    let together = |group: &&[(usize, &Vec<f64>)]| {
+        if course.interrupt.is_requested() {
+            return Ok(vec![]);
+        }
+        let courses = group.iter().map(|(_, values)| at(values)).collect();
+        let motions = Course::followed_together(courses, ready.as_ref());
+        let mut swept = Vec::with_capacity(group.len());
+        for ((number, values), motion) in group.iter().zip(motions) {
+            let motion = motion.map_err(|error| (*number, error))?;
+            progress();
+            // One that was cut off before it counts, or before it moved, has nothing to show.
+            let end = motion.end();
+            if motion.reason() == End::Interrupted && (end < course.after || end == 0.0) {
+                continue;
+            }
+            swept.push(SweptMotion {
+                values: values.to_vec(),
+                end,
+                state: motion.at(end).unwrap_or_default(),
+                extremes: motion.extremes(),
+                crossings: motion.crossings().to_vec(),
+                touches: motion.touches().to_vec(),
+                reason: motion.reason(),
+            });
+        }
+        Ok(swept)
+    };
+    let groups: Vec<_> = numbered.chunks(size).collect();
+    let motions: Result<Vec<Vec<SweptMotion>>, _> = each(&groups, together).into_iter().collect();
     Ok(motions?.into_iter().flatten().collect())
 }

@@ -2,7 +2,7 @@
 //!
 //! In: a model, a start and settings that have been checked. Out: a [`Simulation`], from one run
 //! alone (`alone`) or from eight side by side (`lanes`), the same to the last bit. The coefficients
-//! of a step come from `recurrences`, which is written from `equations`.
+//! of a step come from `recurrences`.
 //!
 //! ```text
 //! step:    (h/r)^(p+1) <= tolerance, 1/r = max |v_n|^(1/n) over the last coefficients of the velocity, n = p-4 ... p
@@ -25,8 +25,6 @@
 mod angle;
 mod contact;
 mod course;
-#[cfg(test)]
-mod equations;
 mod flight;
 mod friction;
 mod kernels;

@@ -1,5 +1,9 @@
-//! The series of a step of equation (7). Written from the lines in `equations` by its test: a
-//! change here is lost.
+//! The series of a step of equation (7), in free flight by time, in contact by s.
+//!
+//! A left barrier is a right one seen in a mirror: x, v, beta and the direction of friction change
+//! sign. (The recurrences: A. Jorba, M. Zou, *Experimental Mathematics* 14 (2005) 99.) A force is a
+//! term in both functions and one in the equation of the test, which holds the series of both to
+//! those of the equation, in contact regularised by `regularised`.
 
 use super::kernels::{
     INVERSE, each, product, quotient, sine_and_cosine, square, time, waves_of_time,
@@ -219,5 +223,132 @@ pub(super) fn contact<const L: usize>(
         v[n + 1] = each(|lane| {
             factor[lane] * force_stretched[lane] - inputs.viscous[lane] * depth[n + 1][lane]
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::super::series::{Series, TIME_TERMS};
+    use super::*;
+    use crate::expr::{Expr, parse_expression};
+    use crate::impact::model::Side;
+    use crate::impact::regularised::regularised;
+    use crate::series::recurrence::Recurrences;
+    use crate::symbol::Symbol;
+
+    /// Equation (7) as it stands on paper; P is the force of the barrier.
+    const EQUATION: &str =
+        "P - sin(x) - viscous*x' - dry - arctangent*atan(k*x') + beta*sin(eta*t)*cos(x)";
+
+    const ORDER: usize = 24;
+
+    /// A start with every force on, which the terms of a test switch off.
+    fn inputs(terms: Terms) -> Inputs<1> {
+        let on = |on: bool, value: f64| [if on { value } else { 0.0 }];
+        let angle = 0.4_f64 + 0.3 * 0.3;
+        let (sine, cosine) = (1.3_f64 * 0.7).sin_cos();
+        Inputs {
+            place: [0.3],
+            velocity: [0.02],
+            sine: [angle.sin()],
+            cosine: [angle.cos()],
+            drive: [[sine], [cosine]],
+            unit: [0.01],
+            hertz: [[0.35], [30.0]],
+            dry: [0.05],
+            arctangent: on(terms.arctangent, 0.11),
+            viscous: [0.2],
+            beta: on(terms.excited, 0.6),
+            eta: [1.3],
+            gamma: [500.0],
+            mu: on(terms.damped_contact, 70.0),
+            ..Inputs::new()
+        }
+    }
+
+    /// The series of a system of equations by the recurrences of their expressions, state by state,
+    /// in the stretched variable of a step.
+    fn by_expressions(
+        states: [(&str, f64); 3],
+        rates: &[Expr],
+        (inputs, [[p], [q]]): (&Inputs<1>, [[f64; 1]; 2]),
+    ) -> Vec<Vec<f64>> {
+        let number = |name: &str, value: [f64; 1]| (Symbol::from(name), value[0]);
+        let numbers = BTreeMap::from([
+            number("dry", inputs.dry),
+            number("arctangent", inputs.arctangent),
+            number("viscous", inputs.viscous),
+            number("beta", inputs.beta),
+            number("eta", inputs.eta),
+            number("gamma", inputs.gamma),
+            number("mu", inputs.mu),
+            number("x_c", [0.4]),
+            number("k", [STEEPNESS]),
+            number("unit", inputs.unit),
+            number("p", [p]),
+            number("q", [q]),
+        ]);
+        let text = |text: &str| parse_expression(text).expect(text);
+        let stretch = text("unit*(1 + p*r + q*r^2)");
+        let states = states.into_iter().chain([("r", 0.0)]);
+        let variables: Vec<(Symbol, Option<usize>)> =
+            states.clone().map(|(name, _)| (Symbol::from(name), None)).collect();
+        let mut recurrences = Recurrences::new(&variables, &numbers, ORDER);
+        let rates = rates.iter().map(|rate| &stretch * rate).chain([Expr::one()]);
+        let rates: Vec<usize> =
+            rates.map(|rate| recurrences.add(&rate).expect("recurrences")).collect();
+        let mut tape = recurrences.into_tape();
+        for (place, (_, value)) in states.enumerate() {
+            tape.set(place, 0, value);
+        }
+        tape.expand(&rates);
+        (0..rates.len()).map(|place| tape.series(place).to_vec()).collect()
+    }
+
+    fn assert_same(own: &Series<1>, other: &[f64], what: &str) {
+        let size = other.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+        for (n, (own, other)) in own.iter().zip(other).enumerate() {
+            assert!(
+                (own[0] - other).abs() <= 1e-13 * (other.abs() + 1e-3 * size),
+                "{what}, order {n}: {} and {other}",
+                own[0]
+            );
+        }
+    }
+
+    /// What stands in this file is what follows from equation (7) as an expression, coefficient by
+    /// coefficient.
+    #[test]
+    fn the_series_are_those_of_the_equation() {
+        let acceleration = parse_expression(EQUATION).expect("equation (7)");
+        let in_contact_rates =
+            regularised(&[acceleration.clone(), Expr::one()], Side::Right).expect("rates in s");
+        let free = acceleration.substitute("P".into(), &Expr::zero()).expect("no barrier");
+        let in_flight_rates = [Expr::symbol("x'"), free, Expr::one()];
+        for bits in 0..8 {
+            let terms = Terms {
+                arctangent: bits & 1 != 0,
+                excited: bits & 2 != 0,
+                damped_contact: bits & 4 != 0,
+            };
+            let mut now = inputs(terms);
+            let mut series = Coefficients::<1>::new();
+            contact(&now, ORDER, terms, &mut series);
+            let start = [("w", 0.3), ("x'", 0.02), ("t", 0.7)];
+            let other = by_expressions(start, &in_contact_rates, (&now, in_contact(&now)));
+            assert_same(&series.place, &other[0], "w");
+            assert_same(&series.velocity, &other[1], "v in contact");
+            assert_same(&series.time, &[&[0.0], &other[2][1..]].concat(), "t");
+            let x = 0.4 + 0.3 * 0.3;
+            now.place = [x];
+            flight(&now, ORDER, terms, &mut series);
+            let start = [("x", x), ("x'", 0.02), ("t", 0.7)];
+            let other = by_expressions(start, &in_flight_rates, (&now, in_flight(&now)));
+            assert_same(&series.time, &[&[0.0], &other[2][1..TIME_TERMS]].concat(), "t in flight");
+            assert_same(&series.place, &other[0], "x");
+            assert_same(&series.velocity, &other[1], "v in flight");
+        }
     }
 }

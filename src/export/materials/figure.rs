@@ -28,7 +28,6 @@ const STYLES: [CurveStyle; 8] = [
 /// The times of the paper's Figure 4, s.
 const FIGURE_4: [f64; 2] = [1.0, 2.5];
 
-
 /// The swing against every barrier from 1 to 2.5 s, as in the paper's Figure 4, and the decay of
 /// its amplitude: as asked for, and beside it with the contact damping held fixed in the form under
 /// which the modulus says the opposite. With the decay stand those without a barrier and with one

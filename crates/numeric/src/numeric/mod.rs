@@ -13,7 +13,8 @@
 //! - [`periodic`]: true periodic orbits by shooting, and their Floquet multipliers.
 //! - [`return_map`]: true limit cycles, from one turning point to the next.
 //!
-//! [`period`], [`periodic`] and [`return_map`] belong to the judge: no method takes its answer from them.
+//! [`period`], [`periodic`] and [`return_map`] belong to the judge: no method takes its answer from
+//! them.
 
 pub mod continuation;
 pub mod harmonics;

@@ -13,9 +13,6 @@
 //! What stands in the documentation of a field stands in the schema, [`Kind::json_schema`]. What
 //! has no value is null: a key is never left out.
 
-// The names of values are for the schemas alone.
-#![cfg_attr(not(feature = "schema"), allow(dead_code, unused_imports))]
-
 pub mod audit;
 pub mod catalog;
 pub mod certificate;

@@ -117,7 +117,7 @@ pub enum UnitError {
 }
 
 impl UnitError {
-    /// What to write instead, where it is known.
+    /// The way forward: what could be written instead; `None` where it is not known.
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Missing(name) => Some(format!(

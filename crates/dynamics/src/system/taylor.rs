@@ -769,7 +769,7 @@ impl Expansion {
 /// So many of the last terms of a series are looked at: symmetry may leave some of them zero.
 const LAST: usize = 8;
 
-/// What is left of a step that is too long for the tolerance.
+/// The factor by which a step that is too long for the tolerance is shortened.
 const SHORTER: f64 = 0.9;
 
 /// What the last terms of a series may be, of its size on the step.

@@ -19,7 +19,7 @@ pub const FIRST_HARMONIC: Symbol = Symbol("a");
 /// The frequency.
 pub const FREQUENCY: Symbol = Symbol("omega");
 
-/// What the amplitude at the start is called where `A` is taken: the first of these that is free,
+/// The names of the amplitude at the start where `A` is taken: the first of these that is free,
 /// else `A_`, `A__` and so on; the others likewise.
 const AMPLITUDES: [&str; 3] = ["C", "X", "A_0"];
 const FIRST_HARMONICS: [&str; 3] = ["r", "rho", "a_1"];

@@ -183,7 +183,7 @@ pub struct UnknownParameter {
 }
 
 impl UnknownParameter {
-    /// What to write instead, where it is known.
+    /// The way forward: what could be written instead; `None` where it is not known.
     pub fn help(&self) -> Option<String> {
         self.nearest.map(|name| format!("did you mean `{name}`?"))
     }

@@ -21,7 +21,7 @@ use lindstedt::verify::{self, VerificationError};
 use lindstedt::{Interrupt, Oscillator, Progress, Supervision, Symbol};
 
 use super::answer::{Draw, drawn, no_such, page, pictured};
-use super::problem::problem;
+use super::problem::{expression, problem, value_name};
 use super::progress::{PROGRESS, with_progress};
 use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, tolerance, whole};
 
@@ -384,10 +384,10 @@ pub(super) fn oscillator(formula: &Formula, about: Option<&str>) -> Result<Oscil
     let x = oscillator.coordinate;
     let usage = |message: String| Failure::Usage(format!("--about {about}: {message}"));
     let place =
-        about.split_once('=').filter(|(name, _)| name.trim() == x.name()).ok_or_else(|| {
+        about.split_once('=').filter(|(name, _)| value_name(name) == x).ok_or_else(|| {
             usage(format!("expected {x}=VALUE, an equilibrium of the coordinate {x}"))
         })?;
-    let value = parse_expression(place.1).map_err(|error| usage(error.to_string()))?;
+    let value = expression(place.1).map_err(|error| usage(error.to_string()))?;
     let foreign =
         value.symbols().into_iter().find(|symbol| !oscillator.parameters.contains(symbol));
     match foreign {
@@ -625,8 +625,8 @@ pub(super) fn given_values(at: &[String]) -> Result<Vec<(Symbol, Expr)>, Failure
             let Some((name, value)) = part.split_once('=') else {
                 return Err(usage("expected NAME=VALUE, such as A=1.5".to_owned()));
             };
-            let value = parse_expression(value).map_err(|error| usage(error.to_string()))?;
-            values.push((Symbol::new(name.trim()), value));
+            let value = expression(value).map_err(|error| usage(error.to_string()))?;
+            values.push((value_name(name), value));
         }
     }
     Ok(values)

@@ -3,23 +3,50 @@
 
 use std::path::Path;
 
+use lindstedt::Symbol;
 use lindstedt::catalog;
 use lindstedt::catalog::nearest;
+use lindstedt::expr::{
+    Expr, ParseError, equation_in_grammar, expression_in_grammar, parse_expression,
+};
 use lindstedt::problem::{Problem, ProblemError};
 
 use super::files::is_standard;
-use super::{Failure, read};
+use super::{Failure, progress, read};
 
-/// What a PROBLEM says. A name that ends in `.toml`, or a file that exists, is a file.
+/// Reads a PROBLEM. A name that ends in `.toml`, or a file that exists, is a file. An equation may
+/// have the notations of print; how it was read is said on standard error.
 ///
 /// # Errors
 /// A file that cannot be read or is no problem; a single word that is neither an equation nor a
 /// name.
 pub(super) fn problem(text: &str) -> Result<Problem, Failure> {
-    match path(text) {
+    let problem = match path(text) {
         Some(path) => from_file(path),
         None => from_words(text),
-    }
+    }?;
+    let equation = problem.equation.map(|typed| {
+        let read = equation_in_grammar(&typed);
+        if read != typed.as_str() {
+            progress::note(&format!("the equation is read as {read}"));
+        }
+        read.into_owned()
+    });
+    Ok(Problem { equation, ..problem })
+}
+
+/// Reads an expression of the command line, which may have the notations of print.
+///
+/// # Errors
+/// See [`parse_expression`].
+pub(super) fn expression(text: &str) -> Result<Expr, ParseError> {
+    parse_expression(&expression_in_grammar(text))
+}
+
+/// The name of a value on the command line, `ε` for `eps`.
+pub(super) fn value_name(text: &str) -> Symbol {
+    let name = expression(text).ok().and_then(|name| name.as_symbol());
+    name.unwrap_or_else(|| Symbol::new(text.trim()))
 }
 
 /// The file that a PROBLEM names, where it names one.
@@ -53,22 +80,23 @@ pub(super) fn from_file(path: &Path) -> Result<Problem, Failure> {
 fn from_words(text: &str) -> Result<Problem, Failure> {
     let with_equation =
         |equation: &str| Problem { equation: Some(equation.to_owned()), ..Problem::default() };
-    if let Some(entry) = catalog::find(text.trim()) {
+    // Words alone cannot be an equation: they are a name, perhaps with a slip in it, or a file that
+    // is not there.
+    let word = text.split_whitespace().collect::<Vec<_>>().join("-");
+    if let Some(entry) = catalog::find(&word.replace('_', "-")) {
         return Ok(with_equation(entry.equation));
     }
-    // A single word cannot be an equation: it is a name with a slip in it, or a file that is not
-    // there.
-    let word = text.trim();
     let is_word = word.len() > 1
         && word.starts_with(|letter: char| letter.is_ascii_alphabetic())
         && word.chars().all(|letter| letter.is_ascii_alphanumeric() || "-_./".contains(letter));
     if is_word {
-        let help = match nearest(word, catalog::CATALOG.iter().map(|entry| entry.name)) {
+        let help = match nearest(&word, catalog::CATALOG.iter().map(|entry| entry.name)) {
             Some(near) => format!("did you mean `{near}`?"),
             None => "write an equation such as \"x'' + sin(x) = 0\"; `lindstedt catalog` lists the names".to_owned(),
         };
         return Err(Failure::Refused(format!(
-            "`{word}` is no equation, no file, and no name of the catalogue\n  help: {help}"
+            "`{}` is no equation, no file, and no name of the catalogue\n  help: {help}",
+            text.trim()
         )));
     }
     Ok(with_equation(text))

@@ -6,12 +6,20 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::Counter;
+use lindstedt::export::printable;
 
 /// How far the work has come.
 pub(super) static PROGRESS: Counter = Counter::new();
 
 /// Set by `--quiet`.
 pub(super) static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Prints a note on standard error, unless `--quiet` is given.
+pub(super) fn note(text: &str) {
+    if !QUIET.load(Ordering::Relaxed) {
+        eprintln!("note: {}", printable(text));
+    }
+}
 
 /// What stands beside the bar of a sweep.
 pub(super) const MOTIONS: &str = "{bar:40} {pos}/{len} motions, {eta} left";

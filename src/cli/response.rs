@@ -4,7 +4,6 @@ use std::path::Path;
 
 use clap::Args;
 use lindstedt::export::{self, json};
-use lindstedt::expr::parse_expression;
 use lindstedt::problem::{Order, Reader};
 use lindstedt::response::{MOST_HARMONICS, Question, ResponseError, respond};
 use lindstedt::solution::{Method, Solution};
@@ -12,7 +11,7 @@ use lindstedt::{Interrupt, Options, Oscillator, Progress, Symbol, report, solve}
 
 use super::answer::{Answer, no_such};
 use super::derive::{exact_values, formula, refused as refused_term};
-use super::problem::problem;
+use super::problem::{expression, problem};
 use super::progress::{PROGRESS, with_progress};
 use super::{Common, Failure, Format, Outcome, STOP, Work, files, json_text, tolerance};
 
@@ -176,10 +175,10 @@ fn range(text: &str) -> Result<(Symbol, [f64; 2]), Failure> {
         || Failure::Usage(format!("--vary {text}: expected NAME=FROM:TO, such as Omega=0.5:1.5"));
     let (name, range) = text.split_once('=').ok_or_else(form)?;
     let (from, to) = range.split_once(':').ok_or_else(form)?;
-    let name = parse_expression(name).ok().and_then(|name| name.as_symbol()).ok_or_else(form)?;
+    let name = expression(name).ok().and_then(|name| name.as_symbol()).ok_or_else(form)?;
     let number = |text: &str| {
-        let value = parse_expression(text)
-            .map_err(|error| Failure::Usage(format!("--vary {text}: {error}")))?;
+        let value =
+            expression(text).map_err(|error| Failure::Usage(format!("--vary {text}: {error}")))?;
         value.evaluate(&Default::default()).map_err(|_| form())
     };
     Ok((name, [number(from)?, number(to)?]))

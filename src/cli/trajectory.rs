@@ -1,7 +1,7 @@
 //! `lindstedt simulate PROBLEM` of an equation or a mechanism of its own.
 
 use lindstedt::export::{decimal, json, trajectory};
-use lindstedt::expr::{Expr, parse_expression};
+use lindstedt::expr::Expr;
 use lindstedt::impact::sweep::{grid_size, grid_values};
 use lindstedt::problem::Problem;
 use lindstedt::report::{self, MotionSweep, TRUSTED, TrajectoryReport};
@@ -15,6 +15,7 @@ use lindstedt::{Interrupt, Symbol};
 use super::answer::{Answer, no_such};
 use super::derive::exact_values;
 use super::files::width;
+use super::problem::{expression, value_name};
 use super::progress::{self, MOTIONS};
 use super::simulate::{Arguments, Method, check_format, check_samples};
 use super::{Failure, Format, Outcome, STOP, json_text};
@@ -169,13 +170,13 @@ fn course(problem: &Problem, asked: &Arguments) -> Result<Course, Failure> {
         let form =
             || Failure::Usage(format!("--from {part}: expected NAME=VALUE, such as x=1.5 or v=0"));
         let (name, value) = part.split_once('=').ok_or_else(form)?;
-        let value = parse_expression(value)
-            .map_err(|error| Failure::Usage(format!("--from {part}: {error}")))?;
+        let value =
+            expression(value).map_err(|error| Failure::Usage(format!("--from {part}: {error}")))?;
         let number = value.evaluate(&Default::default()).map_err(|_| form())?;
-        let name = match (name.trim(), course.coordinates.as_slice()) {
+        let name = match (value_name(name), course.coordinates.as_slice()) {
             // With one coordinate there is no doubt whose velocity is meant.
-            ("v", [only]) if only.name() != "v" => only.derivative(),
-            (name, _) => Symbol::new(name),
+            (name, [only]) if name.name() == "v" && only.name() != "v" => only.derivative(),
+            (name, _) => name,
         };
         if begun.contains(&name) {
             return Err(Failure::Usage(format!("--from gives `{name}` twice")));
@@ -189,8 +190,7 @@ fn course(problem: &Problem, asked: &Arguments) -> Result<Course, Failure> {
 /// The section asked for.
 fn section(course: &Course, asked: &Arguments) -> Result<Option<Section>, Failure> {
     let read = |option: &str, text: &str| {
-        parse_expression(text)
-            .map_err(|error| Failure::Usage(format!("--{option} {text}: {error}")))
+        expression(text).map_err(|error| Failure::Usage(format!("--{option} {text}: {error}")))
     };
     let moves = |expression: &Expr| {
         let states = &course.rates.states;

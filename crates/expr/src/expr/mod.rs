@@ -67,7 +67,10 @@ pub use evaluate::{CompiledFunction, EvaluationError};
 pub use function::Function;
 // Problem files point at their mistakes in the same way.
 pub use parse::excerpt;
-pub use parse::{Equation, NAMES_OF_ANSWERS, ParseError, parse_equation, parse_expression};
+pub use parse::{
+    Equation, NAMES_OF_ANSWERS, ParseError, equation_in_grammar, expression_in_grammar,
+    parse_equation, parse_expression,
+};
 pub use print::Fraction;
 pub use print::Inside;
 pub use rounding::{LostDigits, Rounded};

@@ -19,6 +19,7 @@ mod brackets;
 mod error;
 mod lexer;
 mod mistakes;
+mod notation;
 
 use std::fmt;
 use std::ops::Range;
@@ -34,6 +35,7 @@ pub use error::ParseError;
 pub use error::excerpt;
 use error::shortened;
 use lexer::{Kind, Token};
+pub use notation::{equation_in_grammar, expression_in_grammar};
 
 /// Names of the amplitudes and the frequency in an answer. Where an equation has one of them for
 /// something of its own, `Oscillator::with_own_names_apart` keeps it apart before a formula is

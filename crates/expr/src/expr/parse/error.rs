@@ -22,6 +22,9 @@ pub struct ParseError {
     pub span: Range<usize>,
     /// What to write instead.
     pub help: Option<String>,
+    /// What was meant, where it can be one thing only: a part of the text, and what the grammar has
+    /// for it.
+    pub(super) correction: Option<(Range<usize>, String)>,
     /// The line of the text, cut to what fits, and a line with carets.
     excerpt: [String; 2],
 }
@@ -45,7 +48,22 @@ impl ParseError {
     pub(super) fn new(text: &str, span: Range<usize>, message: &str, help: &str) -> Self {
         let excerpt = excerpt(text, &span);
         let help = (!help.is_empty()).then(|| help.to_string());
-        Self { message: message.to_string(), span, help, excerpt }
+        Self { message: message.to_string(), span, help, correction: None, excerpt }
+    }
+
+    /// The error of a text in which this part can only mean what `replacement` says.
+    pub(super) fn meaning(self, part: Range<usize>, replacement: impl Into<String>) -> Self {
+        Self { correction: Some((part, replacement.into())), ..self }
+    }
+
+    /// The error of a text in which the shown place can only mean what `replacement` says, if
+    /// anything.
+    pub(super) fn meaning_here(self, replacement: Option<String>) -> Self {
+        let place = self.span.clone();
+        match replacement {
+            Some(replacement) => self.meaning(place, replacement),
+            None => self,
+        }
     }
 }
 

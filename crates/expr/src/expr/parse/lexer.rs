@@ -1,8 +1,9 @@
-//! Text to tokens, and what to write for a character that is none.
+//! Text to tokens.
 
 use std::ops::Range;
 
 use super::error::{ParseError, shortened};
+use super::notation;
 
 /// The longest text, in bytes.
 const LONGEST_TEXT: usize = 64 * 1024;
@@ -117,7 +118,8 @@ impl<'a> Lexer<'a> {
     fn sign(&mut self, letter: char) -> Result<Kind, ParseError> {
         let start = self.position;
         self.position += letter.len_utf8();
-        let (message, help) = match letter {
+        let spelling = notation::help(letter);
+        let (message, help): (String, &str) = match letter {
             '+' => return Ok(Kind::Plus),
             '-' => return Ok(Kind::Minus),
             '/' => return Ok(Kind::Divide),
@@ -138,10 +140,10 @@ impl<'a> Lexer<'a> {
             '|' => ("`|` is no sign here".into(), "the absolute value is `abs(x)`"),
             '_' => ("a name begins with a letter".into(), ""),
             '\\' if self.rest().starts_with("ddot") => {
-                return Err(self.latex_derivative(start, "x''"));
+                return Err(self.latex_derivative(start, "''"));
             }
             '\\' if self.rest().starts_with("dot") => {
-                return Err(self.latex_derivative(start, "x'"));
+                return Err(self.latex_derivative(start, "'"));
             }
             '\\' => {
                 ("LaTeX is written, not read".into(), "functions are `sin(x)`, fractions `a/b`")
@@ -156,27 +158,30 @@ impl<'a> Lexer<'a> {
                     true => format!("`{letter}` (U+{:04X})", u32::from(letter)),
                     false => format!("the character U+{:04X}", u32::from(letter)),
                 };
-                // The index behind a letter belongs to its name: omega0 may be used, omega alone
-                // may not.
-                let index = self.rest().starts_with(['0', '_', '\u{2080}']);
-                let help = match letter {
-                    'ω' if index => "try `omega0`",
-                    _ => ascii_spelling(letter).map_or("", |spelling| spelling),
-                };
-                (format!("{name} is not understood"), help)
+                (format!("{name} is not understood"), spelling.as_str())
             }
         };
-        Err(self.error(start, &message, help))
+        let error = self.error(start, &message, help);
+        Err(match notation::meaning(self.text, start, letter) {
+            Some((part, replacement)) => error.meaning(part, replacement),
+            None => error,
+        })
     }
 
-    fn latex_derivative(&mut self, start: usize, spelling: &str) -> ParseError {
-        let length = self.rest().find('}').map_or(0, |brace| brace + 1);
-        self.position += length;
+    fn latex_derivative(&mut self, start: usize, primes: &str) -> ParseError {
+        let braces = self.rest().find('{').zip(self.rest().find('}'));
+        let inner = braces.and_then(|(open, close)| self.rest().get(open + 1..close));
+        let letter = inner.map(str::trim).filter(|inner| {
+            inner.len() == 1 && inner.starts_with(|letter: char| letter.is_ascii_alphabetic())
+        });
+        self.position += braces.map_or(0, |(_, close)| close + 1);
         let message = format!(
             "`{}`: derivatives are written with primes",
             shortened(&self.text[start..self.position])
         );
-        self.error(start, &message, &format!("try `{spelling}`"))
+        let help = format!("try `{}{primes}`", letter.unwrap_or("x"));
+        let error = self.error(start, &message, &help);
+        error.meaning_here(letter.map(|letter| format!("{letter}{primes}")))
     }
 
     fn rest(&self) -> &'a str {
@@ -192,65 +197,13 @@ impl<'a> Lexer<'a> {
     }
 }
 
-/// What to write for a character of a typeset formula.
-pub(super) fn ascii_spelling(letter: char) -> Option<&'static str> {
-    Some(match letter {
-        '\u{2212}' | '\u{2013}' | '\u{2014}' | '\u{2010}' | '\u{2011}' => "try `-`",
-        '×' | '·' | '⋅' | '∙' | '•' | '∗' => "try `*`",
-        '÷' | '∕' | '⁄' => "try `/`",
-        '⁰' => "try `^0`",
-        '¹' => "try `^1`",
-        '²' => "try `^2`",
-        '³' => "try `^3`",
-        '⁴' => "try `^4`",
-        '⁵' => "try `^5`",
-        '⁶' => "try `^6`",
-        '⁷' => "try `^7`",
-        '⁸' => "try `^8`",
-        '⁹' => "try `^9`",
-        '½' => "try `1/2`",
-        '′' | '’' | '‘' | '´' => "try `'`",
-        '″' | '“' | '”' => "try `''`",
-        'ẋ' | '\u{307}' => "try `x'`",
-        'ẍ' | '\u{308}' => "try `x''`",
-        '√' => "try `sqrt(x)`",
-        'α' => "try `alpha`",
-        'β' => "try `beta`",
-        'γ' => "try `gamma`",
-        'δ' => "try `delta`",
-        'ε' | 'ϵ' => "try `eps`",
-        'ζ' => "try `zeta`",
-        'η' => "try `eta`",
-        'θ' | 'ϑ' => "try `phi`: `theta` is the phase in the answer",
-        'κ' => "try `kappa`",
-        'λ' => "try `lambda`",
-        'μ' | 'µ' => "try `mu`",
-        'ν' => "try `nu`",
-        'ξ' => "try `xi`",
-        'π' => "try `pi`",
-        'ρ' => "try `rho`",
-        'σ' => "try `sigma`",
-        'τ' => "try `tau`",
-        'φ' | 'ϕ' => "try `phi`",
-        'χ' => "try `chi`",
-        'ψ' => "try `psi`",
-        'ω' => "try `Omega` or `w`: `omega` is the frequency in the answer",
-        'Ω' | '\u{2126}' => "try `Omega`",
-        '\u{a0}' | '\u{2009}' | '\u{202f}' | '\u{3000}' => "try a plain blank",
-        '\u{ff1d}' => "try `=`",
-        '\u{ff08}' => "try `(`",
-        '\u{ff09}' => "try `)`",
-        _ => return None,
-    })
-}
-
 /// The character itself, or `?` for one that a terminal would not simply show.
 pub(super) fn visible(letter: char) -> char {
     match letter {
         '\t' | '\r' | '\n' => ' ',
         ' '..='~' => letter,
         _ if letter.is_alphanumeric()
-            || ascii_spelling(letter).is_some_and(|_| !letter.is_whitespace()) =>
+            || notation::spelling(letter).is_some_and(|_| !letter.is_whitespace()) =>
         {
             letter
         }

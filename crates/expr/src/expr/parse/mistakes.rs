@@ -138,7 +138,8 @@ impl Parser<'_> {
             Some(order) => format!("try `{letter}{}`", "'".repeat(order)),
             None => "try `x'` for the velocity, `x''` for the acceleration".into(),
         };
-        self.error(span, &message, &help)
+        let meaning = order.map(|order| format!("{letter}{}", "'".repeat(order)));
+        self.error(span, &message, &help).meaning_here(meaning)
     }
 
     /// Two operands side by side.
@@ -166,12 +167,43 @@ impl Parser<'_> {
         let (left, right) =
             (self.tokens[left].start..previous.end, self.token().start..self.tokens[right].end);
         let message = format!("{}: a product needs its sign", self.quoted(left.start..right.end));
-        let help = format!(
-            "try `{}*{}`",
-            shortened(&self.text[left.clone()]),
-            shortened(&self.text[right.clone()])
-        );
-        self.error(left.start..right.end, &message, &help)
+        let factors = [left.clone(), right.clone()].map(|factor| &self.text[factor]);
+        if let ([Kind::Number, Kind::Name], "deg" | "rad") =
+            ([previous.kind, self.peek()], factors[1])
+        {
+            let number = factors[0];
+            let angle = match factors[1] {
+                "deg" => format!("{number}*pi/180"),
+                _ => number.to_owned(),
+            };
+            let help = format!("angles are in radians: try `{angle}`");
+            return self.error(left.start..right.end, &message, &help).meaning_here(Some(angle));
+        }
+        let help = format!("try `{}*{}`", shortened(factors[0]), shortened(factors[1]));
+        let error = self.error(left.start..right.end, &message, &help);
+        match self.is_product(previous) {
+            true => error.meaning(previous.end..right.start, "*"),
+            false => error,
+        }
+    }
+
+    /// Whether the operand that ends with this token and the one after it can only be factors.
+    fn is_product(&self, left: Token) -> bool {
+        let right = self.token();
+        let [left_text, right_text] = [left, right].map(|token| &self.text[token.span()]);
+        match (left.kind, right.kind) {
+            // An exponent that is not finished, Euler's number, or a hexadecimal number.
+            (Kind::Number, Kind::Name) if ["e", "E"].contains(&right_text) => false,
+            (Kind::Number, Kind::Name) if left_text == "0" && left.end == right.start => false,
+            // `d x/dt` is a derivative.
+            (Kind::Name, Kind::Name) => self
+                .tokens
+                .iter()
+                .filter(|token| token.kind == Kind::Name)
+                .all(|token| !["d", "dt", "dt2"].contains(&&self.text[token.span()])),
+            (Kind::Number | Kind::Close, Kind::Name | Kind::Open) => true,
+            _ => false,
+        }
     }
 
     pub(super) fn bare_function(&self, token: Token) -> ParseError {
@@ -180,20 +212,90 @@ impl Parser<'_> {
         let message = format!("`{name}` needs parentheses around its argument");
         match next.kind {
             Kind::Name | Kind::Number => {
-                let help = format!("try `{name}({})`", &self.text[next.span()]);
-                self.error(token.start..next.end, &message, &help)
+                let argument = &self.text[next.span()];
+                let call = format!("{name}({argument})");
+                let error = self.error(token.start..next.end, &message, &format!("try `{call}`"));
+                // `sin x cos x` and `sin 2 x` leave open where the argument ends.
+                let after = self.tokens.get(self.next + 1).map_or(Kind::End, |after| after.kind);
+                let ends =
+                    [Kind::End, Kind::Plus, Kind::Minus, Kind::Equals, Kind::Close, Kind::Comma];
+                let is_plain = Function::from_name(argument).is_none() && ends.contains(&after);
+                error.meaning_here(is_plain.then_some(call))
             }
-            Kind::Power => self.error(token.span(), &message, &format!("try `{name}(x)^2`")),
+            Kind::Power => {
+                let error = self.error(token.span(), &message, &format!("try `{name}(x)^2`"));
+                match self.raised_call(token) {
+                    Some((part, call)) => error.meaning(part, call),
+                    None => error,
+                }
+            }
             _ => self.error(token.span(), &message, &format!("try `{name}(x)`")),
         }
     }
 
+    /// `sin^2(x)`, the square of the sine; not `sin^-1(x)`, which is its inverse or its reciprocal.
+    fn raised_call(&self, name: Token) -> Option<(Range<usize>, String)> {
+        let [_, exponent, open] = self.tokens.get(self.next..self.next + 3)? else {
+            return None;
+        };
+        if [exponent.kind, open.kind] != [Kind::Number, Kind::Open] {
+            return None;
+        }
+        let close = self.tokens[matching_close(&self.tokens, self.next + 2)?];
+        let [name_text, argument, exponent] =
+            [name.span(), open.start..close.end, exponent.span()].map(|part| &self.text[part]);
+        Some((name.start..close.end, format!("{name_text}{argument}^{exponent}")))
+    }
+
+    /// What a name before a parenthesis means that is no function, where it is one thing only: the
+    /// coordinate at the time t, or a factor.
+    fn called_name(&self, token: Token) -> Option<(Range<usize>, String)> {
+        let name = &self.text[token.span()];
+        let bare = name.trim_end_matches('\'');
+        let close = matching_close(&self.tokens, self.next)?;
+        let inner = self.tokens.get(self.next + 1..close)?;
+        let text = |token: &Token| &self.text[token.span()];
+        let is_primed = |token: &Token| {
+            text(token)
+                .strip_prefix(bare)
+                .is_some_and(|rest| !rest.is_empty() && rest.chars().all(|letter| letter == '\''))
+        };
+        let is_coordinate = self.tokens.iter().any(is_primed);
+        let names_time = |token: &Token| token.kind == Kind::Name && text(token) == "t";
+        if let [time] = inner
+            && names_time(time)
+        {
+            let call = self.tokens[self.next].start..self.tokens[close].end;
+            return is_coordinate.then(|| (call, String::new()));
+        }
+        let is_sum =
+            inner.iter().skip(1).any(|token| matches!(token.kind, Kind::Plus | Kind::Minus));
+        // Names of functions that an equation of motion is driven or stepped by.
+        const FUNCTIONS: [&str; 10] = ["f", "g", "h", "F", "G", "u", "U", "d", "delta", "theta"];
+        let is_parameter = (is_letter(bare) || bare == "eps" || bare == "pi")
+            && !FUNCTIONS.contains(&bare)
+            && is_sum
+            && !inner.iter().any(|token| names_time(token) || token.kind == Kind::Comma);
+        (is_coordinate || is_parameter).then(|| (token.end..token.end, "*".to_owned()))
+    }
+
     /// A name before a parenthesis that is no function.
     pub(super) fn unknown_function(&self, token: Token) -> ParseError {
+        let error = self.without_such_function(token);
+        match self.called_name(token) {
+            Some((part, meaning)) if error.correction.is_none() => error.meaning(part, meaning),
+            _ => error,
+        }
+    }
+
+    fn without_such_function(&self, token: Token) -> ParseError {
         let name = &self.text[token.span()];
         if let Some(known) = similar_function(name) {
             let message = format!("there is no function `{name}`");
-            return self.error(token.span(), &message, &format!("did you mean `{known}`?"));
+            let error = self.error(token.span(), &message, &format!("did you mean `{known}`?"));
+            let folded = name.to_ascii_lowercase();
+            let is_same = folded == known || other_name(&folded) == Some(known);
+            return error.meaning_here(is_same.then(|| known.to_owned()));
         }
         let argument = matching_close(&self.tokens, self.next)
             .map_or(token.end, |place| self.tokens[place].end);
@@ -281,10 +383,9 @@ fn dotted(name: &str) -> Option<(&str, usize)> {
     }
 }
 
-/// The function that was probably meant.
-fn similar_function(name: &str) -> Option<&'static str> {
-    let folded = name.to_ascii_lowercase();
-    let alias = match folded.as_str() {
+/// The function that has this name, in small letters, elsewhere.
+fn other_name(name: &str) -> Option<&'static str> {
+    Some(match name {
         "ln" => "log",
         "sign" | "signum" => "sgn",
         "heaviside" | "step" => "H",
@@ -299,11 +400,18 @@ fn similar_function(name: &str) -> Option<&'static str> {
         "ch" => "cosh",
         "th" => "tanh",
         "tg" => "tan",
-        "root" => "sqrt",
-        _ => "",
-    };
-    if !alias.is_empty() {
-        return Some(alias);
+        _ => return None,
+    })
+}
+
+/// The function that was probably meant.
+fn similar_function(name: &str) -> Option<&'static str> {
+    let folded = name.to_ascii_lowercase();
+    if let Some(known) = other_name(&folded) {
+        return Some(known);
+    }
+    if folded == "root" {
+        return Some("sqrt");
     }
     if name.len() < 2 || name.ends_with('\'') {
         return None;

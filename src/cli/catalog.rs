@@ -2,9 +2,11 @@
 
 use clap::Args;
 use lindstedt::catalog::{CATALOG, find, nearest};
+use lindstedt::export::text::fitted;
 use lindstedt::export::{catalog, html, json};
 
 use super::answer::{no_such, page};
+use super::files::width;
 use super::{Common, Failure, Format, Outcome, Work, json_text, whole};
 
 /// List the classical oscillators that `derive` knows by name
@@ -47,7 +49,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         })?),
     };
     let text = match arguments.common.format() {
-        Format::Text => catalog::text(entries),
+        Format::Text => fitted(&catalog::text(entries), width(arguments.common.output.as_deref())),
         Format::Latex => catalog::latex(entries),
         Format::Html => page(None, None, |page| html::lines(&catalog::text(entries), page)),
         Format::Json => json_text(&json::catalog(entries))?,

@@ -13,7 +13,7 @@ use lindstedt::{Oscillator, verify};
 use super::answer::{Answer, no_such};
 use super::derive::{Numbered, formula, named, notes_on_letters, oscillator, with_values};
 use super::problem::problem;
-use super::{Common, Failure, Format, Outcome, Work, files, json_text, tolerance};
+use super::{Common, Failure, Format, Outcome, Work, files, json_text, tolerance, values_of};
 
 /// Every method of the field on one equation, in one table, judged against the true motion
 #[derive(Args)]
@@ -71,11 +71,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             }
             comparison::ComparisonError::Verification(verify::VerificationError::Missing(
                 names,
-            )) => {
-                let example: Vec<String> =
-                    names.iter().map(|name| format!("--at {name}=...")).collect();
-                Failure::refused(&error, Some(format!("add {}", example.join(" "))))
-            }
+            )) => Failure::refused(&error, Some(format!("add {}", values_of(names)))),
             comparison::ComparisonError::Verification(verify::VerificationError::Unknown {
                 ..
             }) => Failure::Usage(error.to_string()),

@@ -21,9 +21,10 @@ use lindstedt::verify::{self, VerificationError};
 use lindstedt::{Interrupt, Oscillator, Progress, Supervision, Symbol};
 
 use super::answer::{Draw, drawn, no_such, page, pictured};
+use super::files::width;
 use super::problem::{expression, problem, value_name};
 use super::progress::{PROGRESS, with_progress};
-use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, tolerance, whole};
+use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, tolerance, values_of, whole};
 
 /// An equation, and how it is to be answered.
 #[derive(Args)]
@@ -195,9 +196,7 @@ fn unjudged(error: &VerificationError) -> Failure {
             let help = near.map(|near| format!("\n  help: did you mean `{near}`?"));
             Failure::Usage(format!("--at: {error}{}", help.unwrap_or_default()))
         }
-        VerificationError::Missing(names) => {
-            Failure::refused(error, names.first().map(|name| format!("--at {name}=VALUE")))
-        }
+        VerificationError::Missing(names) => Failure::refused(error, Some(values_of(names))),
         VerificationError::OffCycle => Failure::refused(
             error,
             Some("--method averaging follows the motion from A to the cycle".to_owned()),
@@ -268,7 +267,8 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let text = match arguments.common.format() {
         Format::Text => {
             let space = if arguments.steps { "\n" } else { "" };
-            derivation + space + &text::solution(&solution, verification.as_ref(), tolerance)
+            let answer = text::solution(&solution, verification.as_ref(), tolerance);
+            text::fitted(&(derivation + space + &answer), width(arguments.common.output.as_deref()))
         }
         Format::Html => {
             let document = report::solution(&solution, verification.as_ref(), tolerance);
@@ -625,6 +625,12 @@ pub(super) fn given_values(at: &[String]) -> Result<Vec<(Symbol, Expr)>, Failure
             let Some((name, value)) = part.split_once('=') else {
                 return Err(usage("expected NAME=VALUE, such as A=1.5".to_owned()));
             };
+            if value.trim().is_empty() {
+                let name = name.trim();
+                return Err(usage(format!(
+                    "a value is missing after `=`\n  help: --at {name}=1.5"
+                )));
+            }
             let value = expression(value).map_err(|error| usage(error.to_string()))?;
             values.push((value_name(name), value));
         }

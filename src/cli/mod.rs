@@ -25,8 +25,10 @@ mod problem;
 mod progress;
 mod response;
 mod schema;
+mod shell;
 mod simulate;
 mod stability;
+mod suggestions;
 mod trajectory;
 
 use std::fmt::Display;
@@ -38,8 +40,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
+use clap::builder::styling::{AnsiColor, Style};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgMatches, Args};
+use lindstedt::Symbol;
 use lindstedt::export::code::Language;
 use lindstedt::export::{is_invisible, printable};
 use lindstedt::problem::LARGEST_FILE;
@@ -47,33 +51,70 @@ use lindstedt::solution::{Advice, Setting};
 use lindstedt::verify::{DEFAULT_TOLERANCE, Verdict};
 use serde::Serialize;
 
+/// The version, with the commit that it was built from where that is known.
+const VERSION: &str = env!("LINDSTEDT_VERSION");
+
 const AFTER_HELP: &str = "\
-Without a command: lindstedt impact, the paper's pendulum and barrier.
+Without a command: lindstedt impact, the pendulum and barrier of J. E. Jam and A. A. Fard, Int. J. Aerospace
+Sciences 1(2), 16-20 (2012), doi 10.5923/j.aerospace.20120102.02.
 
 Exit codes: 0 done; 1 the problem was refused or failed; 2 wrong usage; 3 verdict failed (with --tolerance; audit and
 paper always); 4 stopped before the end: what is printed is partial and says so.";
 
 /// The commands, in the order of `--help`. A new one is a file with its arguments, documented by
 /// their line in `--help`, and their [`Work`], and a row here.
-static COMMANDS: [Command; 16] = [
-    Command::of::<derive::Arguments>("derive").writing(Formats::Programs).waiting(derive::patience),
-    Command::of::<compare::Arguments>("compare").writing(Formats::Pictures),
-    Command::of::<impact::Arguments>("impact").writing(Formats::Pictures),
-    Command::of::<simulate::Arguments>("simulate").waiting(a_minute),
-    Command::of::<response::Arguments>("response").waiting(a_minute),
-    Command::of::<friction::Arguments>("friction"),
-    Command::of::<lagrange::Arguments>("lagrange").writing(Formats::Words),
-    Command::of::<materials::Arguments>("materials").waiting(a_minute),
-    Command::of::<optimize::Arguments>("optimize").waiting(a_minute),
-    Command::of::<stability::Arguments>("stability"),
-    Command::of::<audit::Arguments>("audit").writing(Formats::Words).judged(),
-    Command::of::<audit::PaperArguments>("paper").writing(Formats::Words).judged(),
-    Command::of::<certify::Arguments>("certify").writing(Formats::Words).waiting(derive::patience),
+static COMMANDS: [Command; 18] = [
+    Command::of::<derive::Arguments>("derive")
+        .showing(include_str!("help/derive.txt"))
+        .writing(Formats::Programs)
+        .waiting(derive::patience),
+    Command::of::<compare::Arguments>("compare")
+        .showing(include_str!("help/compare.txt"))
+        .writing(Formats::Pictures),
+    Command::of::<impact::Arguments>("impact")
+        .showing(include_str!("help/impact.txt"))
+        .writing(Formats::Pictures),
+    Command::of::<simulate::Arguments>("simulate")
+        .showing(include_str!("help/simulate.txt"))
+        .waiting(a_minute),
+    Command::of::<response::Arguments>("response")
+        .showing(include_str!("help/response.txt"))
+        .waiting(a_minute),
+    Command::of::<friction::Arguments>("friction").showing(include_str!("help/friction.txt")),
+    Command::of::<lagrange::Arguments>("lagrange")
+        .showing(include_str!("help/lagrange.txt"))
+        .writing(Formats::Words),
+    Command::of::<materials::Arguments>("materials")
+        .showing(include_str!("help/materials.txt"))
+        .waiting(a_minute),
+    Command::of::<optimize::Arguments>("optimize")
+        .showing(include_str!("help/optimize.txt"))
+        .waiting(a_minute),
+    Command::of::<stability::Arguments>("stability").showing(include_str!("help/stability.txt")),
+    Command::of::<audit::Arguments>("audit")
+        .showing(include_str!("help/audit.txt"))
+        .writing(Formats::Words)
+        .judged(),
+    Command::of::<audit::PaperArguments>("paper")
+        .showing(include_str!("help/paper.txt"))
+        .writing(Formats::Words)
+        .judged(),
+    Command::of::<certify::Arguments>("certify")
+        .showing(include_str!("help/certify.txt"))
+        .writing(Formats::Words)
+        .waiting(derive::patience),
     Command::of::<certify::CheckArguments>("check")
+        .showing(include_str!("help/check.txt"))
         .writing(Formats::Words)
         .limited(certify::LONGEST_CHECK),
-    Command::of::<catalog::Arguments>("catalog").writing(Formats::Words),
-    Command::of::<schema::Arguments>("schema").writing(Formats::One),
+    Command::of::<catalog::Arguments>("catalog")
+        .showing(include_str!("help/catalog.txt"))
+        .writing(Formats::Words),
+    Command::of::<schema::Arguments>("schema")
+        .showing(include_str!("help/schema.txt"))
+        .writing(Formats::One),
+    Command::of::<shell::CompletionsArguments>("completions").writing(Formats::One),
+    Command::of::<shell::ManArguments>("man").writing(Formats::One),
 ];
 
 /// The command that runs where none is named.
@@ -93,6 +134,8 @@ struct Command {
     limit: Option<f64>,
     /// Whether a verdict that fails is exit code 3 without `--tolerance`.
     is_judged: bool,
+    /// A command and its output, with which `--help` begins; empty where there is none.
+    example: &'static str,
     /// Adds the arguments to the command line.
     augment: fn(clap::Command) -> clap::Command,
     /// Reads the arguments.
@@ -123,6 +166,7 @@ impl Command {
             patience: || Duration::ZERO,
             limit: None,
             is_judged: false,
+            example: "",
             augment: A::augment_args,
             read: |matches| Ok(Box::new(A::from_arg_matches(matches)?)),
         }
@@ -148,9 +192,18 @@ impl Command {
         Self { is_judged: true, ..self }
     }
 
+    /// The command with an example of it and what it prints.
+    const fn showing(self, example: &'static str) -> Self {
+        Self { example, ..self }
+    }
+
     /// The command as the parser of the command line knows it.
     fn parser(&self) -> clap::Command {
         let command = (self.augment)(clap::Command::new(self.name));
+        let command = match self.example {
+            "" => command,
+            example => command.before_long_help(example.trim_end()),
+        };
         match self.formats {
             Formats::One => command,
             formats => command
@@ -204,6 +257,7 @@ impl Formats {
 
 /// What every command takes.
 #[derive(Args, Clone, Default)]
+#[command(next_help_heading = "Result")]
 struct Common {
     /// What to print; without it what the name of --output ends in (.tex, .json, .html, .svg, .csv,
     /// .py), else text
@@ -256,21 +310,31 @@ impl Format {
         Self::OF_ALL.into_iter().chain([Self::Svg, Self::Csv]).chain(programs)
     }
 
-    /// That of files whose names end so; none for `txt` and everything unknown.
+    /// What the names of its files end in beside the name of the format itself.
+    fn endings(self) -> &'static [&'static str] {
+        match self {
+            Self::Text => &["txt"],
+            Self::Latex => &["tex"],
+            Self::Html => &["htm"],
+            Self::Code(Language::Rust) => &["rs"],
+            Self::Code(Language::Python) => &["py"],
+            Self::Code(Language::Julia) => &["jl"],
+            Self::Code(Language::Matlab) => &["m"],
+            Self::Json | Self::Csv | Self::Svg | Self::Code(Language::C) => &[],
+        }
+    }
+
+    /// The format of files whose names end so; `None` for an unknown one.
     fn of_ending(ending: &str) -> Option<Self> {
-        Some(match ending.to_ascii_lowercase().as_str() {
-            "tex" => Self::Latex,
-            "htm" => Self::Html,
-            "rs" => Self::Code(Language::Rust),
-            "c" => Self::Code(Language::C),
-            "py" => Self::Code(Language::Python),
-            "jl" => Self::Code(Language::Julia),
-            "m" => Self::Code(Language::Matlab),
-            name @ ("json" | "html" | "svg" | "csv") => {
-                Self::all().find(|format| format.name() == name)?
+        let ending = ending.to_ascii_lowercase();
+        // A file called `x.rust` or `x.latex` is none of ours.
+        let is_ending = |format: &Self| match format.endings() {
+            [] => format.name() == ending,
+            endings => {
+                endings.contains(&ending.as_str()) || *format == Self::Html && ending == "html"
             }
-            _ => return None,
-        })
+        };
+        Self::all().find(is_ending)
     }
 
     /// How a file is made whose name ends so, of a kind that is not written here.
@@ -305,11 +369,16 @@ fn format_parser(
     listed: impl IntoIterator<Item = Format>,
 ) -> impl TypedValueParser<Value = Format> {
     let listed: Vec<Format> = Format::OF_ALL.into_iter().chain(listed).collect();
-    let values = Format::all()
-        .map(|format| PossibleValue::new(format.name()).hide(!listed.contains(&format)));
+    let values = Format::all().map(|format| {
+        let endings = format.endings().iter().copied();
+        PossibleValue::new(format.name()).aliases(endings).hide(!listed.contains(&format))
+    });
     let unknown = || "no format of this name".to_owned();
-    PossibleValuesParser::new(values)
-        .try_map(move |name| Format::all().find(|format| format.name() == name).ok_or_else(unknown))
+    PossibleValuesParser::new(values).try_map(move |name| {
+        let is_meant =
+            |format: &Format| format.name() == name || format.endings().contains(&name.as_str());
+        Format::all().find(is_meant).ok_or_else(unknown)
+    })
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -396,6 +465,12 @@ fn in_flags(advice: &Advice) -> String {
     })
 }
 
+/// The option that gives values to these names.
+fn values_of(names: &[Symbol]) -> String {
+    let values: Vec<String> = names.iter().map(|name| format!("{name}=VALUE")).collect();
+    format!("--at {}", values.join(","))
+}
+
 /// Writes a result to where it is to go.
 type Writer = Box<dyn FnOnce(&mut dyn std::io::Write) -> std::io::Result<()> + Send>;
 
@@ -418,16 +493,20 @@ struct Outcome {
     partial: bool,
 }
 
-/// The row of the command that is asked for, and its arguments; an error is a message of the
-/// parser, `--help` among them.
-fn asked() -> Result<(&'static Command, Box<dyn Work>), clap::Error> {
-    let matches = clap::Command::new("lindstedt")
-        .version(env!("CARGO_PKG_VERSION"))
+/// The command line as its parser knows it.
+fn command_line() -> clap::Command {
+    clap::Command::new("lindstedt")
+        .version(VERSION)
         .about("Closed-form approximations of nonlinear vibrations, derived exactly and judged against the true motion")
         .max_term_width(100)
         .after_help(AFTER_HELP)
         .subcommands(COMMANDS.iter().map(Command::parser))
-        .try_get_matches()?;
+}
+
+/// The row of the command that is asked for, and its arguments; an error is a message of the
+/// parser, `--help` among them.
+fn asked() -> Result<(&'static Command, Box<dyn Work>), clap::Error> {
+    let matches = command_line().try_get_matches()?;
     let (name, arguments) = matches.subcommand().unzip();
     let name = name.unwrap_or(USUAL);
     let Some(command) = COMMANDS.iter().find(|command| command.name == name) else {
@@ -448,7 +527,7 @@ pub fn run() -> ExitCode {
             // `--help` and `--version` are results and succeed; a closed pipe is no failure of
             // theirs.
             let code = u8::try_from(error.exit_code()).unwrap_or(2);
-            let _ = error.print();
+            let _ = suggestions::with_what_is_meant(error).print();
             return ExitCode::from(code);
         }
     };
@@ -610,8 +689,9 @@ fn finish(outcome: Outcome, common: &Common, judged: bool) -> ExitCode {
 }
 
 fn fail(code: u8, message: &str) -> ExitCode {
+    const STYLE: Style = AnsiColor::Red.on_default().bold();
     // A file that is quoted may hold anything.
-    let _ = writeln!(std::io::stderr(), "error: {}", printable(message));
+    let _ = writeln!(anstream::stderr(), "{STYLE}error:{STYLE:#} {}", printable(message));
     ExitCode::from(code)
 }
 

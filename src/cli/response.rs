@@ -13,7 +13,7 @@ use super::answer::{Answer, no_such};
 use super::derive::{exact_values, formula, refused as refused_term};
 use super::problem::{expression, problem};
 use super::progress::{PROGRESS, with_progress};
-use super::{Common, Failure, Format, Outcome, STOP, Work, files, json_text, tolerance};
+use super::{Common, Failure, Format, Outcome, STOP, Work, files, json_text, tolerance, values_of};
 
 /// Steady states of a driven or self-excited oscillator: every branch with its stability, folds,
 /// period doublings, backbone
@@ -171,8 +171,11 @@ fn slow_equations(
 
 /// A name and a range: `Omega=0.5:1.5`.
 fn range(text: &str) -> Result<(Symbol, [f64; 2]), Failure> {
-    let form =
-        || Failure::Usage(format!("--vary {text}: expected NAME=FROM:TO, such as Omega=0.5:1.5"));
+    let name = text.split(['=', ':']).next().map(str::trim).filter(|name| !name.is_empty());
+    let form = || {
+        let name = name.unwrap_or("Omega");
+        Failure::Usage(format!("--vary {text}: expected NAME=FROM:TO, such as {name}=0.5:1.5"))
+    };
     let (name, range) = text.split_once('=').ok_or_else(form)?;
     let (from, to) = range.split_once(':').ok_or_else(form)?;
     let name = expression(name).ok().and_then(|name| name.as_symbol()).ok_or_else(form)?;
@@ -203,8 +206,7 @@ fn refused(error: ResponseError) -> Failure {
             Some("choose frequencies in the ratio of whole numbers, such as Omega and 2*Omega".to_owned())
         }
         ResponseError::Missing(names) => {
-            let values: Vec<String> = names.iter().map(|name| format!("--at {name}=...")).collect();
-            Some(format!("add {}", values.join(" ")))
+            Some(format!("add {}", values_of(names)))
         }
         ResponseError::NoParameter { known, .. } => known.first().map(|name| format!("--vary {name}=FROM:TO")),
         ResponseError::Given(name) => Some(format!("leave out its value, or vary another parameter than {name}")),

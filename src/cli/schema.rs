@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser as _};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use lindstedt::export::json::Kind;
 
 use super::{Common, Failure, Outcome, Work, whole};
@@ -11,12 +11,35 @@ use super::{Common, Failure, Outcome, Work, whole};
 /// Print the JSON Schema of a kind of document: every key with its meaning and unit
 #[derive(Args)]
 pub struct Arguments {
-    /// The kind of document, the middle of what stands under its `schema`
-    #[arg(value_parser = PossibleValuesParser::new(Kind::ALL.map(Kind::name)).try_map(|name| Kind::from_name(&name).ok_or("no kind")))]
+    /// The kind of document, the middle of what stands under its `schema`, or the command that
+    /// writes it
+    #[arg(value_parser = kind())]
     kind: Kind,
     /// Write the schema to this file instead of standard output; - for standard output
-    #[arg(long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
+}
+
+/// Reads the name of a kind, or of the command that writes it.
+fn kind() -> impl TypedValueParser<Value = Kind> {
+    const OF_COMMANDS: [(&str, Kind); 7] = [
+        ("derive", Kind::Solution),
+        ("compare", Kind::Comparison),
+        ("simulate", Kind::Simulation),
+        ("lagrange", Kind::Lagrangian),
+        ("optimize", Kind::Optimization),
+        ("paper", Kind::Audit),
+        ("certify", Kind::Certificate),
+    ];
+    let commands = move |kind: Kind| OF_COMMANDS.into_iter().filter(move |(_, of)| *of == kind);
+    let value = move |kind: Kind| {
+        PossibleValue::new(kind.name()).aliases(commands(kind).map(|(command, _)| command))
+    };
+    PossibleValuesParser::new(Kind::ALL.map(value)).try_map(|name| {
+        let written = OF_COMMANDS.into_iter().find(|(command, _)| *command == name);
+        let kind = written.map(|(_, kind)| kind).or_else(|| Kind::from_name(&name));
+        kind.ok_or("no kind of this name")
+    })
 }
 
 impl Work for Arguments {

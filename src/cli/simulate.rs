@@ -7,6 +7,7 @@ use lindstedt::Interrupt;
 use lindstedt::export::simulation::{
     Report, SweepReport, csv, figure, latex, sweep_csv, sweep_text, text,
 };
+use lindstedt::export::text::fitted;
 use lindstedt::export::{html, json};
 use lindstedt::impact::sweep::{Axis, AxisError, Summary, grid_size, grid_values, sweep, sweep_on};
 use lindstedt::impact::{
@@ -17,6 +18,7 @@ use lindstedt::problem::{Problem, ProblemError, Simulate};
 use lindstedt::verify::Verdict;
 
 use super::answer::{Draw, drawn, no_such, page, pictured};
+use super::files::width;
 use super::primary;
 use super::problem::problem;
 use super::progress::{self, MOTIONS};
@@ -264,7 +266,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
     let text = match arguments.common.format() {
         Format::Csv => csv(&report),
         Format::Json => json_text(&json::simulation(&report))?,
-        Format::Text => text(&report),
+        Format::Text => fitted(&text(&report), width(arguments.common.output.as_deref())),
         Format::Latex => latex(&report),
         Format::Html => page(draw, None, |page| html::lines(&text(&report), page)),
         Format::Svg => drawn(draw)?,

@@ -18,7 +18,7 @@ use super::files::width;
 use super::problem::{expression, value_name};
 use super::progress::{self, MOTIONS};
 use super::simulate::{Arguments, Method, check_format, check_samples};
-use super::{Failure, Format, Outcome, STOP, json_text};
+use super::{Failure, Format, Outcome, STOP, json_text, values_of};
 
 pub(super) fn run(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failure> {
     let common = &asked.common;
@@ -123,7 +123,7 @@ fn by_both(course: &Course) -> Result<[Trajectory; 2], Failure> {
 fn refused(error: TrajectoryError) -> Failure {
     let help = match &error {
         TrajectoryError::Missing(names) => {
-            names.first().map(|name| format!("--at {name}=VALUE, or [values] in the file"))
+            Some(format!("{}, or [values] in the file", values_of(names)))
         }
         _ => None,
     };
@@ -161,8 +161,23 @@ fn course(problem: &Problem, asked: &Arguments) -> Result<Course, Failure> {
         asked.sweep.iter().any(|axis| course.rates.states.contains(&Symbol::new(axis.name())));
     if asked.from.is_empty() && !starts_swept {
         let name = course.coordinates.first().map_or("x", |name| name.name());
+        let is_missing = |name: &Symbol| {
+            !course.values.contains_key(name)
+                && asked.sweep.iter().all(|axis| axis.name() != name.name())
+        };
+        let missing: Vec<Symbol> = needed.iter().copied().filter(is_missing).collect();
+        let (and_values, at) = match missing.is_empty() {
+            true => (String::new(), String::new()),
+            false => {
+                let names: Vec<String> = missing.iter().map(|name| format!("`{name}`")).collect();
+                (
+                    format!(" and values of {}", names.join(", ")),
+                    " ".to_owned() + &values_of(&missing),
+                )
+            }
+        };
         return Err(Failure::Refused(format!(
-            "a motion needs its start\n  help: --from {name}=1.5 for a release from rest, --from \"{name}=0,{name}'=1\" for a blow"
+            "a motion needs its start{and_values}\n  help: --from {name}=1.5{at} for a release from rest, --from \"{name}=0,{name}'=1\"{at} for a blow"
         )));
     }
     let mut begun: Vec<Symbol> = Vec::new();

@@ -5,6 +5,7 @@
 
 pub(super) mod comparison;
 mod impact;
+mod lines;
 mod table;
 
 pub use super::steps::text as steps;
@@ -18,6 +19,7 @@ use crate::symbol::Symbol;
 use crate::symbol::letters::{FREQUENCY, of_frequency};
 use crate::verify::comparison::Comparison;
 use crate::verify::{Followed, Verification};
+pub use lines::fitted;
 
 /// The derived formula, and the verdict where it was judged.
 ///
@@ -73,7 +75,7 @@ pub fn document(document: &Document, width: usize) -> String {
     let page = Page { width, longest_title: comparison::longest_title(document) };
     let sections = document.sections.iter();
     let sections: Vec<String> = sections
-        .map(|blocks| blocks.iter().map(|block| page.block(block, blocks)).collect())
+        .map(|blocks| blocks.iter().map(|block| page.fitted(block, blocks)).collect())
         .collect();
     sections.join("\n")
 }
@@ -86,7 +88,18 @@ struct Page {
 }
 
 impl Page {
-    /// The lines of a block; `section` is where it stands.
+    /// The lines of a block, none longer than the page where they can be broken; `section` is where
+    /// it stands.
+    fn fitted(&self, block: &Block, section: &[Block]) -> String {
+        let text = self.block(block, section);
+        match block {
+            // Tables fit themselves.
+            Block::Table { .. } | Block::Methods { .. } => text,
+            _ => fitted(&text, self.width),
+        }
+    }
+
+    /// The lines of a block as long as they are; `section` is where it stands.
     fn block(&self, block: &Block, section: &[Block]) -> String {
         match block {
             Block::Question(equation) => format!("{equation}\n"),
@@ -97,7 +110,7 @@ impl Page {
                 format!("  {words}\n")
             }
             Block::Sentence(words) => comparison::wrapped(words, self.width, "  ", "  ") + "\n",
-            Block::Table { head, rows } => table::table(head, rows),
+            Block::Table { head, rows } => table::table(head, rows, self.width),
             Block::Law { left, right } => format!("  {:<8}= {right}\n", left.to_string()),
             Block::Equality { left, right } => format!("  {left} = {right}\n"),
             Block::Line(line) => format!("  {line}\n"),

@@ -60,10 +60,10 @@ fn table<'a>(verdict: Verdict, findings: &[&Finding]) -> Vec<Block<'a>> {
     let assumes = verdict == Verdict::UnderAssumption;
     let row = |finding: &&Finding| {
         let cells = [
-            shortened(&finding.claim.place),
+            finding.claim.place.clone(),
             finding.claim.id.clone(),
-            shortened(&printed(finding)),
-            shortened(&computed(finding)),
+            printed(finding),
+            computed(finding),
         ];
         let assumption = assumes.then(|| finding.assumption());
         cells.into_iter().chain(assumption).collect()
@@ -72,16 +72,6 @@ fn table<'a>(verdict: Verdict, findings: &[&Finding]) -> Vec<Block<'a>> {
         .into_iter()
         .chain(assumes.then_some("assumption"));
     vec![Block::Note(format!("verdict: {name}")), Block::table(head, findings.iter().map(row))]
-}
-
-/// The most characters of a cell.
-const WIDEST: usize = 30;
-
-fn shortened(text: &str) -> String {
-    match text.char_indices().nth(WIDEST) {
-        None => text.to_owned(),
-        Some((cut, _)) => format!("{}...", &text[..cut]),
-    }
 }
 
 /// What is printed, in one line.

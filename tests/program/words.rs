@@ -65,6 +65,22 @@ fn mistakes_on_the_command_line_are_helped() {
         (&["derive", "duffing", "--taylor", "-3"], 2, "expected a whole number, 1 or more"),
         (&["compare", "duffing", "--tolerance", "-1"], 2, "expected a positive number"),
         (&["derive", "dufing"], 1, "did you mean `duffing`?"),
+        (&["derive", "duffing", "--A", "1"], 2, "try `--at A=1`"),
+        (&["derive", "duffing", "--eps=0.1"], 2, "try `--at eps=0.1`"),
+        (&["derive", "duffing", "--pdf", "x.pdf"], 2, "write a page with `-o FILE.html`"),
+        (&["derive", "duffing", "--methods", "lp"], 2, "a similar argument exists: '--method'"),
+        (&["simulate", "duffing", "--x0", "1"], 2, "try `--from x=1`"),
+        (&["simulate", "duffing", "--tend", "9"], 2, "try `--until 9`"),
+        (&["response", "duffing", "--vary", "omega="], 2, "such as omega=0.5:1.5"),
+        (&["derive", "duffing", "--at", "A="], 2, "a value is missing after `=`"),
+        (&["compare", "duffing"], 1, "add --at eps=VALUE,A=VALUE"),
+        (
+            &["simulate", "x'' + c*x' + k*x = 0"],
+            1,
+            "help: --from x=1.5 --at c=VALUE,k=VALUE for a release from rest",
+        ),
+        (&["derive", "x'' + x = 0, x(0) = 1"], 1, "they are options: `--at A=1` of a formula"),
+        (&["man", "derivation"], 2, "there is no command `derivation`"),
     ] {
         let output = run(arguments, None);
         let message = String::from_utf8_lossy(&output.stderr);
@@ -72,6 +88,100 @@ fn mistakes_on_the_command_line_are_helped() {
         assert_eq!(output.status.code(), Some(code), "{arguments:?}: {message}");
         assert!(output.stdout.is_empty(), "{arguments:?}");
     }
+}
+
+/// An equation in the notation of print is answered as it is in that of the grammar, and how it was
+/// read is said.
+#[test]
+fn notations_of_print_are_read() {
+    for (print, grammar) in [
+        ("ẍ − μ(1−x²)ẋ + x = 0", "x'' - mu*(1-x^2)*x' + x = 0"),
+        ("θ̈ + sin θ = 0", "theta'' + sin(theta) = 0"),
+        ("x''(t) + 2x(t) + |x|x = 0", "x'' + 2*x + abs(x)*x = 0"),
+    ] {
+        let (read, meant) = (run(&["derive", print], None), run(&["derive", grammar], None));
+        assert_eq!(read.status.code(), Some(0), "{print}");
+        assert_eq!(read.stdout, meant.stdout, "{print}");
+        let note = String::from_utf8_lossy(&read.stderr);
+        assert_eq!(note, format!("note: the equation is read as {grammar}\n"));
+        assert!(run(&["derive", print, "--quiet"], None).stderr.is_empty());
+    }
+    let [degrees, radians] =
+        ["A=60°", "A=pi/3"].map(|at| run(&["derive", "pendulum", "--at", at], None));
+    assert!(degrees.status.success() && degrees == radians);
+    let [words, name] = ["van der pol", "van-der-pol"].map(|name| run(&["derive", name], None));
+    assert!(words.status.success() && words == name);
+}
+
+/// Names of formats are also what their files end in.
+#[test]
+fn formats_are_known_by_their_endings() {
+    for (ending, format) in [("tex", "latex"), ("py", "python"), ("txt", "text")] {
+        let [short, long] =
+            [ending, format].map(|name| run(&["derive", "duffing", "--format", name], None));
+        assert!(short.status.success() && short == long, "{ending}");
+    }
+    let [command, kind] = ["derive", "solution"].map(|name| run(&["schema", name], None));
+    assert!(command.status.success() && command == kind);
+}
+
+/// Every help begins with commands and the first lines of what the last of them prints.
+#[test]
+fn help_begins_with_a_command_and_its_output() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut count = 0;
+    for file in std::fs::read_dir(root.join("src/cli/help")).expect("the folder of examples") {
+        let path = file.expect("a file").path();
+        let example = std::fs::read_to_string(&path).expect("an example");
+        let (mut printed, mut shown) = (String::new(), String::new());
+        for line in example.lines() {
+            let Some(command) = line.strip_prefix("$ lindstedt ") else {
+                shown += &format!("{line}\n");
+                continue;
+            };
+            let words = command.split('"').enumerate().flat_map(|(index, part)| match index % 2 {
+                0 => part.split_whitespace().map(str::to_owned).collect(),
+                _ => vec![part.to_owned()],
+            });
+            let words = words.map(|word| match word.strip_prefix("examples/") {
+                Some(_) => root.join(word).display().to_string(),
+                None => word,
+            });
+            let output = std::process::Command::new(env!("CARGO_BIN_EXE_lindstedt"))
+                .args(words)
+                .current_dir(folder.path())
+                .env("COLUMNS", "90")
+                .output()
+                .expect("the program starts");
+            assert!(output.stderr.is_empty(), "{command}");
+            printed = String::from_utf8(output.stdout).expect("text");
+        }
+        let printed: String =
+            printed.lines().map(|line| line.trim_end().to_owned() + "\n").collect();
+        match shown.strip_suffix("...\n") {
+            Some(begin) => assert!(printed.starts_with(begin), "{path:?}: {printed}"),
+            None => assert_eq!(printed, shown, "{path:?}"),
+        }
+        let name = path.file_stem().and_then(|name| name.to_str()).expect("a name");
+        let help = String::from_utf8(run(&[name, "--help"], None).stdout).expect("text");
+        assert!(help.starts_with(&example), "{help}");
+        count += 1;
+    }
+    assert_eq!(count, 16);
+}
+
+/// Completions name every command, and the manual page of each is its own.
+#[test]
+fn shells_and_man_know_the_commands() {
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = String::from_utf8(run(&["completions", shell], None).stdout).expect("text");
+        assert!(script.contains("omega-only") && script.contains("certify"), "{shell}");
+    }
+    let page = |arguments: &[&str]| String::from_utf8(run(arguments, None).stdout).expect("text");
+    assert!(page(&["man"]).contains("certify"));
+    let derive = page(&["man", "derive"]);
+    assert!(derive.contains("lindstedt-derive") && derive.contains("omega\\-only"), "{derive}");
 }
 
 /// Short forms mean what the long ones do.

@@ -332,6 +332,11 @@ impl Parser<'_> {
         let token = self.token();
         match token.kind {
             Kind::Close => self.error(token.span(), "this `)` closes nothing", ""),
+            Kind::Comma if has_initial_value(&self.tokens, self.text) => self.error(
+                token.span(),
+                "an equation of motion stands alone, without its initial values",
+                "they are options: `--at A=1` of a formula, `--from x=1` of a simulation",
+            ),
             Kind::Comma => self.error(
                 token.span(),
                 "a `,` stands between the arguments of `max` and `min` alone",
@@ -345,6 +350,15 @@ impl Parser<'_> {
             ),
         }
     }
+}
+
+/// Whether `x(0) =` stands among these tokens.
+fn has_initial_value(tokens: &[Token], text: &str) -> bool {
+    tokens.windows(5).any(|window| {
+        let kinds: Vec<Kind> = window.iter().map(|token| token.kind).collect();
+        kinds == [Kind::Name, Kind::Open, Kind::Number, Kind::Close, Kind::Equals]
+            && text[window[2].span()].trim_matches(['0', '.']).is_empty()
+    })
 }
 
 fn matching_close(tokens: &[Token], open: usize) -> Option<usize> {

@@ -30,7 +30,7 @@ impl Answer<'_> {
     pub(super) fn outcome(&self, common: &Common) -> Result<Outcome, Failure> {
         let text = match common.format() {
             Format::Text => printable(&text::document(self.document, self.width)),
-            Format::Latex => printable(&latex::document(self.document)),
+            Format::Latex => common.latex(printable(&latex::document(self.document))),
             Format::Html => {
                 printable(&page(self.picture, None, |page| html::document(self.document, page)))
             }

@@ -50,7 +50,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     };
     let text = match arguments.common.format() {
         Format::Text => fitted(&catalog::text(entries), width(arguments.common.output.as_deref())),
-        Format::Latex => catalog::latex(entries),
+        Format::Latex => arguments.common.latex(catalog::latex(entries)),
         Format::Html => page(None, None, |page| html::lines(&catalog::text(entries), page)),
         Format::Json => json_text(&json::catalog(entries))?,
         format => no_such(format)?,

@@ -278,7 +278,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Format::Svg => drawn(picture)?,
         Format::Latex => {
             let document = report::solution(&solution, verification.as_ref(), tolerance);
-            derivation + &latex::document(&document)
+            arguments.common.latex(derivation + &latex::document(&document))
         }
         format @ Format::Csv => no_such(format)?,
         Format::Json => {

@@ -47,6 +47,12 @@ pub(super) fn check(common: &Common, input: Option<&Path>) -> Result<(), Failure
             )));
         }
     }
+    if common.standalone && common.format() != Format::Latex {
+        return Err(Failure::Usage(
+            "--standalone belongs to --format latex: other formats are whole as they are"
+                .to_owned(),
+        ));
+    }
     let text = common.output.clone().unwrap_or_else(|| PathBuf::from("-"));
     let ending = text.extension().and_then(|ending| ending.to_str());
     if common.format.is_none()

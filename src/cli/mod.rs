@@ -45,7 +45,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{ArgMatches, Args};
 use lindstedt::Symbol;
 use lindstedt::export::code::Language;
-use lindstedt::export::{is_invisible, printable};
+use lindstedt::export::{is_invisible, latex, printable};
 use lindstedt::problem::LARGEST_FILE;
 use lindstedt::solution::{Advice, Setting};
 use lindstedt::verify::{DEFAULT_TOLERANCE, Verdict};
@@ -269,6 +269,9 @@ struct Common {
     /// Draw the answer beside the truth to this SVG file (- for standard output)
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
+    /// With --format latex: a whole document, which compiles as it is
+    #[arg(long)]
+    standalone: bool,
     /// Exit with code 3 if a verdict is worse than this relative error (verdicts use 0.01 without
     /// it)
     #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
@@ -393,6 +396,14 @@ impl Common {
     fn format(&self) -> Format {
         let ending = || self.output.as_ref()?.extension()?.to_str();
         self.format.or_else(|| ending().and_then(Format::of_ending)).unwrap_or_default()
+    }
+
+    /// LaTeX as it is asked for: a whole document, or a part of one with what it needs.
+    fn latex(&self, text: String) -> String {
+        match self.standalone {
+            true => latex::standalone(&text),
+            false => format!("% needs {}\n{text}", latex::packages(&text)),
+        }
     }
 
     /// Whether the picture is asked for, beside the result or as it.

@@ -267,7 +267,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
         Format::Csv => csv(&report),
         Format::Json => json_text(&json::simulation(&report))?,
         Format::Text => fitted(&text(&report), width(arguments.common.output.as_deref())),
-        Format::Latex => latex(&report),
+        Format::Latex => arguments.common.latex(latex(&report)),
         Format::Html => page(draw, None, |page| html::lines(&text(&report), page)),
         Format::Svg => drawn(draw)?,
         format => no_such(format)?,

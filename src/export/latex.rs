@@ -9,6 +9,7 @@
 pub(super) mod comparison;
 mod expression;
 mod impact;
+pub(in crate::export) mod rows;
 mod table;
 
 pub use expression::{expression, inside, symbol};
@@ -137,6 +138,28 @@ pub fn document(document: &Document) -> String {
     page.text
 }
 
+/// The packages that equations and tables need in an article.
+pub fn packages(text: &str) -> &'static str {
+    match text.contains("\\begin{longtable}") {
+        true => "\\usepackage{amsmath,longtable}",
+        false => "\\usepackage{amsmath}",
+    }
+}
+
+/// Equations and tables as a document of its own, which compiles as it is.
+///
+/// ```
+/// let document = lindstedt::export::latex::standalone("\\begin{align*}\nx &= 1\n\\end{align*}\n");
+/// assert!(document.starts_with("\\documentclass{article}") && document.contains("amsmath"));
+/// ```
+pub fn standalone(text: &str) -> String {
+    // A displayed equation may take more than a page.
+    let packages = packages(text);
+    format!(
+        "\\documentclass{{article}}\n{packages}\n\\allowdisplaybreaks\n\\begin{{document}}\n\n{text}\n\\end{{document}}\n"
+    )
+}
+
 /// The place of a comment among those that stand together.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Rank {
@@ -188,8 +211,19 @@ pub(super) enum Setting {
     Words,
 }
 
-/// How a block is set, here and wherever formulas are handed on as LaTeX.
+/// How a block is set, here and wherever formulas are handed on as LaTeX: long equations in several
+/// rows.
 pub(super) fn setting(block: &Block) -> Setting {
+    match unbroken(block) {
+        Setting::Equations(formulas) => {
+            Setting::Equations(formulas.iter().flat_map(|formula| rows::rows(formula)).collect())
+        }
+        setting => setting,
+    }
+}
+
+/// How a block is set, each equation in one row.
+fn unbroken(block: &Block) -> Setting {
     let equation_of =
         |left: String, right: String| Setting::Equations(vec![format!("{left} &= {right}")]);
     match block {

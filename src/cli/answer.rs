@@ -91,12 +91,15 @@ pub(super) fn page(
 
 /// The words of a command without those that say how its result is handed on.
 fn what_is_asked(words: &[String]) -> Vec<String> {
-    const HANDED_ON: [&str; 3] = ["--format", "--output", "--plot"];
+    const HANDED_ON: [&str; 4] = ["--format", "--output", "-o", "--plot"];
+    const ABOUT_THE_REST: [&str; 3] = ["--quiet", "-q", "--standalone"];
     let mut asked = Vec::new();
     let mut words = words.iter();
     while let Some(word) = words.next() {
         let option = word.split_once('=').map_or(word.as_str(), |(option, _)| option);
-        if !HANDED_ON.contains(&option) {
+        if ABOUT_THE_REST.contains(&word.as_str()) {
+            continue;
+        } else if !HANDED_ON.contains(&option) {
             asked.push(word.clone());
         } else if option == word {
             words.next();
@@ -123,7 +126,7 @@ pub(super) fn no_such<T>(format: Format) -> Result<T, Failure> {
     let (what, has_it) = match format {
         Format::Csv => (
             "table of comma-separated values",
-            "`lindstedt simulate`, `response`, `stability`, `friction`, `materials` or `optimize`",
+            "`lindstedt compare`, `simulate`, `response`, `stability`, `friction`, `materials` or `optimize`",
         ),
         Format::Code(_) => ("program", "`lindstedt derive`"),
         Format::Svg => (

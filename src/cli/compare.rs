@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use clap::Args;
-use lindstedt::export::json;
+use lindstedt::export::{self, json};
 use lindstedt::problem::Reader;
 use lindstedt::report;
 use lindstedt::verify::Verdict;
@@ -84,6 +84,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         picture: Some(&|| picture(&oscillator, &comparison)),
         other: &|format| match format {
             Format::Json => json_text(&json::comparison(&comparison)),
+            Format::Csv => Ok(export::comparison::csv(&comparison)),
             format => no_such(format),
         },
     };

@@ -172,7 +172,11 @@ impl Body<'_> {
 
     /// The words of a block.
     fn words(&self, block: &Block) -> String {
-        let paragraph = |words: &str| format!("<p>{}</p>\n", escaped(words));
+        let paragraph = |words: &str| {
+            let set =
+                latex::formula_in_words(words).map(|formula| self.typesetter.inline(&formula));
+            format!("<p>{}</p>\n", set.unwrap_or_else(|| escaped(words)))
+        };
         let heading = |words: &str| format!("<h3>{}</h3>\n", escaped(words));
         match block {
             Block::Title { words, amplitude } => {

@@ -86,6 +86,16 @@ pub fn typed(text: &str) -> String {
     }
 }
 
+/// Words that are a formula, such as `1 - A^2/8` or `x'' + sin(x) = 0`, as LaTeX; `None` where they
+/// are words.
+pub(super) fn formula_in_words(words: &str) -> Option<String> {
+    let signs = ["^", "*", "(", " + ", " - ", " = "];
+    let is_formula = signs.iter().any(|sign| words.contains(sign))
+        && words.split('=').count() <= 2
+        && words.split('=').all(|side| parse_expression(side).is_ok());
+    is_formula.then(|| typed(words))
+}
+
 /// The derived formula, and the verdict where it was judged, to be pasted into an article.
 ///
 /// ```

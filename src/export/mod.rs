@@ -8,6 +8,7 @@
 
 pub mod catalog;
 pub mod code;
+pub mod comparison;
 mod csv;
 pub mod figure;
 pub mod friction;

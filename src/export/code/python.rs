@@ -1,4 +1,5 @@
-//! Python 3, with the module `math`. A number that does not exist is a `ValueError`.
+//! Python 3, with the module `math`; arrays element by element with NumPy. A number that does not
+//! exist is a `ValueError`.
 
 use super::{Base, Break, Exponent, Syntax, Text, Used};
 use crate::expr::Function;
@@ -57,19 +58,38 @@ fn function(function: Function) -> &'static str {
 /// What is imported: `pow` of the module is a `ValueError` where the built-in one would be a
 /// complex number.
 fn beginning(used: &Used) -> String {
+    /// A loop over the elements, in which each finds its own error and its own branch.
+    const ELEMENTWISE: &str = r#"from functools import wraps
+
+
+def elementwise(function):
+    """Takes arrays and sequences too, element by element, as NumPy does; numbers need no NumPy."""
+    @wraps(function)
+    def broadcast(*arguments, **named):
+        values = [*arguments, *named.values()]
+        if not any(hasattr(value, "__len__") for value in values):
+            return function(*arguments, **named)
+        from numpy import vectorize
+        return vectorize(function, otypes=[float])(*arguments, **named)
+    return broadcast
+
+
+"#;
+
     const MODULE: [&str; 18] = [
         "acos", "asin", "asinh", "atan", "ceil", "copysign", "cos", "cosh", "exp", "gamma", "log",
         "pi", "pow", "sin", "sinh", "sqrt", "tan", "tanh",
     ];
     let imported: Vec<&str> = MODULE.into_iter().filter(|name| used.has(name)).collect();
-    match imported.is_empty() {
+    let imports = match imported.is_empty() {
         true => String::new(),
-        false => format!("from math import {}\n\n", imported.join(", ")),
-    }
+        false => format!("from math import {}\n", imported.join(", ")),
+    };
+    ELEMENTWISE.replacen("\n\n", &format!("\n{imports}\n\n"), 1).trim_end().to_owned() + "\n\n"
 }
 
 fn routine(text: &Text) -> String {
-    let head = format!("def {}({}):\n", text.name, text.arguments.join(", "));
+    let head = format!("@elementwise\ndef {}({}):\n", text.name, text.arguments.join(", "));
     let about = format!("    \"\"\"{}.\"\"\"\n", text.about);
     let lines = text.lines.iter().map(|line| format!("    {line}\n"));
     [head, about].into_iter().chain(lines).chain(["\n".to_owned()]).collect()

@@ -41,6 +41,7 @@ impl Kind {
             Self::Catalog => generator.into_root_schema_for::<CatalogDocument>(),
             Self::Certificate => generator.into_root_schema_for::<EitherCertificate>(),
         };
+        schema.insert("$id".to_owned(), format!("urn:{}", self.schema().replace('/', ":")).into());
         schema.insert("title".to_owned(), self.schema().into());
         let mut schema = head_first(schema.to_value());
         if let Some(Value::Object(key)) = schema.pointer_mut("/properties/schema") {
@@ -76,7 +77,7 @@ fn head_first(schema: Value) -> Value {
     let Value::Object(mut rest) = schema else {
         return schema;
     };
-    let head = ["$schema", "title", "description"];
+    let head = ["$schema", "$id", "title", "description"];
     let mut ordered: serde_json::Map<String, Value> =
         head.iter().filter_map(|key| rest.shift_remove_entry(*key)).collect();
     ordered.extend(rest);

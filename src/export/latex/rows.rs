@@ -4,7 +4,7 @@
 //! breaks inside, and the bracket is set without `\left` and `\right`, which hold a line together.
 
 /// The width of a line of an article, in letters of a formula.
-const WIDTH: f64 = 66.0;
+const WIDTH: f64 = 57.0;
 
 /// The rows of a formula, `left &= right`, one where it fits a line.
 pub(in crate::export) fn rows(formula: &str) -> Vec<String> {

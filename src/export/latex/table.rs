@@ -1,7 +1,7 @@
 //! A table as LaTeX.
 
 use super::rows::width;
-use super::{scientific_text, words};
+use super::{formula_in_words, scientific_text, words};
 use crate::report::{Heading, are_names};
 
 /// A table whose cells are LaTeX already.
@@ -117,7 +117,9 @@ pub(super) fn head(names: &[&str]) -> Vec<String> {
 pub(super) fn table(head: &[Heading], rows: &[Vec<String>]) -> Table {
     let cell = |cell: &String| match cell.parse::<f64>() {
         Ok(_) => format!("${}$", scientific_text(cell)),
-        Err(_) => words(cell),
+        Err(_) => {
+            formula_in_words(cell).map_or_else(|| words(cell), |formula| format!("${formula}$"))
+        }
     };
     let mut places = "r".repeat(head.len());
     if are_names(rows) {

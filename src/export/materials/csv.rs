@@ -1,6 +1,6 @@
 //! A row for each material, to go on with.
 
-use crate::export::csv::{cell, line, quoted};
+use crate::export::csv::{cell, head, line, quoted};
 use crate::impact::MaterialStudy;
 
 /// Names and units of the columns: a first line of comment has the units.
@@ -35,9 +35,7 @@ const COLUMNS: [(&str, &str); 17] = [
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn materials(study: &MaterialStudy) -> String {
-    let units = COLUMNS.map(|(_, unit)| unit).join(",");
-    let names = COLUMNS.map(|(name, _)| name).join(",");
-    let mut text = format!("# {units}\n{names}\n");
+    let mut text = head(&COLUMNS);
     for row in &study.rows {
         let (damping, course) = (&row.dissipation, &row.course);
         let first = row.first.map(|first| {

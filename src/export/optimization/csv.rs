@@ -1,6 +1,6 @@
 //! A row for each run, or for each design of a front, to go on with.
 
-use crate::export::csv::{cell, line, quoted};
+use crate::export::csv::{cell, head, line, quoted};
 use crate::optimize::{Finalist, Objective, Question, SearchRun, Study};
 
 /// The table: for one objective the best design of every run as it has it, for several the front by
@@ -16,11 +16,7 @@ use crate::optimize::{Finalist, Objective, Question, SearchRun, Study};
 pub fn optimization(study: &Study) -> String {
     let question = &study.question;
     let columns = columns(question);
-    let joined = |of: fn(&(String, String)) -> &String| {
-        let fields: Vec<&str> = columns.iter().map(|column| of(column).as_str()).collect();
-        fields.join(",")
-    };
-    let mut text = format!("# {}\n{}\n", joined(|column| &column.1), joined(|column| &column.0));
+    let mut text = head(&columns);
     let rows: Vec<Vec<String>> = match question.objectives.len() {
         1 => study.runs.iter().map(|run| best_of(run, question)).collect(),
         _ => study.finalists.iter().map(|one| compromise(one, question)).collect(),

@@ -10,7 +10,7 @@ use crate::export::csv::{cell, head};
 /// Points inside each step of the integrator.
 const BETWEEN: usize = 3;
 
-/// The trajectory: the steps of the integrator and a few points inside each, so that a contact of a
+/// The trajectory, below its units and the names of its columns: the steps of the integrator and a few points inside each, so that a contact of a
 /// millisecond is as well drawn as a swing; where samples are asked for, the state at these alone.
 ///
 /// ```
@@ -21,12 +21,18 @@ const BETWEEN: usize = 3;
 /// let motion = simulate(&model, start, Integrator::Taylor, &Settings::default())?;
 /// let report = Report { motion: &motion, judge: None, sources: ["given", "given"], tolerance: 1e-10, samples: &[1.0], baseline: None, dissipation: None, units: None, known_until: None };
 /// let table = csv(&report);
-/// assert!(table.starts_with("t,x,velocity,") && table.lines().count() == 2); // the state at t = 1
+/// assert!(table.contains("\nt,x,velocity,") && table.lines().count() == 3); // the state at t = 1
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn simulation(report: &Report) -> String {
     let motion = report.motion;
-    let mut text = String::from("t,x,velocity,state,energy\n");
+    let mut text = head(&[
+        ("t", "1/omega"),
+        ("x", "rad"),
+        ("velocity", "rad*omega"),
+        ("state", "-"),
+        ("energy", "m*g*L"),
+    ]);
     let mut line = |t: f64, x: f64, velocity: f64| {
         let state = motion.path.regime_at(t).map_or("free", |state| state.name());
         let energy = motion.model.energy(x, velocity);

@@ -41,7 +41,7 @@ pub fn csv(comparison: &Comparison) -> String {
             cell(row.max_deviation),
             cell(row.verdict.map(|verdict| verdict.name())),
             cell(row.reach.and_then(|reach| reach.end())),
-            quoted(&row.solution.law.in_one_line().to_string()),
+            quoted(&row.solution.formula()),
             quoted(&reason.unwrap_or_default()),
         ]);
     }

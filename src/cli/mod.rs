@@ -68,9 +68,7 @@ static COMMANDS: [Command; 18] = [
         .showing(include_str!("help/derive.txt"))
         .writing(Formats::Programs)
         .waiting(derive::patience),
-    Command::of::<compare::Arguments>("compare")
-        .showing(include_str!("help/compare.txt"))
-        .writing(Formats::Pictures),
+    Command::of::<compare::Arguments>("compare").showing(include_str!("help/compare.txt")),
     Command::of::<impact::Arguments>("impact")
         .showing(include_str!("help/impact.txt"))
         .writing(Formats::Pictures),

@@ -85,7 +85,7 @@ def elementwise(function):
         true => String::new(),
         false => format!("from math import {}\n", imported.join(", ")),
     };
-    ELEMENTWISE.replacen("\n\n", &format!("\n{imports}\n\n"), 1).trim_end().to_owned() + "\n\n"
+    ELEMENTWISE.replacen("\n\n", &format!("\n{imports}\n"), 1).trim_end().to_owned() + "\n\n"
 }
 
 fn routine(text: &Text) -> String {

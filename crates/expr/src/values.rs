@@ -111,6 +111,31 @@ impl Values {
     }
 }
 
+/// Names with numbers, each the decimal that reads back to it: 0.1 is 1/10.
+///
+/// ```
+/// # use lindstedt_expr as lindstedt;
+/// use lindstedt::Values;
+///
+/// assert_eq!(Values::try_from([("A", 1.5), ("eps", 0.1)])?, "A = 3/2, eps = 1/10".parse()?);
+/// assert!(Values::try_from([("A", f64::NAN)]).is_err());
+/// # Ok::<(), lindstedt::ValueError>(())
+/// ```
+impl<const N: usize> TryFrom<[(&str, f64); N]> for Values {
+    type Error = ValueError;
+
+    fn try_from(numbers: [(&str, f64); N]) -> Result<Self, ValueError> {
+        let mut values = Self::default();
+        for (name, number) in numbers {
+            let name = Symbol::new(name);
+            let value = parse_expression(&number.to_string());
+            let not_finite = |_| ValueError::NotFinite { name, value: number.to_string() };
+            values.insert(name, value.map_err(not_finite)?)?;
+        }
+        Ok(values)
+    }
+}
+
 /// `A = 3/2, eps = 1`.
 impl FromStr for Values {
     type Err = ValueError;

@@ -13,7 +13,7 @@
 pub fn fitted(text: &str, width: usize) -> String {
     let mut fitted = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {
-        match line.chars().count() > width + usize::from(line.ends_with('\n')) {
+        match line.trim_end_matches('\n').chars().count() > width {
             true => broken(line, width, &mut fitted),
             false => fitted.push_str(line),
         }
@@ -134,6 +134,7 @@ mod tests {
             "  x(t) = (A + A^3/192)*cos(theta)\n         + (-A^3/192 - A^5/3072)*cos(3*theta)\n";
         assert_eq!(fitted(line, 60), broken);
         assert_eq!(fitted(line, 100), line);
+        assert_eq!(fitted(line, usize::MAX), line);
         // Nothing but the layout changes, and every line fits that can.
         let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
         for width in 20..90 {

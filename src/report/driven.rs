@@ -85,8 +85,15 @@ fn steady_motions<'a>(solution: &'a Solution, response: &Response) -> Vec<Block<
     let mut blocks = vec![Block::Heading("Steady motions".to_owned())];
     let detuning = detuning(solution);
     let polynomial = |polynomial: &Polynomial| Expr::from(polynomial);
-    if let Some(relation) = &response.relation {
-        blocks.push(said("frequency response", Expr::zero(), polynomial(relation)));
+    let squares = response.branches.as_ref().zip(detuning).and_then(|(branches, detuning)| {
+        branches.by_squares(detuning, solution.amplitude.symbol())
+    });
+    match (&response.relation, squares) {
+        (_, Some([left, right])) => blocks.push(said("frequency response", left, right)),
+        (Some(relation), None) => {
+            blocks.push(said("frequency response", Expr::zero(), polynomial(relation)));
+        }
+        (None, None) => {}
     }
     if let (Some(branches), Some(detuning)) = (&response.branches, detuning) {
         let centre = polynomial(&branches.centre);

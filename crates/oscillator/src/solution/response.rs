@@ -7,10 +7,13 @@
 //! detuning, its branches, its peak and the places where two branches meet; at numbers, every
 //! steady motion with the eigenvalues that decide its stability.
 
+use num_traits::{One as _, Zero as _};
+
 use super::Solution;
 use super::plane::Field;
 use super::spurious::Orders;
-use crate::exact::Polynomial;
+use crate::exact::rational::Rational;
+use crate::exact::{Monomial, Polynomial};
 use crate::expr::Expr;
 use crate::symbol::Symbol;
 
@@ -59,6 +62,47 @@ pub struct Branches {
     /// The square of their distance from it; steady motions have amplitudes where it is not
     /// negative.
     pub width_squared: Polynomial,
+}
+
+impl Branches {
+    /// The frequency-response equation as the sum of the squares of damping and detuning beside the
+    /// drive, `[(detuning - centre)^2 + damping] a^k = drive`: both sides. `None` where no term of the
+    /// squared distance from the backbone has the amplitude in its denominator.
+    ///
+    /// ```
+    /// # use lindstedt_oscillator as lindstedt;
+    /// use lindstedt::{Options, Oscillator, solve};
+    ///
+    /// let duffing = Oscillator::parse("x'' + 2*zeta*x' + x + eps*x^3 = F*cos(Omega*t)")?;
+    /// let response = solve(&duffing, &Options::default())?.response.ok_or("no response")?;
+    /// let branches = response.branches.ok_or("not quadratic")?;
+    /// let [left, right] = branches.by_squares("sigma".into(), "a".into()).ok_or("no drive")?;
+    /// assert_eq!(format!("{left} = {right}"), "a^2*(64*zeta^2 + (8*sigma - 3*eps*a^2)^2) = 16*F^2");
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn by_squares(&self, detuning: Symbol, amplitude: Symbol) -> Option<[Expr; 2]> {
+        let (lowest, _) = self.width_squared.exponent_range(amplitude)?;
+        if lowest >= 0 {
+            return None;
+        }
+        let factor = Monomial::power_of(amplitude, -lowest);
+        let (mut drive, mut damping) = (Polynomial::zero(), Polynomial::zero());
+        for (monomial, number) in self.width_squared.terms() {
+            match monomial.exponent(amplitude) < 0 {
+                true => drive.add_term(monomial.product(&factor), number.clone()),
+                false => damping.add_term(monomial.clone(), -number.clone()),
+            }
+        }
+        let distance = &Expr::from(detuning) - &Expr::from(&self.centre);
+        let squares =
+            Expr::sum([Expr::from(&damping), Expr::product([distance.clone(), distance])]);
+        let factor = Expr::from(&Polynomial::term(factor, Rational::one()));
+        let left = Expr::product([factor, squares]);
+        // Without the denominator that both terms of the left side have.
+        let (number, _) = left.factors();
+        let divided = |side: &Expr| Expr::divide(side, &Expr::number(number.clone())).ok();
+        Some([divided(&left)?, divided(&Expr::from(&drive))?])
+    }
 }
 
 /// The slow equations in `u = a cos(psi/m)`, `v = -a sin(psi/m)`, with `m` of the resonance.

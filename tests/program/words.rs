@@ -184,6 +184,27 @@ fn shells_and_man_know_the_commands() {
     assert!(derive.contains("lindstedt-derive") && derive.contains("omega\\-only"), "{derive}");
 }
 
+/// The crates whose licences are listed are those that are built, at these versions.
+#[test]
+fn licences_are_those_of_the_crates_in_use() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |file: &str| std::fs::read_to_string(root.join(file)).expect("a file");
+    let (listed, locked) = (read("docs/licences.md"), read("Cargo.lock"));
+    let rows = listed
+        .lines()
+        .filter(|line| line.starts_with("| "))
+        .filter(|line| !line.starts_with("| crate") && !line.starts_with("| ---"));
+    let mut count = 0;
+    for row in rows {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        let [_, name, version, licence, _] = cells[..] else { panic!("{row}") };
+        let entry = format!("name = \"{name}\"\nversion = \"{version}\"");
+        assert!(locked.contains(&entry) && !licence.is_empty(), "{row}: list it anew");
+        count += 1;
+    }
+    assert!(count > 100, "{count}");
+}
+
 /// Short forms mean what the long ones do.
 #[test]
 fn short_forms_mean_the_long_ones() {

@@ -22,7 +22,8 @@ fn broken(formula: &str) -> Vec<String> {
     let begin = begins.into_iter().flatten().next().unwrap_or(0);
     let outside = breaks(formula, begin, 0);
     let longest = pieces(formula, &outside).into_iter().map(width).fold(0.0, f64::max);
-    match longest <= WIDTH {
+    // A bracket among words is short, whatever the words are.
+    match longest <= WIDTH || formula.contains("\\text{") {
         true => joined(&pieces(formula, &outside)),
         false => {
             let open = in_open_brackets(formula);

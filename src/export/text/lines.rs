@@ -89,8 +89,9 @@ fn parts(text: &str) -> Vec<Part<'_>> {
             ')' | ']' | '}' => depth = depth.saturating_sub(1),
             ' ' => {
                 let (before, after) = (&text[begin..place], &text[place + 1..]);
-                let stays = matches!(before.rsplit(' ').next(), Some("+" | "-" | "=" | ""))
+                let stays = matches!(before.rsplit(' ').next(), Some("+" | "-" | "+-" | "=" | ""))
                     || after.starts_with("= ")
+                    || after.starts_with("+- ")
                     || after.starts_with(' ');
                 if !stays {
                     parts.push(Part { text: before, depth: depth_at_begin });

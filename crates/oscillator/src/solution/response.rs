@@ -66,8 +66,8 @@ pub struct Branches {
 
 impl Branches {
     /// The frequency-response equation as the sum of the squares of damping and detuning beside the
-    /// drive, `[(detuning - centre)^2 + damping] a^k = drive`: both sides. `None` where no term of the
-    /// squared distance from the backbone has the amplitude in its denominator.
+    /// drive, `[(detuning - centre)^2 + damping] a^k = drive`: both sides. `None` where the drive is not
+    /// one term of the squared distance from the backbone, with the amplitude in its denominator.
     ///
     /// ```
     /// # use lindstedt_oscillator as lindstedt;
@@ -93,6 +93,7 @@ impl Branches {
                 false => damping.add_term(monomial.clone(), -number.clone()),
             }
         }
+        drive.single_term()?;
         let distance = &Expr::from(detuning) - &Expr::from(&self.centre);
         let squares =
             Expr::sum([Expr::from(&damping), Expr::product([distance.clone(), distance])]);

@@ -118,14 +118,22 @@ impl ForceSample {
         }
     }
 
-    /// f_i and its derivatives: by the positions, by the velocities, by the parameter with what
-    /// that moves the frequency, and by the frequency.
-    fn row(&self, i: usize, by_frequency: f64, frequency_slope: f64) -> impl Iterator<Item = f64> {
-        let slopes = [&self.by_position, &self.by_velocity];
-        let slopes =
-            slopes.into_iter().flat_map(move |by| (0..by.ncols()).map(move |j| by[(i, j)]));
-        let by_parameter = self.by_parameter[i] + frequency_slope * by_frequency;
-        [self.value[i]].into_iter().chain(slopes).chain([by_parameter, by_frequency])
+    /// Writes row i with the number of each column: f_i, its derivatives by n positions, n
+    /// velocities, the parameter with what that moves the frequency, and the frequency.
+    fn write_row(
+        &self,
+        i: usize,
+        [by_frequency, frequency_slope]: [f64; 2],
+        mut write: impl FnMut(usize, f64),
+    ) {
+        let n = self.value.len();
+        write(0, self.value[i]);
+        for j in 0..n {
+            write(1 + j, self.by_position[(i, j)]);
+            write(1 + n + j, self.by_velocity[(i, j)]);
+        }
+        write(2 * n + 1, self.by_parameter[i] + frequency_slope * by_frequency);
+        write(2 * n + 2, by_frequency);
     }
 }
 
@@ -338,12 +346,9 @@ impl HarmonicBalance {
             return None;
         }
         let (n, samples) = (self.coordinates, self.samples());
-        // A row for each coordinate: R_i in time, its derivatives by n positions, n velocities, the
-        // parameter and the frequency.
+        // A column for R_i and for each of its derivatives, coordinate by coordinate.
         let width = 2 * n + 3;
-        let [by_positions, by_velocities, by_parameter, by_frequency] =
-            [1, n + 1, 2 * n + 1, 2 * n + 2];
-        let mut table = vec![Vec::with_capacity(samples); n * width];
+        let mut sampled = DMatrix::zeros(samples, n * width);
         let mut scale = 0.0_f64;
         let mut sample = ForceSample::zeros(n);
         let mut state = vec![[0.0; 2]; n];
@@ -361,32 +366,30 @@ impl HarmonicBalance {
                 });
                 let inertia = omega * omega * curvature;
                 scale = scale.max(inertia.abs()).max(sample.value[i].abs());
-                let row = sample.row(i, by_frequency, omega_slope).enumerate();
-                for (column, value) in row {
-                    table[i * width + column].push(if column == 0 {
-                        inertia + value
-                    } else {
-                        value
-                    });
-                }
+                sample.write_row(i, [by_frequency, omega_slope], |column, value| {
+                    sampled[(index, i * width + column)] = value;
+                });
+                sampled[(index, i * width)] += inertia;
             }
         }
-        let added = |LocatedForce { velocities, integral, .. }: &LocatedForce| {
-            let row = |i: usize| {
+        let mut added = DMatrix::zeros(located.len(), n * width);
+        for (index, LocatedForce { velocities, integral, .. }) in located.iter().enumerate() {
+            for i in 0..n {
                 let products = (0..n).map(|j| integral.by_velocity[(i, j)] * velocities[j]);
-                integral.row(i, products.sum::<f64>() / omega, omega_slope)
-            };
-            (0..n).flat_map(row).collect::<Vec<f64>>()
-        };
-        let added: Vec<Vec<f64>> = located.iter().map(added).collect();
-        if !table.iter().chain(&added).flatten().all(|value| value.is_finite()) {
+                let by_frequency = products.sum::<f64>() / omega;
+                integral.write_row(i, [by_frequency, omega_slope], |column, value| {
+                    added[(index, i * width + column)] = value;
+                });
+            }
+        }
+        if !sampled.iter().chain(&added).all(|value| value.is_finite()) {
             return None;
         }
         let spectrum = |i: usize, column: usize, count: usize| {
-            let place = i * width + column;
-            let mut harmonics = self.transform.harmonics(&table[place], count);
-            for (located, values) in located.iter().zip(&added) {
-                harmonics.add(located.phase, values[place]);
+            let [sampled, added] = [&sampled, &added].map(|table| table.column(i * width + column));
+            let mut harmonics = self.transform.harmonics(sampled.as_slice(), count);
+            for (located, value) in located.iter().zip(&added) {
+                harmonics.add(located.phase, *value);
             }
             harmonics
         };
@@ -394,8 +397,8 @@ impl HarmonicBalance {
             |column: usize| self.in_order((0..n).map(|i| spectrum(i, column, self.harmonics)));
         let mut jacobian = DMatrix::zeros(self.size(), self.size() + 1);
         for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-            let [stiffness, damping] = [by_positions, by_velocities]
-                .map(|first| spectrum(i, first + j, 2 * self.harmonics));
+            let [stiffness, damping] =
+                [1 + j, 1 + n + j].map(|column| spectrum(i, column, 2 * self.harmonics));
             let size = self.block();
             let mut block = jacobian.view_mut((i * size, j * size), (size, size));
             block.copy_from(&self.coupling(&stiffness, &damping, omega));
@@ -406,9 +409,9 @@ impl HarmonicBalance {
             }
         }
         if let Some(place) = self.frequency_place() {
-            jacobian.set_column(place, &vector(by_frequency));
+            jacobian.set_column(place, &vector(2 * n + 2));
         }
-        jacobian.set_column(self.size(), &vector(by_parameter));
+        jacobian.set_column(self.size(), &vector(2 * n + 1));
         Some(Linearised { residual: vector(0), jacobian, scale })
     }
 

@@ -15,7 +15,7 @@
 //! closure. Out: residual and derivatives, in the units of the equations.
 //!
 //! Samples do not tell where a force jumps. The caller adds what is more on one side of the jump as
-//! integrals at phases that it has located, [`LocatedForce`].
+//! integrals at phases that it has located, [`LocatedForces`].
 //!
 //! Where nothing drives the motion its frequency is an unknown, and when it begins is free: it
 //! begins where the first sine of one coordinate is zero, and the frequency takes the place of that
@@ -23,7 +23,7 @@
 //!
 //! ```
 //! # use lindstedt_numeric as lindstedt;
-//! use lindstedt::numeric::balance::{ForceSample, HarmonicBalance};
+//! use lindstedt::numeric::balance::{ForceSample, HarmonicBalance, LocatedForces};
 //! use nalgebra::DVector;
 //!
 //! // x'' + 4x = y + cos t, y'' + 4y = x: x = 3/8 cos t, y = 1/8 cos t
@@ -33,7 +33,7 @@
 //!     sample.by_position.copy_from_slice(&[4.0, -1.0, -1.0, 4.0]);
 //! };
 //! let balance = HarmonicBalance::new(2, 1, true, None);
-//! let equations = |u: &DVector<f64>| balance.linearised(&balance.motion(u), [1.0, 0.0], &[], force);
+//! let equations = |u: &DVector<f64>| balance.linearised(&balance.motion(u), [1.0, 0.0], LocatedForces::default(), force);
 //! let found = balance.solve(&DVector::zeros(balance.size()), equations).ok_or("none")?;
 //! assert!((balance.harmonic(&found, 0, 1)[0] - 0.375).abs() < 1e-14);
 //! assert!((balance.harmonic(&found, 1, 1)[0] - 0.125).abs() < 1e-14);
@@ -85,15 +85,12 @@ pub struct ForceSample {
     pub by_parameter: DVector<f64>,
 }
 
-/// Forces that act at a phase alone, in addition to those at the samples.
-#[derive(Clone, Debug)]
-pub struct LocatedForce {
-    /// The phase.
-    pub phase: f64,
-    /// The velocity of each coordinate there.
-    pub velocities: Vec<f64>,
-    /// The integrals over the phase of the forces and of their derivatives.
-    pub integral: ForceSample,
+/// Forces that act at single phases, in addition to those at the samples.
+#[derive(Clone, Debug, Default)]
+pub struct LocatedForces {
+    phases: Vec<f64>,
+    /// A row for each phase: those of [`ForceSample::write_row`], one after the other.
+    rows: Vec<f64>,
 }
 
 /// The residual and its derivatives at a point.
@@ -119,21 +116,33 @@ impl ForceSample {
     }
 
     /// Writes row i with the number of each column: f_i, its derivatives by n positions, n
-    /// velocities, the parameter with what that moves the frequency, and the frequency.
-    fn write_row(
-        &self,
-        i: usize,
-        [by_frequency, frequency_slope]: [f64; 2],
-        mut write: impl FnMut(usize, f64),
-    ) {
+    /// velocities and the parameter, and last this one by the frequency.
+    fn write_row(&self, i: usize, by_frequency: f64, mut write: impl FnMut(usize, f64)) {
         let n = self.value.len();
         write(0, self.value[i]);
         for j in 0..n {
             write(1 + j, self.by_position[(i, j)]);
             write(1 + n + j, self.by_velocity[(i, j)]);
         }
-        write(2 * n + 1, self.by_parameter[i] + frequency_slope * by_frequency);
+        write(2 * n + 1, self.by_parameter[i]);
         write(2 * n + 2, by_frequency);
+    }
+}
+
+impl LocatedForces {
+    /// Adds forces at a phase, given by the integrals over the phase of themselves and of their
+    /// derivatives, and the velocities there.
+    pub fn push(&mut self, phase: f64, velocities: &[f64], integral: &ForceSample) {
+        self.phases.push(phase);
+        for i in 0..velocities.len() {
+            let products = velocities.iter().enumerate();
+            let products = products.map(|(j, velocity)| integral.by_velocity[(i, j)] * velocity);
+            // By the frequency times the frequency, which is not known here.
+            let first = self.rows.len();
+            self.rows.resize(first + 2 * velocities.len() + 3, 0.0);
+            integral
+                .write_row(i, products.sum(), |column, value| self.rows[first + column] = value);
+        }
     }
 }
 
@@ -174,19 +183,30 @@ impl HarmonicBalance {
         self.frequency_place().map_or(given, |place| unknowns[place])
     }
 
-    /// Cosine and sine of a harmonic of a coordinate; of harmonic 0, the mean and zero.
+    /// Cosine and sine of every harmonic of a coordinate; first the mean and zero.
+    pub fn waves(
+        &self,
+        unknowns: &DVector<f64>,
+        coordinate: usize,
+    ) -> impl Iterator<Item = [f64; 2]> {
+        let own = &unknowns.as_slice()[coordinate * self.block()..][..self.block()];
+        let anchored = self.anchor == Some(coordinate);
+        let wave = move |(index, wave): (usize, &[f64])| match index {
+            0 if anchored => [wave[0], 0.0],
+            _ => [wave[0], wave[1]],
+        };
+        [[own[0], 0.0]].into_iter().chain(own[1..].chunks_exact(2).enumerate().map(wave))
+    }
+
+    /// Cosine and sine of a harmonic of a coordinate, as [`HarmonicBalance::waves`] has them; zero
+    /// beyond the last.
     pub fn harmonic(
         &self,
         unknowns: &DVector<f64>,
         coordinate: usize,
         harmonic: usize,
     ) -> [f64; 2] {
-        let first = coordinate * self.block();
-        match harmonic {
-            0 => [unknowns[first], 0.0],
-            1 if self.anchor == Some(coordinate) => [unknowns[first + 1], 0.0],
-            _ => [unknowns[first + 2 * harmonic - 1], unknowns[first + 2 * harmonic]],
-        }
+        self.waves(unknowns, coordinate).nth(harmonic).unwrap_or_default()
     }
 
     /// The size of what moves in a motion: the norm of all waves.
@@ -207,11 +227,9 @@ impl HarmonicBalance {
     /// The size of the last quarter of the harmonics.
     pub fn last_harmonics(&self, unknowns: &DVector<f64>) -> f64 {
         let first = self.harmonics - self.harmonics / 4;
-        let last = move |coordinate| {
-            (first + 1..=self.harmonics).map(move |harmonic| {
-                let [cosine, sine] = self.harmonic(unknowns, coordinate, harmonic);
-                cosine.hypot(sine)
-            })
+        let last = |coordinate| {
+            let waves = self.waves(unknowns, coordinate).skip(first + 1);
+            waves.map(|[cosine, sine]| cosine.hypot(sine))
         };
         (0..self.coordinates).flat_map(last).fold(0.0, f64::hypot)
     }
@@ -220,8 +238,7 @@ impl HarmonicBalance {
     pub fn motion(&self, unknowns: &DVector<f64>) -> Vec<Vec<[f64; 3]>> {
         let of_coordinate = |coordinate: usize| {
             let derivative = |times: u32| {
-                let wave = move |harmonic: usize| {
-                    let [a, b] = self.harmonic(unknowns, coordinate, harmonic);
+                let wave = move |(harmonic, [a, b]): (usize, [f64; 2])| {
                     let k = harmonic as f64;
                     match times {
                         0 => [a, b],
@@ -229,7 +246,8 @@ impl HarmonicBalance {
                         _ => [-k * k * a, -k * k * b],
                     }
                 };
-                self.transform.sum_of_waves((0..=self.harmonics).map(wave))
+                let waves = self.waves(unknowns, coordinate).enumerate();
+                self.transform.sum_of_waves(waves.map(wave))
             };
             let [positions, slopes, curvatures] = [0, 1, 2].map(derivative);
             let points = positions.into_iter().zip(slopes).zip(curvatures);
@@ -246,13 +264,12 @@ impl HarmonicBalance {
         omega: f64,
         phase: f64,
     ) -> [f64; 2] {
-        let mut point = [self.harmonic(unknowns, coordinate, 0)[0], 0.0];
+        let mut point = [unknowns[coordinate * self.block()], 0.0];
         let (step_sine, step_cosine) = phase.sin_cos();
         let (mut cosine, mut sine) = (1.0, 0.0);
-        for harmonic in 1..=self.harmonics {
+        for (harmonic, [a, b]) in self.waves(unknowns, coordinate).enumerate().skip(1) {
             (cosine, sine) =
                 (cosine * step_cosine - sine * step_sine, sine * step_cosine + cosine * step_sine);
-            let [a, b] = self.harmonic(unknowns, coordinate, harmonic);
             point[0] += a * cosine + b * sine;
             point[1] += omega * harmonic as f64 * (b * cosine - a * sine);
         }
@@ -261,13 +278,12 @@ impl HarmonicBalance {
 
     /// X_i'' by the phase.
     pub fn curvature(&self, unknowns: &DVector<f64>, coordinate: usize, phase: f64) -> f64 {
-        let term = |harmonic: usize| {
-            let [a, b] = self.harmonic(unknowns, coordinate, harmonic);
+        let term = |(harmonic, [a, b]): (usize, [f64; 2])| {
             let k = harmonic as f64;
             let (sine, cosine) = (k * phase).sin_cos();
             -k * k * (a * cosine + b * sine)
         };
-        (1..=self.harmonics).map(term).sum()
+        self.waves(unknowns, coordinate).enumerate().skip(1).map(term).sum()
     }
 
     /// The coefficients of a motion whose coordinates are known at any number of equal steps of a
@@ -339,7 +355,7 @@ impl HarmonicBalance {
         &self,
         motion: &[Vec<[f64; 3]>],
         [omega, omega_slope]: [f64; 2],
-        located: &[LocatedForce],
+        mut located: LocatedForces,
         mut force: impl FnMut(f64, &[[f64; 2]], &mut ForceSample),
     ) -> Option<Linearised> {
         if omega.is_nan() || omega <= 0.0 {
@@ -366,30 +382,26 @@ impl HarmonicBalance {
                 });
                 let inertia = omega * omega * curvature;
                 scale = scale.max(inertia.abs()).max(sample.value[i].abs());
-                sample.write_row(i, [by_frequency, omega_slope], |column, value| {
-                    sampled[(index, i * width + column)] = value;
+                let first = i * width;
+                sample.write_row(i, by_frequency, |column, value| {
+                    sampled[(index, first + column)] = value;
                 });
-                sampled[(index, i * width)] += inertia;
+                sampled[(index, first)] += inertia;
+                sampled[(index, first + 2 * n + 1)] += omega_slope * by_frequency;
             }
         }
-        let mut added = DMatrix::zeros(located.len(), n * width);
-        for (index, LocatedForce { velocities, integral, .. }) in located.iter().enumerate() {
-            for i in 0..n {
-                let products = (0..n).map(|j| integral.by_velocity[(i, j)] * velocities[j]);
-                let by_frequency = products.sum::<f64>() / omega;
-                integral.write_row(i, [by_frequency, omega_slope], |column, value| {
-                    added[(index, i * width + column)] = value;
-                });
-            }
+        for row in located.rows.chunks_exact_mut(width) {
+            row[2 * n + 2] /= omega;
+            row[2 * n + 1] += omega_slope * row[2 * n + 2];
         }
-        if !sampled.iter().chain(&added).all(|value| value.is_finite()) {
+        if !sampled.iter().chain(&located.rows).all(|value| value.is_finite()) {
             return None;
         }
         let spectrum = |i: usize, column: usize, count: usize| {
-            let [sampled, added] = [&sampled, &added].map(|table| table.column(i * width + column));
-            let mut harmonics = self.transform.harmonics(sampled.as_slice(), count);
-            for (located, value) in located.iter().zip(&added) {
-                harmonics.add(located.phase, *value);
+            let place = i * width + column;
+            let mut harmonics = self.transform.harmonics(sampled.column(place).as_slice(), count);
+            for (phase, row) in located.phases.iter().zip(located.rows.chunks_exact(n * width)) {
+                harmonics.add(*phase, row[place]);
             }
             harmonics
         };
@@ -542,7 +554,12 @@ mod tests {
         force: Force,
     ) -> DVector<f64> {
         let equations = |u: &DVector<f64>| {
-            balance.linearised(&balance.motion(u), [balance.frequency(u, omega), 0.0], &[], force)
+            balance.linearised(
+                &balance.motion(u),
+                [balance.frequency(u, omega), 0.0],
+                LocatedForces::default(),
+                force,
+            )
         };
         balance.solve(guess, equations).expect("a motion")
     }
@@ -655,7 +672,7 @@ mod tests {
         let size = balance.size();
         let linearised = |at: &DVector<f64>| {
             let motion = balance.motion(&at.rows(0, size).into_owned());
-            balance.linearised(&motion, [at[size], 1.0], &[], duffing)
+            balance.linearised(&motion, [at[size], 1.0], LocatedForces::default(), duffing)
         };
         let step = |points: &[(DVector<f64>, DVector<f64>)], length: &mut f64| {
             let (here, along) = &points[points.len() - 1];
@@ -708,21 +725,22 @@ mod tests {
             sample.by_parameter.copy_from_slice(&[state[0][0], state[1][1] * phase.cos()]);
         };
         let step = TAU / balance.samples() as f64;
-        let located = |index: usize| {
+        let mut all = LocatedForces::default();
+        for index in 0..balance.samples() {
             let [[x, v, _], [y, w, _]] = [0, 1].map(|i: usize| motion[i][index]);
-            let (phase, velocities) = (step * index as f64, vec![omega * v, omega * w]);
+            let (phase, velocities) = (step * index as f64, [omega * v, omega * w]);
             let mut integral = ForceSample::zeros(2);
             force(phase, &[[x, velocities[0]], [y, velocities[1]]], &mut integral);
             integral.value *= step;
             integral.by_position *= step;
             integral.by_velocity *= step;
             integral.by_parameter *= step;
-            LocatedForce { phase, velocities, integral }
-        };
-        let located: Vec<LocatedForce> = (0..balance.samples()).map(located).collect();
-        let sampled = balance.linearised(&motion, [omega, 0.6], &[], force).expect("values");
-        let added =
-            balance.linearised(&motion, [omega, 0.6], &located, |_, _, _| ()).expect("values");
+            all.push(phase, &velocities, &integral);
+        }
+        let sampled = balance
+            .linearised(&motion, [omega, 0.6], LocatedForces::default(), force)
+            .expect("values");
+        let added = balance.linearised(&motion, [omega, 0.6], all, |_, _, _| ()).expect("values");
         assert!((sampled.residual - added.residual).amax() < 1e-12);
         assert!((sampled.jacobian - added.jacobian).amax() < 1e-12);
     }

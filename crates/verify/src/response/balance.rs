@@ -13,7 +13,7 @@ use nalgebra::DVector;
 
 use super::driven::Driven;
 
-use crate::numeric::balance::{ForceSample, HarmonicBalance, Linearised, LocatedForce};
+use crate::numeric::balance::{ForceSample, HarmonicBalance, Linearised, LocatedForces};
 use crate::numeric::ode::quadrature::nodes_and_weights;
 use crate::numeric::ode::root::find_root;
 
@@ -66,7 +66,7 @@ impl<'a> Balance<'a> {
             }
         };
         let frequency = [omega, driven.frequency_slope(parameter)];
-        self.core.linearised(&motion, frequency, &above, force)
+        self.core.linearised(&motion, frequency, above, force)
     }
 
     /// What the force and its derivatives have more above a jump than below it, at phases of the
@@ -79,19 +79,20 @@ impl<'a> Balance<'a> {
         parameter: f64,
         omega: f64,
         motion: &[[f64; 3]],
-    ) -> Vec<LocatedForce> {
+    ) -> LocatedForces {
         let driven = self.driven;
+        let mut all = LocatedForces::default();
         let Some(speed) = driven.jump_speed(parameter) else {
-            return vec![];
+            return all;
         };
         let at = |phase: f64| {
             let [position, velocity] = self.core.at(coefficients, 0, omega, phase);
             [position, velocity, phase, parameter]
         };
-        let located = |[_, velocity, phase, _]: [f64; 4], value: f64, slopes: [f64; 3]| {
-            let mut integral = ForceSample::zeros(1);
+        let mut integral = ForceSample::zeros(1);
+        let mut push = |[_, velocity, phase, _]: [f64; 4], value: f64, slopes: [f64; 3]| {
             write(&mut integral, value, slopes);
-            LocatedForce { phase, velocities: vec![velocity], integral }
+            all.push(phase, &[velocity], &integral);
         };
         let step = TAU / motion.len() as f64;
         let is_above = |sample: usize| omega * motion[sample % motion.len()][1] >= speed;
@@ -101,14 +102,13 @@ impl<'a> Balance<'a> {
             find_root(|phase| at(phase)[1] - speed, from, to).unwrap_or(from)
         };
         let mut phases: Vec<f64> = passes.map(passed).collect();
-        let mut all: Vec<LocatedForce> = Vec::new();
         for phase in &phases {
             let here = at(*phase);
             let [above, below] = [ABOVE, BELOW].map(|side| driven.force_on(&here, &[side]));
             let turn = omega * self.core.curvature(coefficients, 0, *phase);
             let by_velocity = (above - below) / turn.abs();
             let by_parameter = -by_velocity * driven.jump_speed_slope(parameter);
-            all.push(located(here, 0.0, [0.0, by_velocity, by_parameter]));
+            push(here, 0.0, [0.0, by_velocity, by_parameter]);
         }
         // Each span begins where it rises above the jump, and ends where it falls below.
         match (phases.is_empty(), is_above(0)) {
@@ -129,7 +129,7 @@ impl<'a> Balance<'a> {
                     let slopes =
                         std::array::from_fn(|index| weight * (above[index] - below[index]));
                     let [above, below] = [ABOVE, BELOW].map(|side| driven.force_on(&here, &[side]));
-                    all.push(located(here, weight * (above - below), slopes));
+                    push(here, weight * (above - below), slopes);
                 }
             }
         }

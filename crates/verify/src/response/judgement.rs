@@ -133,9 +133,7 @@ impl Asked<'_> {
         let allowed = if self.driven.undamped { 1.0 + 1e-5 } else { 1.0 };
         Point {
             parameter: node.parameter,
-            harmonics: (0..=balance.core.harmonics)
-                .map(|harmonic| balance.core.harmonic(u, 0, harmonic))
-                .collect(),
+            harmonics: balance.core.waves(u, 0).collect(),
             frequency,
             amplitude,
             phase,

@@ -184,7 +184,7 @@ impl Verification {
     }
 }
 
-/// Why a formula could not be judged.
+/// Why a formula could not be judged, or formulas not compared.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum VerificationError {
@@ -256,6 +256,12 @@ pub enum VerificationError {
         "at amplitude zero the motion is rest: the formula gives the linear limit, which has nothing to be judged against"
     )]
     AtRest,
+    /// No method applies, each for its reason; the message has that of the first.
+    #[error("no method applies{}", .0.first().map_or(String::new(), |first| format!(": {}", first.reason)))]
+    NoMethod(Vec<comparison::Refused>),
+    /// No curve of omega against the amplitude: why not, in words.
+    #[error("there is no curve of {omega} against the amplitude: {0}", omega = FREQUENCY)]
+    NoBackbone(&'static str),
 }
 
 impl VerificationError {

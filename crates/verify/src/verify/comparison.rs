@@ -7,13 +7,12 @@
 use std::collections::BTreeMap;
 
 use super::backbone::TrueBackbone;
+use super::formula::{formula_frequency_along, numbers_or_reason};
 use super::orbit::TrueMotion;
 use super::reach::reach;
 use super::validity::{self, Reach};
-use super::{
-    Verdict, VerificationError, checked_numbers, formula_frequency_along, judge, largest_deviation,
-    meant, numbers_or_reason,
-};
+use super::values::checked_numbers;
+use super::{Verdict, VerificationError, judge, largest_deviation, meant};
 use crate::decimal::{decimal, significant};
 use crate::expr::Equation;
 use crate::method::homotopy_analysis::convergence_control;

@@ -527,11 +527,9 @@ mod tests {
         let (spring, stiffness) = (0.2 * (apart + apart.powi(3)), 0.2 + 0.6 * apart * apart);
         sample.value[0] = 0.1 * v + x + x.powi(3) + spring - 0.5 * phase.cos();
         sample.value[1] = 0.15 * w + 5.0 * y + 0.5 * y.powi(3) - spring;
-        let own = [1.0 + 3.0 * x * x, 5.0 + 1.5 * y * y];
         sample.by_position.fill(-stiffness);
-        for i in 0..2 {
-            sample.by_position[(i, i)] = own[i] + stiffness;
-        }
+        sample.by_position[(0, 0)] = 1.0 + 3.0 * x * x + stiffness;
+        sample.by_position[(1, 1)] = 5.0 + 1.5 * y * y + stiffness;
         sample.by_velocity.copy_from(&Matrix2::new(0.1, 0.0, 0.0, 0.15));
     }
 
@@ -726,11 +724,10 @@ mod tests {
         };
         let step = TAU / balance.samples() as f64;
         let mut all = LocatedForces::default();
-        for index in 0..balance.samples() {
-            let [[x, v, _], [y, w, _]] = [0, 1].map(|i: usize| motion[i][index]);
+        for (index, ([x, v, _], [y, w, _])) in motion[0].iter().zip(&motion[1]).enumerate() {
             let (phase, velocities) = (step * index as f64, [omega * v, omega * w]);
             let mut integral = ForceSample::zeros(2);
-            force(phase, &[[x, velocities[0]], [y, velocities[1]]], &mut integral);
+            force(phase, &[[*x, velocities[0]], [*y, velocities[1]]], &mut integral);
             integral.value *= step;
             integral.by_position *= step;
             integral.by_velocity *= step;

@@ -180,7 +180,7 @@ pub fn compare(
     let (true_motion, reason) = match super::meant_motion(oscillator, first, &meant, &numbers) {
         Ok(motion) => (Some(motion), None),
         Err(error) if error.leaves_the_truth_open() => (None, Some(error)),
-        Err(error) => return Err(error.into()),
+        Err(error) => return Err(error),
     };
     let at_amplitude = validity::backbone(oscillator, first, &numbers);
     let rows = solutions

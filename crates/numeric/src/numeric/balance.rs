@@ -17,9 +17,9 @@
 //! Samples do not tell where a force jumps. The caller adds what is more on one side of the jump as
 //! integrals at phases that it has located, [`LocatedForces`].
 //!
-//! Where nothing drives the motion its frequency is an unknown, and when it begins is free: it
-//! begins where the first sine of one coordinate is zero, and the frequency takes the place of that
-//! sine among the unknowns.
+//! Without a drive the frequency of a motion is an unknown, and the time at which it begins is
+//! free: it begins where the first sine of one coordinate is zero, and the frequency takes the
+//! place of that sine among the unknowns.
 //!
 //! ```
 //! # use lindstedt_numeric as lindstedt;
@@ -644,7 +644,7 @@ mod tests {
         }
     }
 
-    /// Whichever first sine is zero.
+    /// The frequency does not depend on the coordinate whose first sine is zero.
     #[test]
     fn coupled_oscillators_of_van_der_pol_have_their_frequency() {
         for anchor in 0..2 {

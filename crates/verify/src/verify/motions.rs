@@ -31,7 +31,7 @@ pub struct Motions {
 /// as a motion that is not periodic is judged; `None` where the formula's frequency is not real.
 ///
 /// # Errors
-/// As for [`judge`].
+/// As for [`judge`](super::judge).
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -86,7 +86,7 @@ pub fn motions(
 /// or not; the answer is one of a periodic motion without a drive.
 ///
 /// # Errors
-/// As for [`judge`].
+/// As for [`judge`](super::judge).
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;

@@ -349,8 +349,9 @@ impl HarmonicBalance {
 
     /// The residual and its derivatives on a motion, given by [`HarmonicBalance::motion`] and by
     /// its frequency, with the derivative of that by the parameter. `force` hears a phase with
-    /// position and velocity of each coordinate, and writes the forces there; `located` is added to
-    /// them. `None` if some force has no finite value on the motion.
+    /// position and velocity of each coordinate, and writes the forces there, of which those that
+    /// it never writes are zero; `located` is added to them. `None` if some force has no finite
+    /// value on the motion.
     pub fn linearised(
         &self,
         motion: &[Vec<[f64; 3]>],

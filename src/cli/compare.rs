@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use clap::Args;
+use lindstedt::Oscillator;
 use lindstedt::export::{self, json};
 use lindstedt::problem::Reader;
 use lindstedt::report;
-use lindstedt::verify::Verdict;
 use lindstedt::verify::comparison::{self, Comparison};
-use lindstedt::{Oscillator, verify};
+use lindstedt::verify::{Verdict, VerificationError};
 
 use super::answer::{Answer, no_such};
 use super::derive::{Numbered, formula, named, notes_on_letters, oscillator, with_values};
@@ -66,15 +66,13 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let tolerance = tolerance(&arguments.common);
     let comparison = comparison::compare(&oscillator, &values, small, tolerance).map_err(
         |error| match &error {
-            comparison::ComparisonError::NoMethod(refused) => {
+            VerificationError::NoMethod(refused) => {
                 Failure::advised(&error, refused.first().and_then(|first| first.reason.help()))
             }
-            comparison::ComparisonError::Verification(verify::VerificationError::Missing(
-                names,
-            )) => Failure::refused(&error, Some(format!("add {}", values_of(names)))),
-            comparison::ComparisonError::Verification(verify::VerificationError::Unknown {
-                ..
-            }) => Failure::Usage(error.to_string()),
+            VerificationError::Missing(names) => {
+                Failure::refused(&error, Some(format!("add {}", values_of(names))))
+            }
+            VerificationError::Unknown { .. } => Failure::Usage(error.to_string()),
             _ => Failure::refused(&error, None),
         },
     )?;

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use lindstedt::export::json::optimization::{read_record, record_head, record_line};
 use lindstedt::export::{json, optimization};
-use lindstedt::genetic::OptionsError;
+use lindstedt::genetic::SearchError;
 use lindstedt::optimize::{
     OptimizeError, Question, SearchRun, Study, Watch, optimize, optimize_on,
 };
@@ -177,7 +177,7 @@ fn refused(error: OptimizeError) -> Failure {
         OptimizeError::NoFeasible { exists: false, .. } => {
             Some("loosen [limits], or give the search more generations")
         }
-        OptimizeError::Options(OptionsError::Budget { .. }) => {
+        OptimizeError::Options(SearchError::Budget { .. }) => {
             Some("raise --budget, or lower --runs")
         }
         OptimizeError::Stopped => Some("give it more time"),

@@ -3,8 +3,7 @@
 use lindstedt::Interrupt;
 use lindstedt::export::{json, primary};
 use lindstedt::impact::primary::{
-    PrimaryParameter, PrimarySettings, PrimaryStop, UnknownPrimaryParameter, simulate_primary,
-    sweep_primary,
+    PrimaryError, PrimaryParameter, PrimarySettings, PrimaryStop, simulate_primary, sweep_primary,
 };
 use lindstedt::impact::sweep::{Axis, grid_size, grid_values};
 use lindstedt::problem::Problem;
@@ -62,7 +61,7 @@ fn many(problem: &Problem, asked: &Arguments, axes: &[Axis]) -> Result<Outcome, 
     let parameters: Vec<PrimaryParameter> = axes
         .iter()
         .map(|axis| axis.name().parse())
-        .collect::<Result<_, UnknownPrimaryParameter>>()
+        .collect::<Result<_, PrimaryError>>()
         .map_err(|error| Failure::refused(&error, error.help()))?;
     if let Some(index) =
         (1..parameters.len()).find(|index| parameters[..*index].contains(&parameters[*index]))

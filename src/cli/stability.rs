@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 use lindstedt::export::{json, stability};
-use lindstedt::hill::{self, Chart, HillError, JudgedCurve, Options, TransitionCurves, TruthError};
+use lindstedt::hill::{self, Chart, HillError, JudgedCurve, Options, TransitionCurves};
 use lindstedt::problem::{Order, Reader};
 use lindstedt::report::{self, StabilityReport};
 use lindstedt::verify::Verdict;
@@ -127,16 +127,10 @@ fn refused(typed: &lindstedt::expr::Typed, error: &HillError) -> Failure {
     Failure::refused(&format!("{error}{shown}"), error.help())
 }
 
-fn unjudged(error: &TruthError) -> Failure {
+fn unjudged(error: &HillError) -> Failure {
     match error {
-        TruthError::Unknown(..) => Failure::Usage(format!("--at: {error}")),
-        TruthError::Missing(_) => {
-            Failure::refused(error, Some("give it with --at NAME=VALUE".to_owned()))
-        }
-        TruthError::NotConfirmed(_) | TruthError::Coefficients => {
-            Failure::refused(error, Some("take smaller values, or fewer tongues".to_owned()))
-        }
-        _ => Failure::refused(error, None),
+        HillError::Unknown(..) => Failure::Usage(format!("--at: {error}")),
+        _ => Failure::refused(error, error.help()),
     }
 }
 

@@ -32,7 +32,7 @@ use std::str::FromStr;
 
 use crate::impact::contact::UnknownContactLaw;
 use crate::impact::hertz::{Design, NotPositive};
-use crate::impact::{CaseError, CollisionError, DampingError, Parameter, SpeedUnit, UnknownRule};
+use crate::impact::{CollisionError, ModelError, Parameter, SpeedUnit, UnknownRule};
 use crate::mechanics::MechanicsError;
 use crate::optimize::OptimizeError;
 use crate::oscillator::OscillatorError;
@@ -96,10 +96,9 @@ macro_rules! as_problem_errors {
 }
 
 as_problem_errors! {
-    CaseError: "{}",
     CollisionError: "{}",
-    DampingError: "{}",
     MechanicsError: "[lagrangian]: {}",
+    ModelError: "{}",
     NotPositive: "[design]: {}",
     OptimizeError: "{}",
     OscillatorError: "{}",

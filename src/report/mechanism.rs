@@ -8,9 +8,7 @@ use crate::audit::paper::Finding;
 use crate::decimal::decimal;
 use crate::derivation::Line;
 use crate::expr::{Expr, Function};
-use crate::mechanics::{
-    Drive, Groups, MechanicsError, MechanismStudy, Mode, NoModes, Place, RestStudy,
-};
+use crate::mechanics::{Drive, Groups, MechanicsError, MechanismStudy, Mode, Place, RestStudy};
 use crate::symbol::Symbol;
 
 /// The document of a study of a mechanism.
@@ -121,7 +119,7 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
             })),
             Some(Err(error)) => blocks.push(Block::Note(format!("  {error}"))),
             None => blocks.extend(rest.modes.changing.clone().map(|changing| {
-                let why = NoModes::Changing(changing);
+                let why = MechanicsError::Changing(changing);
                 Block::Note(format!("  {why}"))
             })),
         }

@@ -26,7 +26,8 @@ pub mod impact;
 pub mod optimize;
 
 pub use interrupt::{Counter, Interrupt, Progress, Supervision};
-pub use method::motion::{Motion, NoMotion};
+pub use method::motion::Motion;
+pub use method::numbers::NoNumbers;
 pub use method::{Options, solve};
 pub use oscillator::Oscillator;
 pub use solution::{Method, Solution};

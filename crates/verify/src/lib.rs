@@ -31,7 +31,8 @@ pub mod certificate;
 pub mod response;
 
 pub use interrupt::{Counter, Interrupt, Progress, Supervision};
-pub use method::motion::{Motion, NoMotion};
+pub use method::motion::Motion;
+pub use method::numbers::NoNumbers;
 pub use method::{Options, solve};
 pub use oscillator::Oscillator;
 pub use solution::{Method, Solution};

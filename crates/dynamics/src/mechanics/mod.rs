@@ -36,7 +36,7 @@ use std::collections::BTreeMap;
 
 use thiserror::Error;
 
-use crate::expr::{Expr, ExprError, ParseError, parse_expression};
+use crate::expr::{EvaluationError, Expr, ExprError, ParseError, parse_expression};
 use crate::symbol::Symbol;
 
 pub use combination::Combination;
@@ -44,7 +44,7 @@ pub use dimension::{Dimension, UnitError};
 pub use equilibrium::{Drive, Place, Rest, equilibria};
 pub use groups::{Group, Groups};
 pub use lagrange::Equations;
-pub use modes::{Mode, Modes, NoModes};
+pub use modes::{Mode, Modes};
 pub use rates::Rates;
 pub use study::{MechanismQuestion, MechanismStudy, RestStudy, study};
 
@@ -66,7 +66,7 @@ pub struct Mechanism {
     pub forces: BTreeMap<Symbol, Expr>,
 }
 
-/// Why there are no equations of motion, no groups or no study.
+/// Why there are no equations of motion, no groups, no study or no numbers.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MechanicsError {
@@ -135,6 +135,21 @@ pub enum MechanicsError {
     /// A value for a name that does not occur.
     #[error("there is a value for `{0}`, which is no parameter of the mechanism")]
     UnknownValue(Symbol),
+    /// Coefficients that change with the time.
+    #[error(
+        "no small swings of a fixed frequency: the linear equations contain `{0}`, which changes with the time other than by sines and \
+         cosines of it; follow the motion by `lindstedt simulate`"
+    )]
+    Changing(Expr),
+    /// A parameter without a value, or an expression that has none.
+    #[error(transparent)]
+    Evaluation(#[from] EvaluationError),
+    /// A number that is not finite.
+    #[error("mass or stiffness has no finite value there")]
+    NotFinite,
+    /// A mass matrix that is not positive.
+    #[error("the mass matrix is not positive there")]
+    Mass,
 }
 
 impl MechanicsError {

@@ -14,12 +14,11 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 use num_traits::Signed;
-use thiserror::Error;
 
 use super::combination::{put_into, written_out};
 use super::equilibrium::undriven;
 use super::{Combination, Equations, MechanicsError, Place, Rest, trigonometry::simplified};
-use crate::expr::{EvaluationError, Expr, ExprError, Function, Node};
+use crate::expr::{Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
 
 /// The linear equations near a place of rest.
@@ -51,27 +50,6 @@ pub struct Mode {
     /// The coordinates in proportion, the largest 1; nothing where damping makes them move out of
     /// step.
     pub shape: Option<Vec<f64>>,
-}
-
-/// Why there are no numbers.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum NoModes {
-    /// Coefficients that change with the time.
-    #[error(
-        "no small swings of a fixed frequency: the linear equations contain `{0}`, which changes with the time other than by sines and \
-         cosines of it; follow the motion by `lindstedt simulate`"
-    )]
-    Changing(Expr),
-    /// A parameter without a value, or an expression that has none.
-    #[error(transparent)]
-    Evaluation(#[from] EvaluationError),
-    /// A number that is not finite.
-    #[error("mass or stiffness has no finite value there")]
-    NotFinite,
-    /// A mass matrix that is not positive.
-    #[error("the mass matrix is not positive there")]
-    Mass,
 }
 
 impl Modes {
@@ -122,24 +100,24 @@ impl Modes {
     /// The modes in numbers, slowest first.
     ///
     /// # Errors
-    /// [`NoModes`].
-    pub fn numbers(&self, values: &BTreeMap<Symbol, f64>) -> Result<Vec<Mode>, NoModes> {
+    /// [`MechanicsError`].
+    pub fn numbers(&self, values: &BTreeMap<Symbol, f64>) -> Result<Vec<Mode>, MechanicsError> {
         if let Some(changing) = &self.changing {
-            return Err(NoModes::Changing(changing.clone()));
+            return Err(MechanicsError::Changing(changing.clone()));
         }
-        let matrix = |rows: &[Vec<Expr>]| -> Result<DMatrix<f64>, NoModes> {
+        let matrix = |rows: &[Vec<Expr>]| -> Result<DMatrix<f64>, MechanicsError> {
             let mut numbers = Vec::new();
             for entry in rows.iter().flatten() {
                 numbers.push(entry.evaluate(values)?);
             }
             match numbers.iter().all(|number| number.is_finite()) {
                 true => Ok(DMatrix::from_row_slice(rows.len(), rows.len(), &numbers)),
-                false => Err(NoModes::NotFinite),
+                false => Err(MechanicsError::NotFinite),
             }
         };
         let (mass, damping, stiffness) =
             (matrix(&self.mass)?, matrix(&self.damping)?, matrix(&self.stiffness)?);
-        let factor = Cholesky::new(mass).ok_or(NoModes::Mass)?;
+        let factor = Cholesky::new(mass).ok_or(MechanicsError::Mass)?;
         let symmetric = (&stiffness - stiffness.transpose()).amax() <= 1e-12 * stiffness.amax();
         let mut modes = match damping.amax() == 0.0 && symmetric {
             true => undamped(&factor, &stiffness),
@@ -152,7 +130,7 @@ impl Modes {
         });
         match modes.iter().all(|mode| mode.frequency.is_finite() && mode.growth.is_finite()) {
             true => Ok(modes),
-            false => Err(NoModes::NotFinite),
+            false => Err(MechanicsError::NotFinite),
         }
     }
 }

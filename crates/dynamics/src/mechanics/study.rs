@@ -4,8 +4,7 @@ use std::collections::BTreeMap;
 
 use super::modes::Jacobians;
 use super::{
-    Dimension, Drive, Equations, Groups, MechanicsError, Mechanism, Mode, Modes, NoModes, Rest,
-    equilibria,
+    Dimension, Drive, Equations, Groups, MechanicsError, Mechanism, Mode, Modes, Rest, equilibria,
 };
 use crate::symbol::Symbol;
 
@@ -45,7 +44,7 @@ pub struct RestStudy {
     pub modes: Modes,
     /// Their numbers; nothing where not every parameter has a value, or the place does not exist
     /// for these values.
-    pub numbers: Option<Result<Vec<Mode>, NoModes>>,
+    pub numbers: Option<Result<Vec<Mode>, MechanicsError>>,
 }
 
 /// Derives, checks and linearises.

@@ -12,11 +12,9 @@
 
 use std::f64::consts::PI;
 
-use thiserror::Error;
-
 use super::dissipation::{
-    ContactDamping, ContactScales, DampingError, Dissipation, SpeedUnit, friction_of_torque,
-    torque_of_friction, viscous_coefficient, viscous_ratio,
+    ContactDamping, ContactScales, Dissipation, SpeedUnit, friction_of_torque, torque_of_friction,
+    viscous_coefficient, viscous_ratio,
 };
 use super::hertz::{Design, NotPositive};
 use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, Side, Start};
@@ -89,47 +87,6 @@ impl Default for Case {
             design: Design::default(),
         }
     }
-}
-
-/// Why a case makes no motion.
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[non_exhaustive]
-pub enum CaseError {
-    /// A release that is none.
-    #[error(
-        "[pendulum] amplitude must be a positive number, not {0}; for another start give `start` and `speed`"
-    )]
-    Amplitude(f64),
-    /// A release behind a barrier, which is no release.
-    #[error(
-        "the motion starts at x = {start}, inside the {} barrier at {barrier}: move the barrier, or give `start` in \
-         [pendulum]", .side.name()
-    )]
-    Inside {
-        /// Which barrier.
-        side: Side,
-        /// Its position, rad.
-        barrier: f64,
-        /// The start, rad.
-        start: f64,
-    },
-    /// A design that has no stiffness.
-    #[error("[design]: {0}")]
-    Design(#[from] NotPositive),
-    /// A damping that makes no number.
-    #[error(transparent)]
-    Damping(#[from] DampingError),
-    /// A damping of a barrier that is none.
-    #[error("[contact] mu = {0} damps a barrier, and gamma = 0 is none: leave out one of them")]
-    NothingToDamp(f64),
-    /// An excitation without a frequency.
-    #[error(
-        "[excitation] beta = {0} needs a frequency_ratio above 0: a pivot that stands still excites nothing"
-    )]
-    NoFrequency(f64),
-    /// The equation or its start.
-    #[error(transparent)]
-    Model(#[from] ModelError),
 }
 
 impl Case {
@@ -210,7 +167,7 @@ impl Case {
     /// The equation and its start.
     ///
     /// # Errors
-    /// [`CaseError`] names the parameter that makes none.
+    /// [`ModelError`] names the parameter that makes none.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -223,19 +180,19 @@ impl Case {
     /// assert!(motion.impacts[0].penetration > 0.01); // rad
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn motion(&self) -> Result<(Model, Start), CaseError> {
+    pub fn motion(&self) -> Result<(Model, Start), ModelError> {
         let x = match self.start {
             Some(start) => start,
             None if self.amplitude > 0.0 && self.amplitude.is_finite() => {
                 -self.side.sign() * self.amplitude
             }
-            None => return Err(CaseError::Amplitude(self.amplitude)),
+            None => return Err(ModelError::Amplitude(self.amplitude)),
         };
         let start = Start { x, velocity: self.speed };
         let gamma = self.stiffness()?;
         let mu = self.contact_damping.mu(&self.scales(gamma, start))?;
         if gamma == 0.0 && mu > 0.0 {
-            return Err(CaseError::NothingToDamp(mu));
+            return Err(ModelError::NothingToDamp(mu));
         }
         let barrier = |place: Option<f64>| place.filter(|_| gamma != 0.0);
         let units = self.si();
@@ -243,17 +200,17 @@ impl Case {
             |key, value: Option<f64>, number: f64, convert: fn(f64, &Units) -> f64| match value {
                 None => Ok(number),
                 Some(value) if value.is_nan() || value < 0.0 => {
-                    Err(DampingError::Negative { key, value })
+                    Err(ModelError::NegativeDamping { key, value })
                 }
                 Some(value) => match convert(value, &units) {
                     number if number.is_finite() => Ok(number),
-                    _ => Err(DampingError::NotFinite { key, value }),
+                    _ => Err(ModelError::InfiniteDamping { key, value }),
                 },
             };
         let zeta = in_si(Parameter::Viscous, self.viscous, self.zeta, viscous_ratio)?;
         let alpha = in_si(Parameter::Torque, self.torque, self.alpha, friction_of_torque)?;
         if self.beta != 0.0 && self.frequency_ratio == 0.0 {
-            return Err(CaseError::NoFrequency(self.beta));
+            return Err(ModelError::NoFrequency(self.beta));
         }
         let model = Model {
             zeta,
@@ -276,7 +233,7 @@ impl Case {
         if self.start.is_none()
             && let Some((side, _)) = model.depth(start.x)
         {
-            return Err(CaseError::Inside {
+            return Err(ModelError::Inside {
                 side,
                 barrier: model.barrier(side).unwrap_or_default(),
                 start: start.x,
@@ -357,9 +314,9 @@ impl Case {
     /// assert!((forms.touch_speed.unwrap_or_default() - 1.324_802).abs() < 1e-6); // sqrt(2 (cos xc - cos A))
     /// assert!((forms.restitution.unwrap_or_default() - 0.918_794).abs() < 1e-6);
     /// assert_eq!(forms.held_fixed(), ["mu_over_gamma", "zeta"]);
-    /// # Ok::<(), lindstedt::impact::CaseError>(())
+    /// # Ok::<(), lindstedt::impact::ModelError>(())
     /// ```
-    pub fn dissipation(&self, units: Option<&Units>) -> Result<Dissipation, CaseError> {
+    pub fn dissipation(&self, units: Option<&Units>) -> Result<Dissipation, ModelError> {
         let (model, start) = self.motion()?;
         let damping = self.contact_damping;
         let scales = self.scales(model.gamma, start);

@@ -18,9 +18,8 @@
 //! the torque f m g r, alpha = f r/L, where the weight alone loads it; a swing loads it with m g
 //! (cos x + x'^2) and more, so there is no key for f.
 
-use thiserror::Error;
-
 use super::contact::hunt_crossley::{damping_for, restitution};
+use super::model::ModelError;
 use super::parameter::Parameter;
 use super::units::Units;
 use crate::decimal::decimal;
@@ -94,45 +93,6 @@ pub struct ContactScales {
     pub speed: Option<f64>,
 }
 
-/// Why a damping makes no number of equation (7).
-#[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[non_exhaustive]
-pub enum DampingError {
-    /// A damping below zero, or no number.
-    #[error("{key} must be a number and not negative, not {value}")]
-    Negative {
-        /// Which.
-        key: Parameter,
-        /// The value given.
-        value: f64,
-    },
-    /// A restitution that is none.
-    #[error("[contact] restitution must lie above 0 and be at most 1, not {0}")]
-    Restitution(f64),
-    /// A restitution at no speed.
-    #[error(
-        "[contact] restitution is that at a speed, and without damping this motion touches no barrier, or starts inside one: give \
-         `at_speed`, in m/s beside numbers in SI units and otherwise in rad times omega"
-    )]
-    NoSpeed,
-    /// A speed that is none.
-    #[error("[contact] at_speed must be a positive number, not {0}")]
-    Speed(f64),
-    /// A lambda beyond doubles.
-    #[error(
-        "[contact] lambda = {0} makes no finite mu: it is in s/m, some hundredths for a hard material"
-    )]
-    Lambda(f64),
-    /// A damping beyond doubles.
-    #[error("{key} = {value:e} makes no finite number of equation (7)")]
-    NotFinite {
-        /// Which.
-        key: Parameter,
-        /// The value given.
-        value: f64,
-    },
-}
-
 impl ContactDamping {
     /// The forms, by the parameters that give them.
     pub const FORMS: [Parameter; 5] = [
@@ -180,7 +140,7 @@ impl ContactDamping {
     /// mu of equation (7).
     ///
     /// # Errors
-    /// [`DampingError`]: a damping that is negative or too large; a restitution that is none, or at
+    /// [`ModelError`]: a damping that is negative or too large; a restitution that is none, or at
     /// no speed.
     ///
     /// ```
@@ -192,9 +152,9 @@ impl ContactDamping {
     /// let ContactDamping::Restitution(e) = ContactDamping::Mu(1.5e5).in_form(ContactDamping::Restitution(0.0), &scales)?
     /// else { unreachable!() };
     /// assert!((ContactDamping::Restitution(e).mu(&scales)? / 1.5e5 - 1.0).abs() < 1e-13);
-    /// # Ok::<(), lindstedt::impact::DampingError>(())
+    /// # Ok::<(), lindstedt::impact::ModelError>(())
     /// ```
-    pub fn mu(self, scales: &ContactScales) -> Result<f64, DampingError> {
+    pub fn mu(self, scales: &ContactScales) -> Result<f64, ModelError> {
         let (key, value) = (self.form(), self.value());
         if let Self::Mu(mu) = self {
             // What a mu may be says the equation.
@@ -202,10 +162,10 @@ impl ContactDamping {
         }
         if let Self::Restitution(e) = self {
             if !(e > 0.0 && e <= 1.0) {
-                return Err(DampingError::Restitution(e));
+                return Err(ModelError::Restitution(e));
             }
         } else if value.is_nan() || value < 0.0 {
-            return Err(DampingError::Negative { key, value });
+            return Err(ModelError::NegativeDamping { key, value });
         }
         let &ContactScales { gamma, mass, length, gravity, .. } = scales;
         let mu = match self {
@@ -213,7 +173,7 @@ impl ContactDamping {
             Self::MuOverGamma(ratio) => gamma * ratio,
             Self::Lambda(lambda) => gamma * lambda * (gravity * length).sqrt(),
             Self::Restitution(e) => {
-                let product = damping_for(e).map_err(|_| DampingError::Restitution(e))?;
+                let product = damping_for(e).map_err(|_| ModelError::Restitution(e))?;
                 gamma * (product / scales.stated_speed()?)
             }
             Self::Coefficient(coefficient) => {
@@ -222,8 +182,8 @@ impl ContactDamping {
         };
         match (mu.is_finite(), self) {
             (true, _) => Ok(mu),
-            (false, Self::Lambda(lambda)) => Err(DampingError::Lambda(lambda)),
-            (false, _) => Err(DampingError::NotFinite { key, value }),
+            (false, Self::Lambda(lambda)) => Err(ModelError::Lambda(lambda)),
+            (false, _) => Err(ModelError::InfiniteDamping { key, value }),
         }
     }
 
@@ -231,7 +191,7 @@ impl ContactDamping {
     ///
     /// # Errors
     /// As [`ContactDamping::mu`].
-    pub fn in_form(self, other: Self, scales: &ContactScales) -> Result<Self, DampingError> {
+    pub fn in_form(self, other: Self, scales: &ContactScales) -> Result<Self, ModelError> {
         let mu = self.mu(scales)?;
         let &ContactScales { gamma, mass, length, gravity, .. } = scales;
         let ratio = mu / gamma;
@@ -243,7 +203,7 @@ impl ContactDamping {
                 let (key, value) = (Parameter::Mu, mu);
                 let product = ratio * scales.stated_speed()?;
                 Self::Restitution(
-                    restitution(product).map_err(|_| DampingError::Negative { key, value })?,
+                    restitution(product).map_err(|_| ModelError::NegativeDamping { key, value })?,
                 )
             }
             Self::Coefficient(_) => {
@@ -254,11 +214,11 @@ impl ContactDamping {
 }
 
 impl ContactScales {
-    fn stated_speed(&self) -> Result<f64, DampingError> {
+    fn stated_speed(&self) -> Result<f64, ModelError> {
         match self.speed {
-            None => Err(DampingError::NoSpeed),
+            None => Err(ModelError::NoSpeed),
             Some(speed) if speed > 0.0 && speed.is_finite() => Ok(speed),
-            Some(speed) => Err(DampingError::Speed(speed)),
+            Some(speed) => Err(ModelError::ContactSpeed(speed)),
         }
     }
 }
@@ -436,6 +396,6 @@ mod tests {
             assert!(error.contains(words), "{error}");
         }
         let still = ContactScales { speed: Some(0.0), ..scales };
-        assert_eq!(ContactDamping::Restitution(0.5).mu(&still), Err(DampingError::Speed(0.0)));
+        assert_eq!(ContactDamping::Restitution(0.5).mu(&still), Err(ModelError::ContactSpeed(0.0)));
     }
 }

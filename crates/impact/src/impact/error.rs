@@ -2,12 +2,14 @@
 
 use super::collision::CollisionError;
 use super::contact::ContactError;
-use super::judge::TrueImpactError;
+use super::judge::way_forward;
 use super::linearisation::LinearisationError;
 use super::trial::Attempt;
 use crate::expr::{EvaluationError, ExprError, LostDigits};
 use crate::method::Refusal;
-use crate::method::motion::NoMotion;
+use crate::method::numbers::NoNumbers;
+use crate::numeric::ode::quadrature::QuadratureError;
+use crate::numeric::ode::{IntegrationError, StopReason};
 use crate::oscillator::OscillatorError;
 use crate::solution::Method;
 use crate::symbol::Symbol;
@@ -112,7 +114,7 @@ pub enum ImpactError {
     Refusal(#[from] Refusal),
     /// It has no motion at these numbers.
     #[error(transparent)]
-    Motion(#[from] NoMotion),
+    Motion(#[from] NoNumbers),
     /// A value that is none.
     #[error(transparent)]
     Value(#[from] ValueError),
@@ -147,9 +149,25 @@ pub enum ImpactError {
     /// Nothing hits the barrier.
     #[error(transparent)]
     Collision(#[from] CollisionError),
-    /// The true motion could not be followed.
+    /// The run gave up.
+    #[error("the true motion could not be followed to the end of the impact: {}", way_forward(.0))]
+    Stopped(StopReason),
+    /// Closer steps give another motion, as close as doubles allow.
+    #[error(
+        "the true motion is not known to six digits, closer steps change it by {change:.0e}: double precision cannot tell \
+         apart motions that start so near the top of the swing or turn so near the barrier; lower the amplitude, or move the \
+         barrier"
+    )]
+    NotSettled {
+        /// By how much, relative to the quantity that changes most.
+        change: f64,
+    },
+    /// The run could not begin.
     #[error(transparent)]
-    Truth(#[from] TrueImpactError),
+    Integration(#[from] IntegrationError),
+    /// The energy could not be evaluated.
+    #[error("the energy of the true motion could not be evaluated: {0}")]
+    Energy(#[from] QuadratureError),
     /// No reading applies.
     #[error("no closed form: the paper's reading does not apply, {paper}; {}", attempts(.tried))]
     NoReading {

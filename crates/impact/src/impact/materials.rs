@@ -16,11 +16,11 @@
 use thiserror::Error;
 
 use super::baseline::BASELINE_DURATIONS;
-use super::case::{Case, CaseError};
+use super::case::Case;
 use super::contact::HuntCrossley;
 use super::dissipation::{ContactDamping, Dissipation, SpeedUnit};
 use super::hertz;
-use super::model::{Model, Start};
+use super::model::{Model, ModelError, Start};
 use super::parameter::Parameter;
 use super::si::YieldCheck;
 use super::simulate::{SimulationError, simulate};
@@ -130,14 +130,14 @@ pub enum MaterialsError {
     NoMaterial,
     /// The design.
     #[error(transparent)]
-    Case(#[from] CaseError),
+    Case(#[from] ModelError),
     /// A material that makes no motion.
     #[error("material `{name}`: {error}")]
     Material {
         /// Its name.
         name: String,
         /// Why.
-        error: CaseError,
+        error: ModelError,
     },
     /// A motion that cannot begin.
     #[error(transparent)]

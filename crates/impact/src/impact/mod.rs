@@ -98,19 +98,19 @@ mod trial;
 mod units;
 
 pub use baseline::{BASELINE_DURATIONS, Baseline, Geometry, baseline};
-pub use case::{Case, CaseError};
+pub use case::Case;
 pub use chain::{ChainError, chain};
 pub use closed_form::{Column, Impact, Quantity, Reading, SampledMotion, Shortcoming, solve};
 pub use collision::{Collision, CollisionError};
 pub use compare::{ImpactComparison, ImpactMethod, ImpactRow, compare};
 pub use derived::{DerivedContact, Flight};
 pub use dissipation::{
-    ContactDamping, ContactScales, DampingError, Dissipation, SpeedUnit, friction_of_torque,
-    torque_of_friction, viscous_coefficient, viscous_ratio,
+    ContactDamping, ContactScales, Dissipation, SpeedUnit, friction_of_torque, torque_of_friction,
+    viscous_coefficient, viscous_ratio,
 };
 pub use error::ImpactError;
 pub use form::{Form, Term};
-pub use judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation, true_impact};
+pub use judge::{Deviation, TrueImpact, assured_impact, deviation, true_impact};
 pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
 pub use materials::{
     Course, DEFAULT_DURATION, DEFAULT_MATERIALS, DEFAULT_ZETA, FirstContact, HeldFixed, Material,

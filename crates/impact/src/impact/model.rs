@@ -16,7 +16,7 @@ use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
 use thiserror::Error;
 
-use super::hertz;
+use super::hertz::{self, NotPositive};
 use super::parameter::Parameter;
 use crate::decimal::{decimal, significant};
 
@@ -177,6 +177,68 @@ pub enum ModelError {
         left: f64,
         /// Position of the right one, rad.
         right: f64,
+    },
+    /// A release that is none.
+    #[error(
+        "[pendulum] amplitude must be a positive number, not {0}; for another start give `start` and `speed`"
+    )]
+    Amplitude(f64),
+    /// A release behind a barrier, which is no release.
+    #[error(
+        "the motion starts at x = {start}, inside the {} barrier at {barrier}: move the barrier, or give `start` in \
+         [pendulum]", .side.name()
+    )]
+    Inside {
+        /// Which barrier.
+        side: Side,
+        /// Its position, rad.
+        barrier: f64,
+        /// The start, rad.
+        start: f64,
+    },
+    /// A design that has no stiffness.
+    #[error("[design]: {0}")]
+    Design(#[from] NotPositive),
+    /// A damping of a barrier that is none.
+    #[error("[contact] mu = {0} damps a barrier, and gamma = 0 is none: leave out one of them")]
+    NothingToDamp(f64),
+    /// An excitation without a frequency.
+    #[error(
+        "[excitation] beta = {0} needs a frequency_ratio above 0: a pivot that stands still excites nothing"
+    )]
+    NoFrequency(f64),
+    /// A damping below zero, or no number.
+    #[error("{key} must be a number and not negative, not {value}")]
+    NegativeDamping {
+        /// Which.
+        key: Parameter,
+        /// The value given.
+        value: f64,
+    },
+    /// A restitution that is none.
+    #[error("[contact] restitution must lie above 0 and be at most 1, not {0}")]
+    Restitution(f64),
+    /// A restitution at no speed.
+    #[error(
+        "[contact] restitution is that at a speed, and without damping this motion touches no barrier, or starts inside one: give \
+         `at_speed`, in m/s beside numbers in SI units and otherwise in rad times omega"
+    )]
+    NoSpeed,
+    /// A speed that is none.
+    #[error("[contact] at_speed must be a positive number, not {0}")]
+    ContactSpeed(f64),
+    /// A lambda beyond doubles.
+    #[error(
+        "[contact] lambda = {0} makes no finite mu: it is in s/m, some hundredths for a hard material"
+    )]
+    Lambda(f64),
+    /// A damping beyond doubles.
+    #[error("{key} = {value:e} makes no finite number of equation (7)")]
+    InfiniteDamping {
+        /// Which.
+        key: Parameter,
+        /// The value given.
+        value: f64,
     },
 }
 

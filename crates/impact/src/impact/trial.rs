@@ -11,7 +11,7 @@ use super::contact::power_law::exponent_of;
 use super::contact::{ContactError, ContactLaw, ContactRow, HuntCrossley, Touch, comparison};
 use super::derived::{DerivedContact, Flight, phases_of};
 use super::error::ImpactError;
-use super::judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation};
+use super::judge::{Deviation, TrueImpact, assured_impact, deviation};
 use super::phases::ThreePhases;
 use super::setup::{ContactLoss, Equations, Setup};
 use crate::method;
@@ -128,8 +128,8 @@ impl Trial<'_> {
             ..Options::with_tolerance(setup.integrator_tolerance)
         };
         let truth = assured_impact(&collision, &options).map_err(|error| match error {
-            TrueImpactError::Collision(error) => seen(error).into(),
-            other => ImpactError::from(other),
+            ImpactError::Collision(error) => seen(error).into(),
+            other => other,
         })?;
         body(&Trial {
             setup,

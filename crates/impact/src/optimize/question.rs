@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::design::{Design, Route};
 use super::objective::Objective;
 use crate::decimal::{decimal, significant};
-use crate::genetic::{Evaluation, Options, OptionsError, Space, SpaceError};
+use crate::genetic::{Evaluation, Options, SearchError, Space};
 use crate::impact::primary::MainMass;
 use crate::impact::{
     Case, ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, FIRST_YIELD, Material, Parameter,
@@ -126,7 +126,7 @@ pub enum OptimizeError {
     Runs(usize),
     /// Options that make no population.
     #[error("[genetic] {0}")]
-    Options(#[from] OptionsError),
+    Options(#[from] SearchError),
     /// Several objectives and an option of one.
     #[error(
         "[genetic] {0} belongs to a search for one objective; several at once are searched by NSGA-II: leave it out"
@@ -180,7 +180,7 @@ impl Question {
             bounds.push([0.0, self.materials.len() as f64]);
         }
         Space::new(bounds).map_err(|error| match error {
-            SpaceError::Inverted { number, lower, upper } if number <= self.variables.len() => {
+            SearchError::Inverted { number, lower, upper } if number <= self.variables.len() => {
                 let name = self.variables[number - 1].parameter.name();
                 OptimizeError::Limits(format!(
                     "{name} = [{lower}, {upper}] leaves nothing between: the lower limit comes first; to hold it fixed give it in [design]"

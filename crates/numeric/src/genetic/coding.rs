@@ -39,7 +39,7 @@ impl Coding {
     ///
     /// let space = Space::new(vec![[0.0, 3.0]])?;
     /// assert_eq!(Coding::Bits(2).point(&[1.0, 0.0], &space), [2.0]);
-    /// # Ok::<(), lindstedt::genetic::SpaceError>(())
+    /// # Ok::<(), lindstedt::genetic::SearchError>(())
     /// ```
     pub fn point(self, genes: &[f64], space: &Space) -> Vec<f64> {
         match self {

@@ -33,7 +33,7 @@ impl Default for Crossover {
 /// let space = Space::new(vec![[0.0, 1.0], [0.0, 1.0]])?;
 /// assert_eq!(heuristic(&[0.0, 0.0], &[0.5, 0.25], 1.2, &space), [0.6, 0.3]);
 /// assert_eq!(heuristic(&[0.0, 0.0], &[1.0, 0.25], 1.2, &space), [1.0, 0.25]); // no farther
-/// # Ok::<(), lindstedt::genetic::SpaceError>(())
+/// # Ok::<(), lindstedt::genetic::SearchError>(())
 /// ```
 pub fn heuristic(worse: &[f64], better: &[f64], ratio: f64, space: &Space) -> Vec<f64> {
     let mut reach = ratio;

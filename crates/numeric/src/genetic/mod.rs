@@ -36,7 +36,7 @@
 //! let paraboloid = |point: &[f64]| Evaluation::of(point.iter().map(|x| x * x).sum());
 //! let run = search(&space, paraboloid, &Options::default(), &mut generator(1, 0), &mut |_| true);
 //! assert!(run.best.is_some_and(|best| best.evaluation.objectives[0] < 1e-6));
-//! # Ok::<(), lindstedt::genetic::SpaceError>(())
+//! # Ok::<(), lindstedt::genetic::SearchError>(())
 //! ```
 
 mod coding;
@@ -58,11 +58,11 @@ pub use mutation::{Mutation, SMALLEST_STEP, adaptive_feasible, bit_flips, next_s
 pub use nsga::{polynomial_mutation, search_front, simulated_binary};
 pub use pareto::{crowding, dominates, non_dominated, ranks};
 pub use penalty::{Multipliers, Penalty, scores};
-pub use population::{Individual, Options, OptionsError, Run, search};
+pub use population::{Individual, Options, Run, SearchError, search};
 pub use rivals::{differential_evolution, random_search};
 pub use scaling::rank_scaling;
 pub use selection::stochastic_uniform;
-pub use space::{Evaluation, Space, SpaceError};
+pub use space::{Evaluation, Space};
 pub use stopping::{StallTest, Stop, has_stalled};
 
 use rand::SeedableRng;

@@ -64,10 +64,23 @@ impl Default for Options {
     }
 }
 
-/// Options that make no population.
+/// Why a search cannot begin.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
-pub enum OptionsError {
+pub enum SearchError {
+    /// Nothing to vary.
+    #[error("there is nothing to vary")]
+    Empty,
+    /// Bounds in the wrong order, equal or no numbers.
+    #[error("the bounds {lower} and {upper} of variable {number} leave nothing between them")]
+    Inverted {
+        /// Which, counted from 1.
+        number: usize,
+        /// What was given for the lower one.
+        lower: f64,
+        /// What was given for the upper one.
+        upper: f64,
+    },
     /// Fewer than two have nobody to cross with.
     #[error(
         "population = {0} cannot cross: a population needs 2 or more, {MOST_INDIVIDUALS} at most"
@@ -146,27 +159,27 @@ impl Options {
     /// Refuses what makes no population.
     ///
     /// # Errors
-    /// [`OptionsError`] names the option.
-    pub fn check(&self) -> Result<(), OptionsError> {
+    /// [`SearchError`] names the option.
+    pub fn check(&self) -> Result<(), SearchError> {
         let &Self { population, elite, generations, crossover_fraction, .. } = self;
         if !(2..=MOST_INDIVIDUALS).contains(&population) {
-            return Err(OptionsError::Population(population));
+            return Err(SearchError::Population(population));
         }
         if !(1..=MOST_GENERATIONS).contains(&generations) {
-            return Err(OptionsError::Generations(generations));
+            return Err(SearchError::Generations(generations));
         }
         if elite >= population {
-            return Err(OptionsError::Elite { elite, population });
+            return Err(SearchError::Elite { elite, population });
         }
         if !(0.0..=1.0).contains(&crossover_fraction) {
-            return Err(OptionsError::Fraction(crossover_fraction));
+            return Err(SearchError::Fraction(crossover_fraction));
         }
         if self.stall_generations == 0 {
-            return Err(OptionsError::Window);
+            return Err(SearchError::Window);
         }
         let bits = match self.coding {
             Coding::Bits(bits) if !(1..=52).contains(&bits) => {
-                return Err(OptionsError::Bits(bits));
+                return Err(SearchError::Bits(bits));
             }
             coding => coding != Coding::Real,
         };
@@ -174,21 +187,21 @@ impl Options {
             Crossover::Heuristic(_) if bits => {
                 let (operator, instead) =
                     ("crossover \"heuristic\"", "\"scattered\" or \"one-point\"");
-                return Err(OptionsError::NeedsNumbers { operator, instead });
+                return Err(SearchError::NeedsNumbers { operator, instead });
             }
             Crossover::Heuristic(ratio) if !(ratio >= 1.0 && ratio.is_finite()) => {
-                return Err(OptionsError::Ratio(ratio));
+                return Err(SearchError::Ratio(ratio));
             }
             _ => {}
         }
         match self.mutation {
             Mutation::AdaptiveFeasible if bits => {
                 let (operator, instead) = ("mutation \"adaptive-feasible\"", "\"bit-flip\"");
-                return Err(OptionsError::NeedsNumbers { operator, instead });
+                return Err(SearchError::NeedsNumbers { operator, instead });
             }
-            Mutation::BitFlips(_) if !bits => return Err(OptionsError::NeedsBits),
+            Mutation::BitFlips(_) if !bits => return Err(SearchError::NeedsBits),
             Mutation::BitFlips(rate) if !(0.0..=1.0).contains(&rate) => {
-                return Err(OptionsError::Rate(rate));
+                return Err(SearchError::Rate(rate));
             }
             _ => {}
         }
@@ -201,11 +214,11 @@ impl Options {
         }
         for (key, value) in positive {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(OptionsError::NotPositive { key, value });
+                return Err(SearchError::NotPositive { key, value });
             }
         }
         match self.budget {
-            Some(budget) if budget < population => Err(OptionsError::Budget { budget, population }),
+            Some(budget) if budget < population => Err(SearchError::Budget { budget, population }),
             _ => Ok(()),
         }
     }

@@ -1,45 +1,27 @@
 //! The box that is searched, and what a point of it is worth.
 
 use rand::{Rng, RngExt};
-use thiserror::Error;
+
+use super::SearchError;
 
 /// A box: a lower and an upper bound of every variable.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Space(Vec<[f64; 2]>);
 
-/// Why there is no box.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum SpaceError {
-    /// Nothing to vary.
-    #[error("there is nothing to vary")]
-    Empty,
-    /// Bounds in the wrong order, equal or no numbers.
-    #[error("the bounds {lower} and {upper} of variable {number} leave nothing between them")]
-    Inverted {
-        /// Which, counted from 1.
-        number: usize,
-        /// What was given for the lower one.
-        lower: f64,
-        /// What was given for the upper one.
-        upper: f64,
-    },
-}
-
 impl Space {
     /// The box between these bounds, finite and the lower one first.
     ///
     /// # Errors
-    /// [`SpaceError`]: no variable, or one without a range.
-    pub fn new(bounds: Vec<[f64; 2]>) -> Result<Self, SpaceError> {
+    /// [`SearchError`]: no variable, or one without a range.
+    pub fn new(bounds: Vec<[f64; 2]>) -> Result<Self, SearchError> {
         if bounds.is_empty() {
-            return Err(SpaceError::Empty);
+            return Err(SearchError::Empty);
         }
         for (index, &[lower, upper]) in bounds.iter().enumerate() {
             let range = upper - lower;
             if !(range > 0.0 && range.is_finite()) {
                 let number = index + 1;
-                return Err(SpaceError::Inverted { number, lower, upper });
+                return Err(SearchError::Inverted { number, lower, upper });
             }
         }
         Ok(Self(bounds))

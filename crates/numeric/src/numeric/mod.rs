@@ -3,10 +3,12 @@
 //!
 //! In come forces as closures, starts and tolerances; out go motions, periods and limit cycles, or
 //! the reason why there is none. Units are those of the closures. [`ode`], `harmonics` and
-//! [`continuation`] use none of the others, and those do not use each other:
+//! [`continuation`] use none of the others, and those do not use each other; [`balance`] uses the
+//! first two:
 //!
 //! - [`ode`]: Runge-Kutta with dense output and events, quadrature, roots; turning points.
 //! - `harmonics`: the Fourier coefficients of a period that is known at equal steps, and back.
+//! - [`balance`]: harmonic balance, the equations of a periodic motion for its Fourier coefficients.
 //! - [`period`]: the true period of a force of the position alone, from its energy, and of others
 //!   from their return.
 //! - [`continuation`]: branches of solutions, step by step.
@@ -16,6 +18,7 @@
 //! [`period`], [`periodic`] and [`return_map`] belong to the judge: no method takes its answer from
 //! them.
 
+pub mod balance;
 pub mod continuation;
 pub mod harmonics;
 pub mod ode;

@@ -29,16 +29,15 @@ use std::rc::Rc;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::numbers::NoNumbers;
 use crate::conservative::force::Force;
 use crate::conservative::passage::{passage_at, passages, pushes_away};
-use crate::decimal::significant;
 use crate::exact::Doubles;
 use crate::numeric::continuation::Step::{Ended, Taken, TooLong};
 use crate::numeric::continuation::{self, bordered, follow};
 use crate::numeric::ode::quadrature::nodes_and_weights;
 use crate::numeric::ode::root::find_root;
 use crate::series::FourierSeries;
-use crate::symbol::letters::AMPLITUDE;
 
 /// A balance solved by numbers.
 pub struct Balance {
@@ -51,49 +50,6 @@ pub struct Balance {
     pub rest_ends_at: Option<f64>,
     /// Whether it passes other equilibria on its way.
     pub over_several_wells: bool,
-}
-
-/// Why a balance has no solution.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Lost {
-    /// The branch never reaches the amplitude.
-    #[error(
-        "no balance: followed from rest, the motion of these harmonics ends at {} = {}; another order may reach farther",
-        AMPLITUDE,
-        significant(*amplitude, 6)
-    )]
-    Ends {
-        /// The largest amplitude reached.
-        amplitude: f64,
-    },
-    /// There is no motion to start from.
-    #[error("no balance: at small amplitudes these harmonics have no motion to start from")]
-    NoStart,
-    /// The branch of motions through an unstable equilibrium never reaches the amplitude.
-    #[error(
-        "no balance: followed from {} = {}, the motion of these harmonics over both wells ends at {} = {}; another order may reach farther",
-        AMPLITUDE,
-        significant(*from, 6),
-        AMPLITUDE,
-        significant(*amplitude, 6)
-    )]
-    EndsOnTheWay {
-        /// Where it was taken up.
-        from: f64,
-        /// The last amplitude reached.
-        amplitude: f64,
-    },
-    /// The sums for the harmonics of the force do not agree, however fine.
-    #[error(
-        "no balance: the force changes too often along this motion for its harmonics to be summed"
-    )]
-    Unsettled,
-    /// The motion found runs through a place where the force has no value.
-    #[error("no balance: the motion of these harmonics runs through {}, where the force has no finite value", significant(*place, 6))]
-    Gap {
-        /// Where.
-        place: f64,
-    },
 }
 
 /// What is known of the branch from rest of one balance, force and harmonics being the same, from
@@ -134,21 +90,22 @@ impl Continuation {
 /// `degree` is that of a polynomial force.
 ///
 /// # Errors
-/// [`Lost`].
+/// [`NoNumbers`].
 pub fn balance(
     force: &Force,
     degree: Option<u32>,
     harmonics: &[usize],
     amplitude: f64,
     known: &Continuation,
-) -> Result<Balance, Lost> {
+) -> Result<Balance, NoNumbers> {
     /// Narrow places on the way, such as the waves of a sine: a few harmonics say nothing of more,
     /// and take long.
     const MOST_CUTS: usize = 600;
-    let mut problem = Problem::new(force, degree, harmonics, amplitude).ok_or(Lost::NoStart)?;
+    let mut problem =
+        Problem::new(force, degree, harmonics, amplitude).ok_or(NoNumbers::NoBalance)?;
     problem.fineness = known.fineness.get().max(1);
     if problem.cuts.len() > MOST_CUTS {
-        return Err(Lost::Unsettled);
+        return Err(NoNumbers::UnsettledBalance);
     }
     let (mut state, rest_ends_at) = problem.followed(known)?;
     if degree.is_none() {
@@ -164,7 +121,7 @@ pub fn balance(
     if degree.is_none()
         && let Some(place) = force.gap(low, high)
     {
-        return Err(Lost::Gap { place });
+        return Err(NoNumbers::BalanceGap { place });
     }
     Ok(Balance {
         frequency_squared: state.frequency_squared(),
@@ -544,7 +501,7 @@ impl<'a> Problem<'a> {
 
     /// The branch from rest to the amplitude, or that from large amplitudes and where the one from
     /// rest ends. Where it is the sums that are too coarse to go on, they are made finer.
-    fn followed(&mut self, known: &Continuation) -> Result<(State, Option<f64>), Lost> {
+    fn followed(&mut self, known: &Continuation) -> Result<(State, Option<f64>), NoNumbers> {
         if pushes_away(self.force, self.amplitude) {
             return self.over_the_hilltop(known).map(|found| (found, None));
         }
@@ -554,7 +511,7 @@ impl<'a> Problem<'a> {
         const AHEAD: f64 = 0.01;
         let mut before = f64::NEG_INFINITY;
         let end = loop {
-            let end = match self.up_from_rest(known).ok_or(Lost::NoStart)? {
+            let end = match self.up_from_rest(known).ok_or(NoNumbers::NoBalance)? {
                 Ok(found) => return Ok((found, None)),
                 Err(end) => end,
             };
@@ -575,12 +532,12 @@ impl<'a> Problem<'a> {
         let outer = self.at_large();
         let outer = outer.and_then(|large| self.followed_from(large, -1.0, &mut Vec::new()).ok());
         let found = outer.filter(fits).map(|found| (found, Some(amplitude)));
-        found.ok_or(Lost::Ends { amplitude })
+        found.ok_or(NoNumbers::BalanceEnds { amplitude })
     }
 
     /// The branch of motions through an unstable equilibrium, over the wells on both sides, from
     /// what is known of it or from an amplitude nearby at which one term is nearly all.
-    fn over_the_hilltop(&self, known: &Continuation) -> Result<State, Lost> {
+    fn over_the_hilltop(&self, known: &Continuation) -> Result<State, NoNumbers> {
         /// Starts that are tried, and how far they are from the amplitude: to four times, where
         /// there is no end before.
         const STARTS: usize = 6;
@@ -589,7 +546,7 @@ impl<'a> Problem<'a> {
         /// long.
         const MOST_IN_VAIN: usize = 12;
         let passages = passages(self.force, self.amplitude);
-        let range = passage_at(&passages, self.amplitude).ok_or(Lost::NoStart)?;
+        let range = passage_at(&passages, self.amplitude).ok_or(NoNumbers::NoBalance)?;
         let end = range.to.map_or(f64::INFINITY, |rim| rim.place);
         let goal = self.amplitude.abs().ln();
         let reached = |start: State| {
@@ -604,7 +561,7 @@ impl<'a> Problem<'a> {
             return Ok(found);
         }
         if known.in_vain.get() >= MOST_IN_VAIN {
-            return Err(Lost::NoStart);
+            return Err(NoNumbers::NoBalance);
         }
         let sizes = (-3 * PER_DOUBLING..=2 * PER_DOUBLING)
             .map(|k| 2.0_f64.powf(f64::from(k) / f64::from(PER_DOUBLING)));
@@ -618,7 +575,7 @@ impl<'a> Problem<'a> {
             corrections + 0.1 * (state.logarithm() - goal).abs()
         };
         alone.sort_by(|one, other| merit(one).total_cmp(&merit(other)));
-        let mut lost = Lost::NoStart;
+        let mut lost = NoNumbers::NoBalance;
         let starts = alone.iter().filter_map(|(alone, _)| self.near(alone, 0.5));
         for start in starts.take(STARTS) {
             let from = start.logarithm().exp() * self.side();
@@ -626,9 +583,9 @@ impl<'a> Problem<'a> {
             known.in_vain.set(known.in_vain.get() + usize::from(found.is_err()));
             match found {
                 Ok(found) => return Ok(found),
-                Err(last) if lost == Lost::NoStart => {
+                Err(last) if lost == NoNumbers::NoBalance => {
                     let amplitude = last.logarithm().exp() * self.side();
-                    lost = Lost::EndsOnTheWay { from, amplitude };
+                    lost = NoNumbers::CrossWellBalanceEnds { from, amplitude };
                 }
                 Err(_) => {}
             }
@@ -769,7 +726,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The same solution by finer and finer sums, until they agree.
-    fn refined(&self, mut state: State) -> Result<State, Lost> {
+    fn refined(&self, mut state: State) -> Result<State, NoNumbers> {
         const MOST_POINTS: usize = 1 << 17;
         /// Where the sums are as fine as they get: the digits that a user sees.
         const ENOUGH: f64 = 1e-8;
@@ -784,7 +741,7 @@ impl<'a> Problem<'a> {
         }
         match change < ENOUGH {
             true => Ok(state),
-            false => Err(Lost::Unsettled),
+            false => Err(NoNumbers::UnsettledBalance),
         }
     }
 }

@@ -12,7 +12,7 @@ use std::fmt;
 use super::numbers::{NoNumbers, evaluate};
 use crate::decimal::significant;
 use crate::exact::Doubles;
-use crate::oscillator::{Oscillator, OscillatorError};
+use crate::oscillator::Oscillator;
 use crate::series::{FourierSeries, terms};
 use crate::solution::Solution;
 use crate::symbol::Symbol;
@@ -85,52 +85,27 @@ impl fmt::Display for Motion {
     }
 }
 
-/// Why there is no motion at these values.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum NoMotion {
-    /// Values are missing.
-    #[error("values are needed for: {}", .0.iter().map(|name| name.name()).collect::<Vec<_>>().join(", "))]
-    Missing(Vec<Symbol>),
-    /// The frequency of the formula is not positive, or is known without a motion.
-    #[error(
-        "the formula has no motion at these values: its frequency is not positive, or is all that it gives"
-    )]
-    Unknown,
-    /// The motion of a driven equation, which does not follow from its amplitude alone.
-    #[error(
-        "a driven motion has a phase of its own: its steady motions are `steady_states`, and `response.motion` is its formula"
-    )]
-    Driven,
-    /// The formula has no value.
-    #[error(transparent)]
-    Numbers(#[from] NoNumbers),
-    /// The equation of the answer, which a document may have brought, is none.
-    #[error(transparent)]
-    Equation(#[from] OscillatorError),
-}
-
 impl Solution {
     /// The motion at these values of the parameters and the amplitude.
     ///
     /// # Errors
-    /// [`NoMotion`].
-    pub fn motion_at(&self, values: &Values) -> Result<Motion, NoMotion> {
+    /// [`NoNumbers`].
+    pub fn motion_at(&self, values: &Values) -> Result<Motion, NoNumbers> {
         if self.response.is_some() {
-            return Err(NoMotion::Driven);
+            return Err(NoNumbers::Driven);
         }
         let oscillator = Oscillator::from_equation(&self.equation)?;
         let mut needed = self.parameters.clone();
         needed.extend(self.limit_cycle.is_none().then(|| self.amplitude.symbol()));
         needed.retain(|&name| values.get(name).is_none());
         if !needed.is_empty() {
-            return Err(NoMotion::Missing(needed));
+            return Err(NoNumbers::Missing(needed));
         }
         let found = evaluate(&oscillator, self, &values.numbers())?;
         if !(found.frequency_squared > 0.0 && found.frequency_squared.is_finite()) {
-            return Err(NoNumbers::not_positive(self).into());
+            return Err(NoNumbers::not_positive(self));
         }
-        let displacement = found.motion.ok_or(NoMotion::Unknown)?;
+        let displacement = found.motion.ok_or(NoNumbers::NoMotion)?;
         Ok(Motion {
             coordinate: oscillator.coordinate,
             frequency: found.frequency_squared.sqrt(),
@@ -143,8 +118,8 @@ impl Solution {
     /// many times [`Solution::motion_at`] does the work once.
     ///
     /// # Errors
-    /// [`NoMotion`].
-    pub fn at(&self, t: f64, values: &Values) -> Result<f64, NoMotion> {
+    /// [`NoNumbers`].
+    pub fn at(&self, t: f64, values: &Values) -> Result<f64, NoNumbers> {
         Ok(self.motion_at(values)?.at(t))
     }
 }

@@ -19,7 +19,7 @@ use crate::exact::{Doubles, Polynomial};
 use crate::expr::{CompiledFunction, EvaluationError, Expr, Rounded};
 use crate::numeric::ode::energy::PeriodError;
 use crate::numeric::ode::root::find_minimum;
-use crate::oscillator::Oscillator;
+use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Branch, Counts, Method, Solution};
 use crate::symbol::Symbol;
@@ -85,7 +85,7 @@ impl Known {
     }
 }
 
-/// Why an answer has no numbers.
+/// Why an answer has no numbers, or no motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoNumbers {
@@ -135,9 +135,44 @@ pub enum NoNumbers {
         /// The symbol.
         name: Symbol,
     },
-    /// The branch of a balance does not reach the amplitude asked for.
-    #[error(transparent)]
-    Balance(#[from] balance::Lost),
+    /// The branch never reaches the amplitude.
+    #[error(
+        "no balance: followed from rest, the motion of these harmonics ends at {} = {}; another order may reach farther",
+        AMPLITUDE,
+        significant(*amplitude, 6)
+    )]
+    BalanceEnds {
+        /// The largest amplitude reached.
+        amplitude: f64,
+    },
+    /// There is no motion to start from.
+    #[error("no balance: at small amplitudes these harmonics have no motion to start from")]
+    NoBalance,
+    /// The branch of motions through an unstable equilibrium never reaches the amplitude.
+    #[error(
+        "no balance: followed from {} = {}, the motion of these harmonics over both wells ends at {} = {}; another order may reach farther",
+        AMPLITUDE,
+        significant(*from, 6),
+        AMPLITUDE,
+        significant(*amplitude, 6)
+    )]
+    CrossWellBalanceEnds {
+        /// Where it was taken up.
+        from: f64,
+        /// The last amplitude reached.
+        amplitude: f64,
+    },
+    /// The sums for the harmonics of the force do not agree, however fine.
+    #[error(
+        "no balance: the force changes too often along this motion for its harmonics to be summed"
+    )]
+    UnsettledBalance,
+    /// The motion found runs through a place where the force has no value.
+    #[error("no balance: the motion of these harmonics runs through {}, where the force has no finite value", significant(*place, 6))]
+    BalanceGap {
+        /// Where.
+        place: f64,
+    },
     /// The terms of the formula cancel.
     #[error(
         "no digits: the terms of the formula cancel at this amplitude, and rounding moves {}^2 by {} of itself",
@@ -164,6 +199,22 @@ pub enum NoNumbers {
     /// A quadrature, the exact motion or a search for hbar failed.
     #[error("no finite value at these numbers")]
     NoValue,
+    /// Values are missing.
+    #[error("values are needed for: {}", .0.iter().map(|name| name.name()).collect::<Vec<_>>().join(", "))]
+    Missing(Vec<Symbol>),
+    /// The frequency of the formula is not positive, or is known without a motion.
+    #[error(
+        "the formula has no motion at these values: its frequency is not positive, or is all that it gives"
+    )]
+    NoMotion,
+    /// The motion of a driven equation, which does not follow from its amplitude alone.
+    #[error(
+        "a driven motion has a phase of its own: its steady motions are `steady_states`, and `response.motion` is its formula"
+    )]
+    Driven,
+    /// The equation of the answer, which a document may have brought, is none.
+    #[error(transparent)]
+    Equation(#[from] OscillatorError),
 }
 
 impl NoNumbers {

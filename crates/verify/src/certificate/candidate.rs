@@ -23,7 +23,7 @@ use crate::exact::bound::Bound;
 use crate::exact::rational::from_f64;
 use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, ExprError};
-use crate::method::motion::NoMotion;
+use crate::method::numbers::NoNumbers;
 use crate::numeric::harmonics::Transform;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::solution::{AmplitudeConvention, Solution};
@@ -91,7 +91,7 @@ pub enum NotCertified {
     Start(String),
     /// A motion that the formula does not give.
     #[error(transparent)]
-    Motion(#[from] NoMotion),
+    Motion(#[from] NoNumbers),
     /// A formula that cannot be held against the motion.
     #[error("the formula cannot be judged: it is {0}")]
     Formula(&'static str),
@@ -149,9 +149,10 @@ impl NotCertified {
             }
             Self::OffCycle => "leave the amplitude out",
             Self::Law(_) => "without a range it is certified at one amplitude",
-            Self::Motion(NoMotion::Unknown | NoMotion::Numbers(_))
-            | Self::Formula(_)
-            | Self::Sines => {
+            Self::Motion(NoNumbers::Missing(_) | NoNumbers::Driven | NoNumbers::Equation(_)) => {
+                return None;
+            }
+            Self::Motion(_) | Self::Formula(_) | Self::Sines => {
                 "--no-formula proves the motion alone: that it exists, and its frequency"
             }
             Self::Start(_) => {

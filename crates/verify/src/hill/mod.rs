@@ -31,7 +31,7 @@ use crate::symbol::Symbol;
 
 pub use curves::{TransitionCurve, WavesOfMotion};
 pub use periodic::Frequency;
-pub use truth::{Chart, JudgedCurve, TruthError, chart, judge};
+pub use truth::{Chart, JudgedCurve, chart, judge};
 
 /// The highest order that is derived.
 pub const HIGHEST_ORDER: u32 = 60;
@@ -169,7 +169,7 @@ impl TransitionCurve {
     }
 }
 
-/// Why there are no transition curves.
+/// Why there are no transition curves, or no judgement of them.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum HillError {
@@ -228,6 +228,26 @@ pub enum HillError {
         "the order is a whole number from 1 to {HIGHEST_ORDER}, the tongues are 0 to {MOST_TONGUES}"
     )]
     Limits,
+    /// Letters without a number.
+    #[error("no value for {0}")]
+    Missing(String),
+    /// A value for a letter that does not occur, or that the curves give.
+    #[error("there is a value for `{0}`, which {1}")]
+    Unknown(Symbol, &'static str),
+    /// No positive frequency.
+    #[error("the frequency of the coefficients is {0} there, and must be positive")]
+    Frequency(f64),
+    /// Coefficients that are no numbers, or too large.
+    #[error(
+        "the coefficients have no finite value there, or are too large for {} harmonics",
+        truth::MOST_HARMONICS
+    )]
+    Coefficients,
+    /// The determinant and the integrated motion do not agree.
+    #[error(
+        "no multiplier of the integrated motion confirms the curve {0}: nothing is judged there"
+    )]
+    NotConfirmed(String),
 }
 
 impl HillError {
@@ -266,7 +286,11 @@ impl HillError {
             Self::SeveralSmall(_) | Self::UnknownSmall(_) | Self::NotSmall(..) => {
                 "name those that are small with `--small NAME`, repeated"
             }
-            Self::Expression(_) | Self::Limits => return None,
+            Self::Missing(_) => "give it with --at NAME=VALUE",
+            Self::NotConfirmed(_) | Self::Coefficients => "take smaller values, or fewer tongues",
+            Self::Expression(_) | Self::Limits | Self::Unknown(..) | Self::Frequency(_) => {
+                return None;
+            }
         };
         Some(words.to_owned())
     }

@@ -15,9 +15,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, Schur, SymmetricEigen};
-use thiserror::Error;
 
-use super::{TransitionCurve, TransitionCurves, Unknown, WavesOfMotion};
+use super::{HillError, TransitionCurve, TransitionCurves, Unknown, WavesOfMotion};
 use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::ode::root::find_root;
 use crate::symbol::Symbol;
@@ -31,7 +30,7 @@ const SPARE_HARMONICS: usize = 16;
 const TIMES_TAKEN_ON: usize = 3;
 
 /// The most harmonics of the determinant.
-const MOST_HARMONICS: usize = 200;
+pub(super) const MOST_HARMONICS: usize = 200;
 
 /// What a value of the determinant is good to, over the square of the frequency.
 const ROUNDING: f64 = 1e-12;
@@ -69,35 +68,10 @@ pub struct Chart {
     pub truth: Vec<(f64, f64)>,
 }
 
-/// Why there is no judgement.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[non_exhaustive]
-pub enum TruthError {
-    /// Letters without a number.
-    #[error("no value for {0}")]
-    Missing(String),
-    /// A value for a letter that does not occur, or that the curves give.
-    #[error("there is a value for `{0}`, which {1}")]
-    Unknown(Symbol, &'static str),
-    /// No positive frequency.
-    #[error("the frequency of the coefficients is {0} there, and must be positive")]
-    Frequency(f64),
-    /// Coefficients that are no numbers, or too large.
-    #[error(
-        "the coefficients have no finite value there, or are too large for {MOST_HARMONICS} harmonics"
-    )]
-    Coefficients,
-    /// The determinant and the integrated motion do not agree.
-    #[error(
-        "no multiplier of the integrated motion confirms the curve {0}: nothing is judged there"
-    )]
-    NotConfirmed(String),
-}
-
 /// Every curve at the values, beside the truth.
 ///
 /// # Errors
-/// [`TruthError`].
+/// [`HillError`].
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -116,22 +90,22 @@ pub fn judge(
     curves: &TransitionCurves,
     at: &Values,
     tolerance: f64,
-) -> Result<Vec<JudgedCurve>, TruthError> {
+) -> Result<Vec<JudgedCurve>, HillError> {
     let numbers = at.numbers();
     let unknown = curves.unknown.symbol();
     for name in numbers.keys() {
         if *name == unknown {
-            return Err(TruthError::Unknown(*name, "the curves give"));
+            return Err(HillError::Unknown(*name, "the curves give"));
         }
         if !curves.parameters.contains(name) {
-            return Err(TruthError::Unknown(*name, "does not occur"));
+            return Err(HillError::Unknown(*name, "does not occur"));
         }
     }
     let missing = |name: &&Symbol| **name != unknown && !numbers.contains_key(*name);
     let missing: Vec<String> =
         curves.parameters.iter().filter(missing).map(|name| format!("`{name}`")).collect();
     if !missing.is_empty() {
-        return Err(TruthError::Missing(missing.join(", ")));
+        return Err(HillError::Missing(missing.join(", ")));
     }
     let one = |(index, curve): (usize, &TransitionCurve)| {
         let value = formula(curves, curve, &numbers);
@@ -154,14 +128,14 @@ pub fn judge(
 /// Every curve from nothing small to `upto` of the small parameter `by`, in equal steps.
 ///
 /// # Errors
-/// [`TruthError`].
+/// [`HillError`].
 pub fn chart(
     curves: &TransitionCurves,
     at: &BTreeMap<Symbol, f64>,
     by: Symbol,
     upto: f64,
     steps: u32,
-) -> Result<Vec<Chart>, TruthError> {
+) -> Result<Vec<Chart>, HillError> {
     let mut charts = Vec::new();
     for (index, curve) in curves.curves.iter().enumerate() {
         let (mut formulas, mut truths) = (Vec::new(), Vec::new());
@@ -226,7 +200,7 @@ fn true_value(
     curves: &TransitionCurves,
     curve: &TransitionCurve,
     numbers: &BTreeMap<Symbol, f64>,
-) -> Result<Option<f64>, TruthError> {
+) -> Result<Option<f64>, HillError> {
     let unknown = curves.unknown.symbol();
     let with = |value: f64| {
         let mut numbers = numbers.clone();
@@ -236,7 +210,7 @@ fn true_value(
     let value = match curves.unknown {
         Unknown::Stiffness { power, .. } => {
             let slope = curves.stiffness.differentiate(unknown).ok();
-            let slope = slope.ok_or(TruthError::Coefficients)?;
+            let slope = slope.ok_or(HillError::Coefficients)?;
             // The equation without the unknown, where its power is one; else beside the formula,
             // and once more at what comes of it.
             let mut reference = match power {
@@ -247,7 +221,7 @@ fn true_value(
             for _ in 0..if power == 1 { 1 } else { 3 } {
                 // mu = r*(u - u_0) for the power u of the letter, that of the reference being u_0.
                 let by_letter =
-                    slope.evaluate(&with(reference)).map_err(|_| TruthError::Coefficients)?;
+                    slope.evaluate(&with(reference)).map_err(|_| HillError::Coefficients)?;
                 let slope = by_letter / (f64::from(power) * reference.powi(power - 1));
                 let above = is_upper(curves, curve, numbers) == (slope > 0.0);
                 let coefficients = Coefficients::of(curves, &with(reference))?;
@@ -277,7 +251,7 @@ fn true_value(
     let coefficients = Coefficients::of(curves, &numbers)?;
     match coefficients.defect(curves, curve, &numbers) {
         Some(defect) if defect <= MULTIPLIER_TOLERANCE => Ok(Some(value)),
-        _ => Err(TruthError::NotConfirmed(curve.name.clone())),
+        _ => Err(HillError::NotConfirmed(curve.name.clone())),
     }
 }
 
@@ -286,7 +260,7 @@ fn frequency_without_remainder(
     curves: &TransitionCurves,
     curve: &TransitionCurve,
     with: &dyn Fn(f64) -> BTreeMap<Symbol, f64>,
-) -> Result<Option<f64>, TruthError> {
+) -> Result<Option<f64>, HillError> {
     let upper = is_upper(curves, curve, &with(1.0));
     // mu grows with the frequency: the larger of two comes to zero first.
     let mu = |frequency: f64| Coefficients::of(curves, &with(frequency))?.eigenvalue(curve, !upper);
@@ -333,21 +307,21 @@ struct Coefficients {
 }
 
 impl Coefficients {
-    fn of(curves: &TransitionCurves, numbers: &BTreeMap<Symbol, f64>) -> Result<Self, TruthError> {
+    fn of(curves: &TransitionCurves, numbers: &BTreeMap<Symbol, f64>) -> Result<Self, HillError> {
         let value_of = |name: Symbol| numbers.get(&name).copied();
         let frequency = curves.frequency.polynomial().evaluate(value_of).unwrap_or(f64::NAN);
         if !(frequency > 0.0 && frequency.is_finite()) {
-            return Err(TruthError::Frequency(frequency));
+            return Err(HillError::Frequency(frequency));
         }
         let most = curves.curves.iter().map(|curve| curve.tongue).max().unwrap_or(0);
         let time = Symbol::new("t");
         let given = || numbers.iter().filter(|(name, _)| **name != time);
         let names: Vec<Symbol> = given().map(|(name, _)| *name).chain([time]).collect();
         let compiled = |expression: &Expr| {
-            CompiledFunction::new(expression, &names).map_err(|_| TruthError::Coefficients)
+            CompiledFunction::new(expression, &names).map_err(|_| HillError::Coefficients)
         };
         let [damping, stiffness] = [compiled(&curves.damping)?, compiled(&curves.stiffness)?];
-        let sample = |count: usize| -> Result<Vec<[f64; 2]>, TruthError> {
+        let sample = |count: usize| -> Result<Vec<[f64; 2]>, HillError> {
             let mut point: Vec<f64> = given().map(|(_, value)| *value).chain([0.0]).collect();
             let sample = |index: usize| {
                 *point.last_mut()? = 2.0 * TAU / frequency * index as f64 / count as f64;
@@ -355,14 +329,14 @@ impl Coefficients {
                 sample.iter().all(|value| value.is_finite()).then_some(sample)
             };
             let samples: Option<Vec<[f64; 2]>> = (0..count).map(sample).collect();
-            samples.ok_or(TruthError::Coefficients)
+            samples.ok_or(HillError::Coefficients)
         };
         let rough = sample(64)?;
         let largest = rough.iter().fold(0.0_f64, |largest, [c, k]| largest.max(c * c).max(k.abs()));
         let spare = SPARE_HARMONICS.max(TIMES_TAKEN_ON * curves.highest_harmonic);
         let wanted = (most + spare) as f64 + 4.0 * largest.sqrt() / frequency;
         if wanted > MOST_HARMONICS as f64 {
-            return Err(TruthError::Coefficients);
+            return Err(HillError::Coefficients);
         }
         let harmonics = wanted.ceil() as usize;
         Ok(Self { frequency, samples: sample((8 * harmonics).max(512))?, harmonics })
@@ -374,7 +348,7 @@ impl Coefficients {
 
     /// `mu` of a curve: the eigenvalues of `-(D^2 + c D + k)` on the motions of its period, in
     /// order. `above` asks for the larger one of its pair.
-    fn eigenvalue(&self, curve: &TransitionCurve, above: bool) -> Result<Eigenvalue, TruthError> {
+    fn eigenvalue(&self, curve: &TransitionCurve, above: bool) -> Result<Eigenvalue, HillError> {
         let odd = curve.tongue % 2;
         // Normed waves: harmonic, and whether it is a sine.
         let waves: Vec<(usize, bool)> = (odd..=self.harmonics)
@@ -411,16 +385,16 @@ impl Coefficients {
         let matrix = at_samples.transpose() * images / count as f64;
         let size = matrix.norm();
         if !size.is_finite() {
-            return Err(TruthError::Coefficients);
+            return Err(HillError::Coefficients);
         }
         let undamped = self.samples.iter().all(|[c, _]| *c == 0.0);
         let mut values: Vec<(f64, f64)> = if undamped {
             let eigen = SymmetricEigen::try_new(matrix, f64::EPSILON, 10_000)
-                .ok_or(TruthError::Coefficients)?;
+                .ok_or(HillError::Coefficients)?;
             eigen.eigenvalues.iter().map(|value| (*value, 0.0)).collect()
         } else {
             let schur =
-                Schur::try_new(matrix, f64::EPSILON, 10_000).ok_or(TruthError::Coefficients)?;
+                Schur::try_new(matrix, f64::EPSILON, 10_000).ok_or(HillError::Coefficients)?;
             schur.complex_eigenvalues().iter().map(|value| (value.re, value.im)).collect()
         };
         values.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -432,7 +406,7 @@ impl Coefficients {
             (WavesOfMotion::Both, 0) => 0,
             (WavesOfMotion::Both, tongue) => tongue - 1 + usize::from(above),
         };
-        let (value, imaginary) = values.get(index).copied().ok_or(TruthError::Coefficients)?;
+        let (value, imaginary) = values.get(index).copied().ok_or(HillError::Coefficients)?;
         Ok(Eigenvalue { value, is_real: imaginary.abs() <= REAL * size })
     }
 

@@ -13,9 +13,10 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::ResponseError;
-use super::balance::{Balance, CONVERGED};
+use super::balance::Balance;
 use super::driven::Driven;
 use crate::expr::Expr;
+use crate::numeric::balance::CONVERGED;
 use crate::oscillator::Oscillator;
 
 /// A free motion without damping.
@@ -160,7 +161,7 @@ fn first_guess(
             return None;
         }
     }
-    let mut coefficients = DVector::zeros(balance.size());
+    let mut coefficients = DVector::zeros(balance.core.size());
     coefficients[0] = place;
     coefficients[1] = amplitude;
     Some((coefficients, parameter))
@@ -173,13 +174,13 @@ fn solved(
     mut parameter: f64,
 ) -> Option<(DVector<f64>, f64)> {
     const MOST: usize = 30;
-    let count = balance.harmonics + 1;
+    let count = balance.core.harmonics + 1;
     // The cosine of a harmonic: its place among the coefficients.
     let cosine = |harmonic: usize| if harmonic == 0 { 0 } else { 2 * harmonic - 1 };
     for _ in 0..MOST {
         let linear = balance.linearised(&coefficients, parameter)?;
         let matrix = DMatrix::from_fn(count, count, |row, column| match column {
-            1 => linear.jacobian[(cosine(row), balance.size())],
+            1 => linear.jacobian[(cosine(row), balance.core.size())],
             _ => linear.jacobian[(cosine(row), cosine(column))],
         });
         let right = DVector::from_fn(count, |row, _| linear.residual[cosine(row)]);

@@ -3,7 +3,7 @@
 
 use nalgebra::DVector;
 
-use super::balance::{Balance, later};
+use super::balance::Balance;
 use super::continuation::{self, BranchEnd, Node, Path, Walk};
 use super::seeds::Seed;
 use super::{Asked, MOST_BRANCHES};
@@ -25,7 +25,7 @@ impl Asked<'_> {
             if paths.len() >= MOST_BRANCHES || self.question.interrupt.is_requested() {
                 break;
             }
-            let guess = balance.unknowns_of(&seed.positions, seed.frequency);
+            let guess = balance.core.unknowns_of(&[&seed.positions], seed.frequency);
             let Some(found) = balance.solve(&guess, seed.parameter) else {
                 continue;
             };
@@ -34,7 +34,7 @@ impl Asked<'_> {
                 paths
                     .iter()
                     .map(|path| largest(balance, path))
-                    .fold(size.max(balance.extent(&found)), f64::max),
+                    .fold(size.max(balance.core.extent(&found)), f64::max),
             );
             if walk.is_cut_off(balance, &found)
                 || self.was_known(balance, &mut paths, &found, seed.parameter)
@@ -58,7 +58,8 @@ impl Asked<'_> {
         let nodes = &paths[index].nodes;
         let middle = &nodes[nodes.len() / 2];
         let period = std::f64::consts::TAU / self.question.periods as f64;
-        let (parameter, image) = (middle.parameter, -later(&middle.coefficients, 0.5 * period));
+        let (parameter, image) =
+            (middle.parameter, -balance.core.later(&middle.coefficients, 0.5 * period));
         let is_motion = balance
             .solve(&image, parameter)
             .is_some_and(|found| (&found - &image).norm() <= SAME * image.norm());
@@ -136,20 +137,20 @@ impl Asked<'_> {
         /// The part of a motion by which a guess between two points may be off.
         const NEAR: f64 = 0.2;
         const SAME: f64 = 1e-5;
-        let size = balance.extent(coefficients).max(1e-3 * coefficients[0].abs());
+        let size = balance.core.extent(coefficients).max(1e-3 * coefficients[0].abs());
         let period = std::f64::consts::TAU / self.question.periods as f64;
         let shifts = (0..self.question.periods).map(|periods| period * periods as f64);
         let shifted: Vec<DVector<f64>> =
-            shifts.clone().map(|shift| later(coefficients, shift)).collect();
+            shifts.clone().map(|shift| balance.core.later(coefficients, shift)).collect();
         let mirrored: Vec<DVector<f64>> =
-            shifts.map(|shift| -later(coefficients, shift + 0.5 * period)).collect();
+            shifts.map(|shift| -balance.core.later(coefficients, shift + 0.5 * period)).collect();
         // Places between which the force does not change, such as those a turn of a pendulum apart,
         // are one.
         let is_one = |motion: &DVector<f64>, of: &[DVector<f64>], within: f64, anywhere: bool| {
             let near = |shifted: &DVector<f64>| {
                 let apart = motion - shifted;
                 let (mean, waves) = (apart[0], apart.rows(1, apart.len() - 1).norm());
-                let allowed = within * size.max(balance.extent(motion));
+                let allowed = within * size.max(balance.core.extent(motion));
                 waves <= allowed
                     && (anywhere || mean.abs() <= allowed || self.repeats_after(mean, parameter))
             };

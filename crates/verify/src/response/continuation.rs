@@ -13,10 +13,11 @@
 
 use nalgebra::{DVector, Dyn, LU};
 
-use super::balance::{Balance, CONVERGED, Linearised};
+use super::balance::Balance;
 use super::hopf;
 use super::stability::TrueMotion;
 use crate::interrupt::Interrupt;
+use crate::numeric::balance::{CONVERGED, Linearised};
 use crate::numeric::continuation::Step::{Ended, Taken, TooLong};
 use crate::numeric::continuation::{bordered, follow, passes, tangent};
 
@@ -47,8 +48,10 @@ impl Node {
 
     /// Position and velocity at phase zero.
     pub fn begins(&self, balance: &Balance) -> [f64; 2] {
-        self.truth
-            .map_or_else(|| balance.start(&self.coefficients, self.parameter), |truth| truth.start)
+        self.truth.map_or_else(
+            || balance.at(&self.coefficients, self.parameter, 0.0),
+            |truth| truth.start,
+        )
     }
 
     /// dp along the branch: its sign changes at a fold.
@@ -183,7 +186,7 @@ impl Weights {
 
 /// The equations at coefficients and a parameter that are one vector.
 fn linearised(balance: &Balance, point: &DVector<f64>) -> Option<Linearised> {
-    let size = balance.size();
+    let size = balance.core.size();
     balance.linearised(&point.rows(0, size).into_owned(), point[size])
 }
 
@@ -199,7 +202,8 @@ pub(super) fn largest<const ENDS: usize>(
     nodes: &[Node],
     ends: [BranchEnd; ENDS],
 ) -> f64 {
-    let mut sizes: Vec<f64> = nodes.iter().map(|node| balance.extent(&node.coefficients)).collect();
+    let mut sizes: Vec<f64> =
+        nodes.iter().map(|node| balance.core.extent(&node.coefficients)).collect();
     sizes.sort_by(f64::total_cmp);
     let place = match ends.contains(&BranchEnd::Unbounded) {
         true => sizes.len() / 2,
@@ -212,12 +216,15 @@ impl Walk {
     fn weights(&self, balance: &Balance, coefficients: &DVector<f64>) -> Weights {
         /// The smallest size that counts, in parts of the largest.
         const SMALLEST: f64 = 0.1;
-        let own = balance.extent(coefficients).max(1e-3 * coefficients[0].abs());
+        let own = balance.core.extent(coefficients).max(1e-3 * coefficients[0].abs());
         let size = own.max(SMALLEST * self.size);
         Weights {
             coefficients: if size > 0.0 { 1.0 / size } else { 1.0 },
             parameter: 1.0 / (self.range[1] - self.range[0]),
-            frequency: balance.frequency_place().map(|place| (place, 1.0 / coefficients[place])),
+            frequency: balance
+                .core
+                .frequency_place()
+                .map(|place| (place, 1.0 / coefficients[place])),
         }
     }
 
@@ -271,8 +278,8 @@ impl Walk {
         coefficients: &DVector<f64>,
         parameter: f64,
     ) -> Option<Path> {
-        let mut direction = DVector::zeros(balance.size() + 1);
-        direction[balance.size()] = self.range[1] - self.range[0];
+        let mut direction = DVector::zeros(balance.core.size() + 1);
+        direction[balance.core.size()] = self.range[1] - self.range[0];
         self.along(balance, coefficients, parameter, &direction)
     }
 
@@ -350,7 +357,8 @@ impl Walk {
         /// Of the size of the motion: of one that is resolved the last quarter has next to nothing.
         const LARGEST: f64 = 0.1;
         self.resolved
-            && balance.last_harmonics(coefficients) > LARGEST * balance.extent(coefficients)
+            && balance.core.last_harmonics(coefficients)
+                > LARGEST * balance.core.extent(coefficients)
     }
 
     /// The points from one on in the direction of its tangent.
@@ -369,7 +377,7 @@ impl Walk {
         /// say.
         const SLOW: f64 = 0.05;
         let [low, high] = self.range;
-        let bound = ENORMOUS * balance.extent(&start.coefficients).max(self.ordinary);
+        let bound = ENORMOUS * balance.core.extent(&start.coefficients).max(self.ordinary);
         // Where a self-excited motion is near rest it may be born there.
         let at_rest = |here: &Node, near: f64| match self.rest_beside(balance, here, near) {
             Some(rest) => Ended(Some(rest), BranchEnd::Rest),
@@ -422,14 +430,14 @@ impl Walk {
                 let part = here.coefficients[1] / (here.coefficients[1] - node.coefficients[1]);
                 return at_rest(here, here.parameter + part * (node.parameter - here.parameter));
             }
-            if let Some(place) = balance.frequency_place() {
+            if let Some(place) = balance.core.frequency_place() {
                 let own = node.coefficients[place];
                 fastest = fastest.max(own);
                 if own < SLOW * fastest {
                     return Ended(None, BranchEnd::Slow);
                 }
             }
-            if balance.extent(&node.coefficients) > bound {
+            if balance.core.extent(&node.coefficients) > bound {
                 return Ended(None, BranchEnd::Unbounded);
             }
             if nodes.len() > 8 && self.has_closed(&nodes[0], here, &node, weights) {
@@ -451,7 +459,7 @@ impl Walk {
         /// Of the largest motion, and of the range: what is beside.
         const BESIDE: f64 = 0.1;
         let small = BESIDE * self.size.max(self.ordinary);
-        if !balance.driven.self_excited || balance.extent(&here.coefficients) > small {
+        if !balance.driven.self_excited || balance.core.extent(&here.coefficients) > small {
             return None;
         }
         let [low, high] = self.range;
@@ -461,9 +469,9 @@ impl Walk {
         if far || !(low..=high).contains(&born.parameter) {
             return None;
         }
-        let mut coefficients = DVector::zeros(balance.size());
+        let mut coefficients = DVector::zeros(balance.core.size());
         coefficients[0] = born.position;
-        coefficients[balance.frequency_place()?] = born.frequency;
+        coefficients[balance.core.frequency_place()?] = born.frequency;
         Some(Node { coefficients, parameter: born.parameter, ..here.clone() })
     }
 
@@ -497,7 +505,7 @@ impl Walk {
     /// equations have a second solution, and the motions a little way along it.
     pub fn crossing(&self, balance: &Balance, at: &Node) -> Vec<Node> {
         const APART: f64 = 0.02;
-        let size = balance.size();
+        let size = balance.core.size();
         let Some(linear) = balance.linearised(&at.coefficients, at.parameter) else {
             return vec![];
         };

@@ -36,7 +36,7 @@ impl Asked<'_> {
             return self.judged_cycle(balance, node);
         }
         let start = node.begins(balance);
-        let size = balance.extent(&node.coefficients);
+        let size = balance.core.extent(&node.coefficients);
         let truth =
             periodic_motion(&self.driven, start, node.parameter, size.max(1e-12)).filter(|truth| {
                 let [cosine, sine] = [1, 2].map(|index| node.coefficients[index]);
@@ -63,13 +63,13 @@ impl Asked<'_> {
         let (u, parameter) = (&node.coefficients, node.parameter);
         let frequency = balance.frequency(u, parameter);
         let guess =
-            Guess { start: balance.start(u, parameter), frequency, size: balance.extent(u) };
+            Guess { start: balance.at(u, parameter, 0.0), frequency, size: balance.core.extent(u) };
         let damping = balance.motion(u).into_iter().map(|[x, by_phase, _]| {
             let [_, by_velocity, _] =
                 self.driven.slopes(&[x, frequency * by_phase, 0.0, parameter]);
             by_velocity
         });
-        let mean = damping.sum::<f64>() / balance.samples() as f64;
+        let mean = damping.sum::<f64>() / balance.core.samples() as f64;
         let along = Floquet {
             monodromy: Matrix2::new(
                 (-mean * std::f64::consts::TAU / frequency).exp(),
@@ -95,7 +95,8 @@ impl Asked<'_> {
         let amplitude = |[cosine, sine]: [f64; 2]| cosine.hypot(sine);
         let truth =
             true_cycle(&self.driven, &guess, parameter, along.largest() > 1.0).filter(|truth| {
-                let apart = amplitude(truth.first_harmonic) - amplitude(balance.harmonic(u, 1));
+                let apart =
+                    amplitude(truth.first_harmonic) - amplitude(balance.core.harmonic(u, 0, 1));
                 apart.abs() <= OTHER * guess.size
             });
         (Some(truth.map_or(along, |truth| truth.floquet)), truth)
@@ -112,7 +113,7 @@ impl Asked<'_> {
         let positions: Vec<f64> = balance.motion(u).iter().map(|point| point[0]).collect();
         /// Of the motion: less is rounding.
         const NOTHING: f64 = 1e-12;
-        let [cosine, sine] = balance.harmonic(u, 1);
+        let [cosine, sine] = balance.core.harmonic(u, 0, 1);
         let (amplitude, peak) = (cosine.hypot(sine), half_of_peak_to_peak(&positions));
         let frequency = balance.frequency(u, node.parameter);
         let (amplitude, phase) = match amplitude > NOTHING * peak {
@@ -132,14 +133,12 @@ impl Asked<'_> {
         let allowed = if self.driven.undamped { 1.0 + 1e-5 } else { 1.0 };
         Point {
             parameter: node.parameter,
-            harmonics: (0..=balance.harmonics)
-                .map(|harmonic| balance.harmonic(u, harmonic))
-                .collect(),
+            harmonics: balance.core.waves(u, 0).collect(),
             frequency,
             amplitude,
             phase,
             peak,
-            start: truth.map_or_else(|| balance.start(u, node.parameter), |truth| truth.start),
+            start: truth.map_or_else(|| balance.at(u, node.parameter, 0.0), |truth| truth.start),
             stable: floquet.map(|floquet| floquet.largest() < allowed),
             multipliers: floquet.map(|floquet| floquet.multipliers()),
             stuck: truth.map_or(0.0, |truth| truth.stuck),

@@ -551,7 +551,7 @@ impl<'a> Asked<'a> {
             undamped: self.driven.undamped,
             jumps: self.driven.jumps() > 0,
             by_map: !self.driven.is_balanced(),
-            harmonics: balance.harmonics,
+            harmonics: balance.core.harmonics,
             backbone: backbones(
                 &self.oscillator,
                 &self.driven,

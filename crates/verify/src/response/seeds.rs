@@ -76,13 +76,13 @@ impl Asked<'_> {
                 self.walk(&seeds, size).returns(&balance, path, self.surroundings())
             {
                 seeds.push(self.seed(&balance, &found, parameter));
-                size = size.max(balance.extent(&found));
+                size = size.max(balance.core.extent(&found));
             }
         }
         let widest = first
             .iter()
             .flat_map(|path| &path.nodes)
-            .map(|node| balance.extent(&node.coefficients));
+            .map(|node| balance.core.extent(&node.coefficients));
         size = widest.fold(size, f64::max);
         if !self.driven.undamped {
             for parameter in &values {
@@ -120,10 +120,10 @@ impl Asked<'_> {
         if !self.driven.is_balanced() {
             return None;
         }
-        let mut still = DVector::zeros(balance.size());
+        let mut still = DVector::zeros(balance.core.size());
         still[0] = place;
         let found = balance.solve(&still, parameter)?;
-        Some((self.seed(balance, &found, parameter), balance.extent(&found)))
+        Some((self.seed(balance, &found, parameter), balance.core.extent(&found)))
     }
 
     /// A motion of a balance to begin with.

@@ -234,10 +234,10 @@ impl<'a> PeriodMap<'a> {
             false => Matrix2::new(a, b, c, d),
         };
         let positions = shot.course.positions(SAMPLES);
-        let mut tangent = DVector::zeros(balance.size() + 1);
-        tangent[balance.size()] = shot.tangent[2];
+        let mut tangent = DVector::zeros(balance.core.size() + 1);
+        tangent[balance.core.size()] = shot.tangent[2];
         Node {
-            coefficients: balance.unknowns_of(&positions, frequency),
+            coefficients: balance.core.unknowns_of(&[&positions], frequency),
             parameter,
             tangent,
             orientation: 0.0,
@@ -256,7 +256,7 @@ impl<'a> PeriodMap<'a> {
 /// what drives it.
 fn cut_rest(balance: &Balance, path: &mut Path, size: f64) {
     const NOTHING: f64 = 1e-5;
-    let moves = |node: &Node| balance.extent(&node.coefficients) > NOTHING * size;
+    let moves = |node: &Node| balance.core.extent(&node.coefficients) > NOTHING * size;
     let Some(first) = path.nodes.iter().position(moves) else {
         path.nodes.clear();
         return;
@@ -337,7 +337,7 @@ impl Asked<'_> {
             if side == 0 {
                 path.nodes.reverse();
             }
-            let is_small = |node: &Node| balance.extent(&node.coefficients) <= SMALL * largest;
+            let is_small = |node: &Node| balance.core.extent(&node.coefficients) <= SMALL * largest;
             while path.nodes.len() > 2 && path.nodes.last().is_some_and(is_small) {
                 path.nodes.pop();
             }
@@ -400,8 +400,11 @@ impl Asked<'_> {
             return;
         };
         let [at, beside] = [nodes[skipped], nodes[skipped + 1]];
-        let map =
-            PeriodMap::new(self, balance.extent(&at.coefficients).max(0.1 * size), at.parameter);
+        let map = PeriodMap::new(
+            self,
+            balance.core.extent(&at.coefficients).max(0.1 * size),
+            at.parameter,
+        );
         let (last, inner) = (map.scaled(last, at.parameter), map.scaled(inner, beside.parameter));
         let direction = last - inner;
         let length = direction.norm();
@@ -441,7 +444,7 @@ impl Asked<'_> {
         let Some(truth) = node.truth else {
             return false;
         };
-        let size = balance.extent(&node.coefficients);
+        let size = balance.core.extent(&node.coefficients);
         paths.iter().any(|path| self.lies_on(balance, path, truth.start, node.parameter, size))
     }
 
@@ -482,7 +485,8 @@ impl Asked<'_> {
         to: &Node,
         part: f64,
     ) -> Option<Node> {
-        let size = balance.extent(&from.coefficients).max(balance.extent(&to.coefficients));
+        let size =
+            balance.core.extent(&from.coefficients).max(balance.core.extent(&to.coefficients));
         let map = PeriodMap::new(self, size, from.parameter);
         let [start, end] = [from, to].map(|node| map.scaled(node.begins(balance), node.parameter));
         let way = end - start;

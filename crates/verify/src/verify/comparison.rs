@@ -7,13 +7,12 @@
 use std::collections::BTreeMap;
 
 use super::backbone::TrueBackbone;
+use super::formula::{formula_frequency_along, numbers_or_reason};
 use super::orbit::TrueMotion;
 use super::reach::reach;
 use super::validity::{self, Reach};
-use super::{
-    Verdict, VerificationError, checked_numbers, formula_frequency_along, judge, largest_deviation,
-    meant, numbers_or_reason,
-};
+use super::values::checked_numbers;
+use super::{Verdict, VerificationError, judge, largest_deviation, meant};
 use crate::decimal::{decimal, significant};
 use crate::expr::Equation;
 use crate::method::homotopy_analysis::convergence_control;
@@ -22,7 +21,7 @@ use crate::method::{Options, Reason, Refusal, solve, with_resonance_at};
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
-use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY, Letters};
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, Letters};
 use crate::values::Values;
 
 /// A method that applies.
@@ -97,21 +96,6 @@ pub struct Comparison {
     pub validity: Vec<String>,
 }
 
-/// Why there is no table.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum ComparisonError {
-    /// No method applies, each for its reason; the message has that of the first.
-    #[error("no method applies{}", .0.first().map_or(String::new(), |first| format!(": {}", first.reason)))]
-    NoMethod(Vec<Refused>),
-    /// No curve of omega against the amplitude: why not, in words.
-    #[error("there is no curve of {omega} against the amplitude: {0}", omega = FREQUENCY)]
-    NoBackbone(&'static str),
-    /// There is no true motion to compare with.
-    #[error(transparent)]
-    Verification(#[from] VerificationError),
-}
-
 /// The variants of each method that are compared: the defaults, both orders of averaging, the three
 /// of driven multiple scales and, for homotopy perturbation, the first order as well.
 fn variants(oscillator: &Oscillator, small: Option<&str>) -> Vec<Options> {
@@ -163,18 +147,18 @@ pub fn compare(
     at: &Values,
     small: Option<&str>,
     tolerance: f64,
-) -> Result<Comparison, ComparisonError> {
+) -> Result<Comparison, VerificationError> {
     let _letters = oscillator.letters().in_force();
     // A force too long to be written out stops every method at the same place: once is enough.
     if let Err(error) = oscillator.parts() {
         let reason = Refusal::from(error);
         let refused = Method::ALL.map(|method| Refused { method, reason: reason.clone() });
-        return Err(ComparisonError::NoMethod(refused.into()));
+        return Err(VerificationError::NoMethod(refused.into()));
     }
     let (solutions, slow, mut refused) = answers(oscillator, at, small);
     let Some(first) = solutions.first() else {
         return match slow.is_empty() {
-            true => Err(ComparisonError::NoMethod(refused)),
+            true => Err(VerificationError::NoMethod(refused)),
             false => of_transients(oscillator, slow, refused, at, tolerance),
         };
     };
@@ -196,7 +180,7 @@ pub fn compare(
     let (true_motion, reason) = match super::meant_motion(oscillator, first, &meant, &numbers) {
         Ok(motion) => (Some(motion), None),
         Err(error) if error.leaves_the_truth_open() => (None, Some(error)),
-        Err(error) => return Err(error.into()),
+        Err(error) => return Err(error),
     };
     let at_amplitude = validity::backbone(oscillator, first, &numbers);
     let rows = solutions
@@ -313,7 +297,7 @@ fn driven(
     tolerance: f64,
     solutions: &[Solution],
     refused: Vec<Refused>,
-) -> Result<Comparison, ComparisonError> {
+) -> Result<Comparison, VerificationError> {
     let (mut rows, mut validity, mut frequency) = (Vec::new(), Vec::new(), None);
     for solution in solutions {
         let judged = super::judge(oscillator, solution, at, tolerance)?;
@@ -365,7 +349,7 @@ fn of_transients(
     refused: Vec<Refused>,
     at: &Values,
     tolerance: f64,
-) -> Result<Comparison, ComparisonError> {
+) -> Result<Comparison, VerificationError> {
     let (mut rows, mut truth, mut reason, mut validity) = (vec![], None, None, vec![]);
     for solution in slow {
         let judged = match judge(oscillator, &solution, at, tolerance) {
@@ -374,7 +358,7 @@ fn of_transients(
                 reason = Some(error);
                 continue;
             }
-            Err(error) => return Err(error.into()),
+            Err(error) => return Err(error),
         };
         truth = truth.or(Some(judged.true_frequency));
         if let (Some(followed), true) = (&judged.followed, validity.is_empty()) {
@@ -407,9 +391,7 @@ fn of_transients(
             refused,
             validity,
         }),
-        None => {
-            Err(reason.map_or(ComparisonError::NoMethod(refused), ComparisonError::Verification))
-        }
+        None => Err(reason.unwrap_or(VerificationError::NoMethod(refused))),
     }
 }
 
@@ -467,9 +449,9 @@ pub struct Backbone {
 pub fn backbones(
     oscillator: &Oscillator,
     comparison: &Comparison,
-) -> Result<(Backbone, Vec<Backbone>), ComparisonError> {
+) -> Result<(Backbone, Vec<Backbone>), VerificationError> {
     const POINTS: usize = 120;
-    let no_method = || ComparisonError::NoMethod(comparison.refused.clone());
+    let no_method = || VerificationError::NoMethod(comparison.refused.clone());
     let first = &comparison.rows.first().ok_or_else(no_method)?.solution;
     let missing = if first.slow().is_some() {
         Some("that of this motion changes; `derive --plot` draws it with its envelope")
@@ -483,7 +465,7 @@ pub fn backbones(
         None
     };
     if let Some(reason) = missing {
-        return Err(ComparisonError::NoBackbone(reason));
+        return Err(VerificationError::NoBackbone(reason));
     }
     let numbers = checked_numbers(first, &by_start(first, &comparison.at))?;
     let truth = validity::backbone(oscillator, first, &numbers);

@@ -26,8 +26,10 @@ use std::f64::consts::TAU;
 
 use super::largest::largest_over;
 use super::orbit::SAMPLES;
+use super::slope::slopes_of;
 use super::smaller::{is_small_in_amplitude, smaller};
-use super::{Motions, Verdict, Verification, VerificationError, checked_numbers, slopes_of};
+use super::values::checked_numbers;
+use super::{Motions, Verdict, Verification, VerificationError};
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
 use crate::method::numbers::symbol_values;

@@ -11,7 +11,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use super::validity::Range;
-use super::{Motions, Sample, Verdict, Verification, VerificationError, checked_numbers};
+use super::values::checked_numbers;
+use super::{Motions, Sample, Verdict, Verification, VerificationError};
 use crate::decimal::decimal;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};

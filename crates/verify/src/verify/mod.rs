@@ -23,46 +23,50 @@ mod bounds;
 pub mod comparison;
 pub(crate) mod convergence;
 mod driven;
+mod error;
+mod formula;
 mod free_motion;
 mod in_time;
 mod largest;
+mod motions;
 mod orbit;
 mod reach;
+mod slope;
 mod slow_motion;
 mod smaller;
 mod transient;
 pub mod validity;
+mod values;
 
 pub use convergence::{Singularity, converges, converges_everywhere, nearest_singularity};
 pub use driven::JudgedState;
+pub use error::VerificationError;
+pub use motions::{Motions, Sample, motions, true_motion};
 pub use transient::Followed;
 pub use validity::{Range, Reach};
+pub use values::{checked, needed_values};
 
 pub use crate::conservative::well::{End, Rim, Well};
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
+use self::formula::{cancellation, formula_frequency, numbers_or_reason, series_of_omega};
 use self::largest::largest_over;
-use self::orbit::{Meant, NearCycle, Physics, SAMPLES, TrueMotion, true_frequency};
-use crate::conservative::features::Features;
+use self::orbit::{Meant, NearCycle, Physics, SAMPLES, TrueMotion};
+use self::slope::slope;
+use self::values::{check_digits, checked_numbers};
 use crate::conservative::force::Force;
 use crate::decimal::{decimal, significant};
 use crate::exact::Doubles;
 use crate::exact::rational::from_f64;
-use crate::expr::{EvaluationError, Expr, ExprError, LostDigits};
-use crate::method::numbers::{
-    Known, NoNumbers, Numbers, evaluate, frequency_squared_along, half_a_period, law_name,
-    symbol_values,
-};
-use crate::numeric::period::PeriodError;
-use crate::numeric::return_map::NoLimitCycle;
-use crate::oscillator::{Oscillator, OscillatorError};
+use crate::expr::Expr;
+use crate::method::numbers::{NoNumbers, half_a_period, law_name, symbol_values};
+use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
 use crate::solution::{AmplitudeConvention, Note, Solution};
 use crate::symbol::Symbol;
-use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY};
-use crate::trajectory::TrajectoryError;
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC};
 use crate::values::Values;
 
 /// The error of the frequency below which a formula passes when the user names no tolerance: 1 %.
@@ -182,144 +186,6 @@ impl Verification {
             (None, ..) => None,
         }
     }
-}
-
-/// Why a formula could not be judged.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum VerificationError {
-    /// Values are missing.
-    #[error("to judge the formula, values are needed for: {}", .0.iter().map(|name| name.written()).collect::<Vec<_>>().join(", "))]
-    Missing(Vec<Symbol>),
-    /// A value for a symbol that does not occur.
-    #[error("`{name}` does not occur in the formula{}", letters_of(known))]
-    Unknown {
-        /// The name.
-        name: Symbol,
-        /// The names that do occur.
-        known: Vec<Symbol>,
-    },
-    /// An amplitude so large that the force has no digits there.
-    #[error(transparent)]
-    LostDigits(#[from] LostDigits),
-    /// The equation has no motion to compare with at these values.
-    #[error(transparent)]
-    Period(#[from] PeriodError),
-    /// The equation has no limit cycle to compare with at these values.
-    #[error(transparent)]
-    LimitCycle(#[from] NoLimitCycle),
-    /// The equation could not be taken apart.
-    #[error(transparent)]
-    Oscillator(#[from] OscillatorError),
-    /// The equation could not be evaluated.
-    #[error(transparent)]
-    Evaluation(#[from] EvaluationError),
-    /// The values do not fit the equation.
-    #[error(transparent)]
-    Expression(#[from] ExprError),
-    /// A motion whose amplitude changes.
-    #[error("the amplitude of the motion changes, so it has no period to be compared with")]
-    NotPeriodic,
-    /// A motion under drives whose frequencies have no ratio.
-    #[error(
-        "under drives whose frequencies have no ratio no motion repeats itself, and there is none to compare with"
-    )]
-    NeverRepeats,
-    /// The equation cannot be followed.
-    #[error(transparent)]
-    Trajectory(#[from] TrajectoryError),
-    /// A motion that ends where it begins.
-    #[error("the true motion cannot be followed past t = {}: a state or its rate has no value there", decimal(*time))]
-    NotFollowed {
-        /// When it ends.
-        time: f64,
-    },
-    /// A motion whose period alone is known.
-    #[error(
-        "Runge-Kutta does not follow the true motion, of which the energy tells the period alone: there is no path to compare with"
-    )]
-    NoPath,
-    /// A start off the limit cycle that a formula describes.
-    #[error(
-        "x(0) = {} is a start off the limit cycle, and this method describes the cycle alone",
-        AMPLITUDE
-    )]
-    OffCycle,
-    /// A motion that dies out or grows before it swings.
-    #[error("the true motion does not swing: it goes through its equilibrium less than twice")]
-    NoSwing,
-    /// A rate of the phase that is not positive at the start.
-    #[error("not real: the rate of the phase is not positive at the start")]
-    NoSlowFrequency,
-    /// The amplitude is zero, and at rest there is nothing to compare.
-    #[error(
-        "at amplitude zero the motion is rest: the formula gives the linear limit, which has nothing to be judged against"
-    )]
-    AtRest,
-}
-
-impl VerificationError {
-    /// Whether there may be a true motion all the same: it was not found, or could not be followed.
-    fn leaves_the_truth_open(&self) -> bool {
-        match self {
-            Self::Period(error) => matches!(
-                error,
-                PeriodError::Waves
-                    | PeriodError::NearSeparatrix { .. }
-                    | PeriodError::NoReturn(_)
-                    | PeriodError::Pole { .. }
-                    | PeriodError::Overflow { .. }
-                    | PeriodError::Quadrature(_)
-                    | PeriodError::Root(_)
-                    | PeriodError::Integration(_)
-            ),
-            Self::LimitCycle(_) => true,
-            _ => false,
-        }
-    }
-}
-
-/// The letters that there are, after "does not occur in the formula".
-fn letters_of(known: &[Symbol]) -> String {
-    let names: Vec<&str> = known.iter().map(|name| name.written()).collect();
-    match names.is_empty() {
-        true => ", which has no letters: it is judged without values, by `--tolerance 0.01` say"
-            .to_owned(),
-        false => format!("; it has: {}", names.join(", ")),
-    }
-}
-
-/// The symbols that need a value before `solution` can be judged.
-///
-/// ```
-/// # use lindstedt_verify as lindstedt;
-/// use lindstedt::{Options, Oscillator, solve};
-///
-/// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
-/// let solution = solve(&duffing, &Options::default())?;
-/// let names = lindstedt::verify::needed_values(&solution);
-/// assert!(names.contains(&"A".into()) && names.contains(&"eps".into()));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn needed_values(solution: &Solution) -> Vec<Symbol> {
-    let mut needed = solution.parameters.clone();
-    if solution.slow().is_some() {
-        // A motion that settles may be judged where it does.
-        if solution.on_cycle().is_none() {
-            needed.push(AmplitudeConvention::Initial.symbol());
-        }
-        return needed;
-    }
-    // A law such as omega^2 = 1 for x'' + x + x^2 = 0 is free of A where the true motion is not.
-    let linear = || {
-        let oscillator = Oscillator::from_equation(&solution.equation);
-        oscillator.is_ok_and(|oscillator| matches!(oscillator.polynomial_degree(), Ok(Some(0 | 1))))
-    };
-    let own = solution.limit_cycle.is_some() || solution.response.is_some();
-    if !own && (solution.depends_on_amplitude() || !linear()) {
-        needed.push(solution.amplitude.symbol());
-    }
-    needed
 }
 
 /// Judges `solution` at the values `at`.
@@ -534,34 +400,6 @@ fn in_convention_of(
     Ok(Some((values, in_words)))
 }
 
-/// The loss of digits of the verdict by cancellation, where the formula is summed far out.
-fn cancellation(
-    solution: &Solution,
-    numbers: &BTreeMap<Symbol, f64>,
-    found: Option<&Numbers>,
-    max_deviation: Option<f64>,
-) -> Vec<validity::Range> {
-    /// Relative errors of less are said to be less.
-    const SHOWN: f64 = 1e-9;
-    /// Deviations have three digits.
-    const OF_DEVIATION: f64 = 5e-4;
-    let said = |what: &str, rounding: f64, of: &str| validity::Range {
-        text: format!(
-            "terms of high order cancel here: rounding moves {what} by {} of {of}",
-            significant(rounding, 1)
-        ),
-        outside: false,
-    };
-    let law = found.map(|found| found.rounding).filter(|rounding| *rounding > SHOWN);
-    let value_of = |symbol: Symbol| numbers.get(&symbol).copied();
-    let motion = max_deviation.zip(solution.rounding_of_motion_at(&value_of));
-    let motion =
-        motion.filter(|(deviation, rounding)| *rounding > (OF_DEVIATION * deviation).max(SHOWN));
-    let law = law.map(|rounding| said(&format!("{FREQUENCY}^2"), rounding, "itself"));
-    let motion = motion.map(|(_, rounding)| said("the motion", rounding, "the amplitude"));
-    law.into_iter().chain(motion).collect()
-}
-
 /// An error where the amplitude of a free motion changes.
 fn periodic(solution: &Solution) -> Result<(), VerificationError> {
     let slow = solution.modulation.as_ref().filter(|_| solution.limit_cycle.is_none());
@@ -581,275 +419,6 @@ fn off_cycle(solution: &Solution, at: &Values) -> Option<Solution> {
 fn on_cycle(solution: &Solution, at: &Values) -> Option<Solution> {
     let started = at.get(AmplitudeConvention::Initial.symbol()).is_some();
     solution.slow().filter(|_| !started).and_then(|_| solution.on_cycle())
-}
-
-/// What the amplitude among the values is called: that of the start, where it changes.
-fn amplitude_symbol(solution: &Solution) -> Symbol {
-    match solution.slow() {
-        Some(_) => AmplitudeConvention::Initial.symbol(),
-        None => solution.amplitude.symbol(),
-    }
-}
-
-/// Whether a formula can be judged at these values.
-///
-/// # Errors
-/// Missing or unknown values, or an amplitude of zero.
-pub fn checked(solution: &Solution, at: &Values) -> Result<(), VerificationError> {
-    checked_numbers(solution, at).map(|_| ())
-}
-
-/// Refuses an amplitude at which the force has no digits left. The distance from the equilibrium
-/// counts, which is exact where the equilibrium is.
-///
-/// # Errors
-/// [`LostDigits`].
-fn check_digits(
-    oscillator: &Oscillator,
-    solution: &Solution,
-    numbers: &BTreeMap<Symbol, f64>,
-) -> Result<(), VerificationError> {
-    let coordinate = oscillator.coordinate;
-    let Some(amplitude) = numbers.get(&amplitude_symbol(solution)).copied() else {
-        return Ok(());
-    };
-    let moved = Expr::from(coordinate) + solution.equilibrium.clone();
-    let Ok(force) = oscillator.force.substitute(coordinate, &moved) else {
-        return Ok(());
-    };
-    let mut there = numbers.clone();
-    there.insert(coordinate, amplitude);
-    there.extend([oscillator.velocity(), Symbol::new("t")].map(|name| (name, 0.0)));
-    let of_amplitude = |lost: LostDigits| LostDigits { name: amplitude_symbol(solution), ..lost };
-    Ok(force.check_digits(&there, &[coordinate]).map_err(of_amplitude)?)
-}
-
-/// The values as numbers.
-///
-/// # Errors
-/// Missing or unknown values, or an amplitude of zero.
-fn checked_numbers(
-    solution: &Solution,
-    at: &Values,
-) -> Result<BTreeMap<Symbol, f64>, VerificationError> {
-    let needed = needed_values(solution);
-    let mut known = solution.parameters.clone();
-    if solution.response.is_none() || solution.in_time().is_some() {
-        known.push(amplitude_symbol(solution));
-    }
-    let start = AmplitudeConvention::Initial.symbol();
-    if solution.limit_cycle.is_some() && !known.contains(&start) && at.get(start).is_some() {
-        return Err(VerificationError::OffCycle);
-    }
-    if let Some((name, _)) = at.iter().find(|(name, _)| !known.contains(name)) {
-        return Err(VerificationError::Unknown { name, known });
-    }
-    let missing: Vec<Symbol> = needed.into_iter().filter(|&name| at.get(name).is_none()).collect();
-    if !missing.is_empty() {
-        return Err(VerificationError::Missing(missing));
-    }
-    // Where the frequency does not depend on the amplitude, any will do to compare the motion.
-    let amplitude_symbol = amplitude_symbol(solution);
-    let numbers = at.with(amplitude_symbol, at.get(amplitude_symbol).unwrap_or(1.0));
-    let may_rest = solution.limit_cycle.is_some() || solution.in_time().is_some();
-    if !may_rest && numbers[&amplitude_symbol] == 0.0 {
-        return Err(VerificationError::AtRest);
-    }
-    Ok(numbers)
-}
-
-/// Time, displacement and velocity, in the units of the equation.
-pub type Sample = (f64, f64, f64);
-
-/// The motion by the formula and the true one, at the same instants of one true period.
-pub struct Motions {
-    /// By the formula.
-    pub formula: Vec<Sample>,
-    /// By Runge-Kutta.
-    pub truth: Vec<Sample>,
-    /// Motions whose amplitude changes: times and places of its two envelopes by the formula.
-    pub envelope: Option<[Vec<(f64, f64)>; 2]>,
-}
-
-/// The motion by the formula and the true one, at the same instants of one true period, or as long
-/// as a motion that is not periodic is judged; `None` where the formula's frequency is not real.
-///
-/// # Errors
-/// As for [`judge`].
-///
-/// ```
-/// # use lindstedt_verify as lindstedt;
-/// use lindstedt::{Options, Oscillator, solve, verify::motions};
-///
-/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
-/// let solution = solve(&pendulum, &Options::default())?;
-/// let sampled = motions(&pendulum, &solution, &"A = 1/10".parse()?)?.ok_or("no real frequency")?;
-/// let pairs = sampled.formula.iter().zip(&sampled.truth);
-/// assert!(pairs.map(|(formula, truth)| (formula.1 - truth.1).abs()).all(|difference| difference < 1e-5));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn motions(
-    oscillator: &Oscillator,
-    solution: &Solution,
-    at: &Values,
-) -> Result<Option<Motions>, VerificationError> {
-    if let Some(relative) = in_another_coordinate(oscillator, solution)? {
-        return motions(&relative, solution, at);
-    }
-    if let Some(motion) = solution.in_time() {
-        return in_time::motions(oscillator, solution, motion, at).map(Some);
-    }
-    if let Some(response) = &solution.response {
-        repeats(solution)?;
-        return driven::motions(oscillator, solution, response, at);
-    }
-    if let Some(moving) = off_cycle(solution, at) {
-        return motions(oscillator, &moving, at);
-    }
-    let numbers = numbers_of_motion(solution, at);
-    let settled = on_cycle(solution, at);
-    if let (Some(slow), None) = (solution.slow(), &settled) {
-        return transient::motions(oscillator, solution, slow, &numbers).map(Some);
-    }
-    let solution = settled.as_ref().unwrap_or(solution);
-    let truth = true_path(oscillator, solution, &numbers)?;
-    let Some((frequency, motion)) = formula_motion(oscillator, solution, &numbers) else {
-        return Ok(None);
-    };
-    let velocity = motion.derivative();
-    let formula =
-        |t: f64| (t, motion.evaluate(frequency * t), frequency * velocity.evaluate(frequency * t));
-    Ok(Some(Motions {
-        formula: instants(&truth).map(formula).collect(),
-        truth: samples_of(&truth),
-        envelope: None,
-    }))
-}
-
-/// The true motion that an answer is about, over one period, whether its formula has a value there
-/// or not; the answer is one of a periodic motion without a drive.
-///
-/// # Errors
-/// As for [`judge`].
-///
-/// ```
-/// # use lindstedt_verify as lindstedt;
-/// use lindstedt::{Options, Oscillator, solve, verify::true_motion};
-///
-/// let pendulum = Oscillator::parse("x'' + sin(x) = 0")?;
-/// let solution = solve(&pendulum, &Options { order: Some(2), ..Options::default() })?;
-/// // omega^2 = 1 - A^2/8 is negative there.
-/// let samples = true_motion(&pendulum, &solution, &"A = 3".parse()?)?;
-/// assert!(samples.last().is_some_and(|(period, ..)| (period - 16.155).abs() < 1e-3));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn true_motion(
-    oscillator: &Oscillator,
-    solution: &Solution,
-    at: &Values,
-) -> Result<Vec<Sample>, VerificationError> {
-    let numbers = numbers_of_motion(solution, at);
-    let settled = on_cycle(solution, at);
-    let solution = settled.as_ref().unwrap_or(solution);
-    true_path(oscillator, solution, &numbers).map(|truth| samples_of(&truth))
-}
-
-/// The values as numbers, the amplitude 1 where it is left out.
-fn numbers_of_motion(solution: &Solution, at: &Values) -> BTreeMap<Symbol, f64> {
-    let symbol = amplitude_symbol(solution);
-    at.with(symbol, at.get(symbol).unwrap_or(1.0))
-}
-
-/// The true motion, with its path.
-fn true_path(
-    oscillator: &Oscillator,
-    solution: &Solution,
-    numbers: &BTreeMap<Symbol, f64>,
-) -> Result<TrueMotion, VerificationError> {
-    let meant = meant(oscillator, solution, numbers);
-    let truth = meant_motion(oscillator, solution, &meant, numbers)?;
-    match truth.has_path() {
-        true => Ok(truth),
-        false => Err(VerificationError::NoPath),
-    }
-}
-
-/// The instants at which a motion is sampled, over one period.
-fn instants(truth: &TrueMotion) -> impl Iterator<Item = f64> {
-    let period = truth.period();
-    (0..=SAMPLES).map(move |k| period * k as f64 / SAMPLES as f64)
-}
-
-fn samples_of(truth: &TrueMotion) -> Vec<Sample> {
-    instants(truth).map(|t| truth.sample(t)).collect()
-}
-
-/// omega by the formula: the root of omega^2, `None` where that is not positive.
-fn formula_frequency(
-    oscillator: &Oscillator,
-    solution: &Solution,
-    numbers: &BTreeMap<Symbol, f64>,
-) -> Option<f64> {
-    formula_frequency_along(oscillator, solution, numbers, &Known::default())
-}
-
-/// As [`formula_frequency`] for one amplitude after the other, all else being the same.
-fn formula_frequency_along(
-    oscillator: &Oscillator,
-    solution: &Solution,
-    numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
-) -> Option<f64> {
-    let squared = frequency_squared_along(oscillator, solution, numbers, known).ok()?;
-    (squared > 0.0 && squared.is_finite()).then(|| squared.sqrt())
-}
-
-/// The numbers of a formula whose frequency is real, or why there are none.
-fn numbers_or_reason(
-    oscillator: &Oscillator,
-    solution: &Solution,
-    numbers: &BTreeMap<Symbol, f64>,
-) -> (Option<Numbers>, Option<NoNumbers>) {
-    match evaluate(oscillator, solution, numbers) {
-        Ok(found) if found.frequency_squared > 0.0 && found.frequency_squared.is_finite() => {
-            (Some(found), None)
-        }
-        Ok(_) => (None, Some(NoNumbers::not_positive(solution))),
-        Err(NoNumbers::NoValue | NoNumbers::Undefined { .. })
-            if law_overflows(solution, numbers) =>
-        {
-            let law = law_name(solution);
-            (None, Some(NoNumbers::LawBeyond { law }))
-        }
-        Err(reason) => (None, Some(reason)),
-    }
-}
-
-/// Whether the law has no value because a part of it is larger than any number.
-fn law_overflows(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> bool {
-    let law = match (solution.law.closed_form(), solution.law.frequency_squared()) {
-        (Some(form), _) => form.value.clone(),
-        (None, Some(squared)) => Expr::from(squared),
-        (None, None) => return false,
-    };
-    law.overflow(numbers).is_some()
-}
-
-/// omega by its own series, where the formula has one of omega^2 as well.
-fn series_of_omega(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
-    solution.law.frequency_squared()?;
-    let series = solution.law.frequency()?;
-    solution.evaluate(series, &|symbol| numbers.get(&symbol).copied()).ok()
-}
-
-/// omega, the motion by the formula in theta, and what was chosen for it.
-fn formula_motion(
-    oscillator: &Oscillator,
-    solution: &Solution,
-    numbers: &BTreeMap<Symbol, f64>,
-) -> Option<(f64, FourierSeries<Doubles>)> {
-    let found = evaluate(oscillator, solution, numbers).ok()?;
-    Some((found.frequency_squared.sqrt(), found.motion?))
 }
 
 /// Which true motion an answer is meant for.
@@ -967,96 +536,4 @@ fn residual(physics: &Physics, frequency: f64, motion: &FourierSeries<Doubles>) 
         forces += force * force;
     }
     (defects / forces).sqrt()
-}
-
-/// The exponent with which the error of the frequency vanishes: the small parameter is halved until
-/// rounding begins to matter, and the slopes between halvings, which approach their limit linearly,
-/// are carried on to zero.
-fn slope(
-    oscillator: &Oscillator,
-    solution: &Solution,
-    numbers: &BTreeMap<Symbol, f64>,
-) -> Option<f64> {
-    const HALVINGS: i32 = 12;
-    // Motions over several wells do not become small.
-    if validity::is_over_several_wells(oscillator, solution, numbers) {
-        return None;
-    }
-    let varied = with_small_parameter(oscillator, solution, numbers);
-    let (oscillator, solution, numbers) = match &varied {
-        Some((oscillator, solution, numbers)) => (oscillator, solution, numbers),
-        None => (oscillator, solution, numbers),
-    };
-    // The truth is good to 1e-15 by quadrature, 1e-12 by one in pieces and 1e-11 by Runge-Kutta: an
-    // error hundreds of times that is measured to less than a per cent.
-    let conservative = oscillator.of_position_alone();
-    let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
-    let equilibrium = solution.equilibrium.evaluate(numbers).unwrap_or(0.0);
-    let features = Features::new(&oscillator.force, oscillator.coordinate, numbers);
-    let pieces = !features.cuts(equilibrium - amplitude, equilibrium + amplitude).is_empty();
-    let floor = match (conservative, pieces) {
-        (true, false) => 2e-13,
-        (true, true) => 1e-10,
-        (false, _) => 1e-8,
-    };
-    let formula_at = |factor: f64| {
-        let mut numbers = numbers.clone();
-        for small in solution.small_parameters() {
-            *numbers.get_mut(&small)? *= factor;
-        }
-        Some((formula_frequency(oscillator, solution, &numbers)?, numbers))
-    };
-    let error = |halving: i32| {
-        let factor = 0.5_f64.powi(halving);
-        let (formula, numbers) = formula_at(factor)?;
-        let truth =
-            true_frequency(oscillator, &meant(oscillator, solution, &numbers), &numbers).ok()?;
-        let error = (formula / truth - 1.0).abs();
-        // A closed form such as (cos(A) - 1)/A^2 loses digits at small amplitudes: what a change of
-        // the last bits does to it is no error of the formula.
-        let shakes = if solution.law.closed_form().is_some() { 4 } else { 0 };
-        let shaken = (1..=shakes).filter_map(|k| formula_at(factor * (1.0 + f64::from(k) * 1e-14)));
-        let noise = shaken.map(|(shaken, _)| (shaken / formula - 1.0).abs()).fold(0.0, f64::max);
-        Some(if error > 100.0 * noise { error } else { 0.0 })
-    };
-    let errors: Vec<f64> =
-        (0..HALVINGS).filter_map(error).take_while(|error| *error >= floor).collect();
-    slopes_of(&errors)
-}
-
-/// The exponent of errors of which each belongs to half of what the one before does: the slopes
-/// between them, which approach their limit linearly, carried on to zero.
-fn slopes_of(errors: &[f64]) -> Option<f64> {
-    let slopes: Vec<f64> = errors.windows(2).map(|pair| (pair[0] / pair[1]).log2()).collect();
-    match *slopes.as_slice() {
-        [.., before, last] if (last - before).abs() < 0.5 => Some(2.0 * last - before),
-        [.., last] => Some(last),
-        [] => None,
-    }
-}
-
-/// Where the small parameter marks terms with numbers before them: the equation with that parameter
-/// in it, so that it can be varied. What is not the linear restoring force is multiplied by
-/// `delta / value`.
-fn with_small_parameter(
-    oscillator: &Oscillator,
-    solution: &Solution,
-    numbers: &BTreeMap<Symbol, f64>,
-) -> Option<(Oscillator, Solution, BTreeMap<Symbol, f64>)> {
-    let delta = solution.small_parameter;
-    let own = solution.definitions.iter().find(|definition| definition.symbol == delta)?;
-    let known = solution.definitions.iter();
-    let known = known.map(|definition| (definition.symbol, definition.meaning.clone())).collect();
-    let stiffness = Expr::from(&solution.leading(solution.law.frequency_squared()?));
-    let stiffness = stiffness.substitute_all(&known).ok()?;
-    let linear = &stiffness * &(&Expr::from(oscillator.coordinate) - &solution.equilibrium);
-    let factor = Expr::divide(&Expr::from(delta), &own.meaning).ok()?;
-    let (mut oscillator, mut varied, mut numbers) =
-        (oscillator.clone(), solution.clone(), numbers.clone());
-    oscillator.force = &linear + &(&factor * &(&oscillator.force - &linear));
-    oscillator.parameters.push(delta);
-    varied.definitions.retain(|definition| definition.symbol != delta);
-    varied.parameters.push(delta);
-    numbers.insert(delta, own.meaning.evaluate(&BTreeMap::new()).ok()?);
-    Some((oscillator, varied, numbers))
 }

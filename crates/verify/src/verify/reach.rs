@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 
 use super::backbone::TrueBackbone;
-use super::formula_frequency_along;
+use super::formula::formula_frequency_along;
 use crate::conservative::features::Features;
 use crate::decimal::significant;
 use crate::expr::Expr;

@@ -22,10 +22,11 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use super::free_motion::{FreeMotion, Start};
+use super::slope::slopes_of;
 use super::slow_motion::{LOOKS, SlowMotion};
 use super::smaller::{is_small_in_amplitude, smaller};
 use super::validity::Range;
-use super::{Motions, Sample, Verdict, Verification, VerificationError, slopes_of};
+use super::{Motions, Sample, Verdict, Verification, VerificationError};
 use crate::decimal::decimal;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};

@@ -102,7 +102,7 @@ pub(super) fn of_equation(
     let text = well.in_words(solution.amplitude.symbol(), oscillator.coordinate);
     // Past the edge of one well the motion may still be periodic, over several.
     let over_all = beyond
-        && super::true_frequency(oscillator, &meant(oscillator, solution, numbers), numbers)
+        && super::orbit::true_frequency(oscillator, &meant(oscillator, solution, numbers), numbers)
             .is_ok();
     Some(match over_all {
         true => Range {

@@ -19,7 +19,8 @@ mod events;
 mod single;
 
 pub(super) use events::follow;
-pub use single::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation, true_impact};
+pub(super) use single::way_forward;
+pub use single::{Deviation, TrueImpact, assured_impact, deviation, true_impact};
 
 /// A coordinate z in which a motion is followed: x = origin + sign z.
 #[derive(Debug, Clone, Copy)]

@@ -14,14 +14,13 @@
 //! energy of the flights alone is watched. Nothing of the closed form enters: no frequency law, no
 //! line.
 
-use thiserror::Error;
-
 use super::Coordinate;
 use crate::impact::collision::{Collision, CollisionError};
+use crate::impact::error::ImpactError;
 use crate::impact::linearisation::{greatest_depth, work};
 use crate::impact::phases::ThreePhases;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
-use crate::numeric::ode::{self, Event, IntegrationError, StopReason, Trajectory, integrate};
+use crate::numeric::ode::{self, Event, StopReason, Trajectory, integrate};
 
 /// One impact as it happens, from release to the next turning point.
 #[derive(Debug, Clone)]
@@ -64,36 +63,8 @@ pub struct Deviation {
     pub aligned: [f64; 3],
 }
 
-/// Why there is no true motion.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum TrueImpactError {
-    /// Nothing hits the barrier.
-    #[error(transparent)]
-    Collision(#[from] CollisionError),
-    /// The run gave up.
-    #[error("the true motion could not be followed to the end of the impact: {}", way_forward(.0))]
-    Stopped(StopReason),
-    /// Closer steps give another motion, as close as doubles allow.
-    #[error(
-        "the true motion is not known to six digits, closer steps change it by {change:.0e}: double precision cannot tell \
-         apart motions that start so near the top of the swing or turn so near the barrier; lower the amplitude, or move the \
-         barrier"
-    )]
-    NotSettled {
-        /// By how much, relative to the quantity that changes most.
-        change: f64,
-    },
-    /// The run could not begin.
-    #[error(transparent)]
-    Integration(#[from] IntegrationError),
-    /// The energy could not be evaluated.
-    #[error("the energy of the true motion could not be evaluated: {0}")]
-    Energy(#[from] QuadratureError),
-}
-
 /// Why the run gave up, and what to change in a problem.
-fn way_forward(reason: &StopReason) -> String {
+pub(in crate::impact) fn way_forward(reason: &StopReason) -> String {
     match reason {
         StopReason::MaximumSteps { time } => {
             format!(
@@ -115,7 +86,7 @@ fn way_forward(reason: &StopReason) -> String {
 /// large the absolute one is.
 ///
 /// # Errors
-/// [`TrueImpactError`]: the barrier is not reached, or the run ends early and says why.
+/// [`ImpactError`]: the barrier is not reached, or the run ends early and says why.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -133,12 +104,12 @@ fn way_forward(reason: &StopReason) -> String {
 /// let truth = true_impact(&pendulum, &Options::with_tolerance(1e-12))?;
 /// let by_energy = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();
 /// assert!((truth.touch.v - by_energy).abs() < 1e-10 && truth.energy_drift < 1e-9);
-/// # Ok::<(), lindstedt::impact::TrueImpactError>(())
+/// # Ok::<(), lindstedt::impact::ImpactError>(())
 /// ```
 pub fn true_impact(
     collision: &Collision,
     options: &ode::Options,
-) -> Result<TrueImpact, TrueImpactError> {
+) -> Result<TrueImpact, ImpactError> {
     let &Collision { release, barrier, stiffness, restoring_force, elastic_force, damping } =
         collision;
     if barrier <= release {
@@ -169,7 +140,7 @@ pub fn true_impact(
         &at_scale(options, size),
     )?;
     let StopReason::Event { .. } = contact.stop_reason() else {
-        return Err(TrueImpactError::Stopped(contact.stop_reason()));
+        return Err(ImpactError::Stopped(contact.stop_reason()));
     };
     let turn = contact.occurrences().iter().find(|found| found.event == 1);
     // A graze too shallow for a turning point in doubles: touch, turn and exit are one.
@@ -203,7 +174,7 @@ fn energy_drift(
     approach: &Trajectory,
     contact: &Trajectory,
     back: Option<&Trajectory>,
-) -> Result<f64, TrueImpactError> {
+) -> Result<f64, ImpactError> {
     let &Collision { release, barrier, stiffness, restoring_force, elastic_force, .. } = collision;
     // Counted from the barrier: the energy at release is the kinetic energy at touch.
     let potential = |to: f64| {
@@ -239,7 +210,7 @@ fn approach(
     swing: impl Fn(f64, f64, f64) -> f64,
     [release, barrier]: [f64; 2],
     options: &ode::Options,
-) -> Result<Trajectory, TrueImpactError> {
+) -> Result<Trajectory, ImpactError> {
     // Counted from the release: near the top of the swing every digit of the distance to it
     // matters.
     let released = Coordinate { sign: 1.0, origin: release };
@@ -258,7 +229,7 @@ fn approach(
             barrier,
         }
         .into()),
-        reason => Err(TrueImpactError::Stopped(reason)),
+        reason => Err(ImpactError::Stopped(reason)),
     }
 }
 
@@ -268,14 +239,14 @@ fn way_back(
     barrier: f64,
     exit: ode::State,
     options: &ode::Options,
-) -> Result<Trajectory, TrueImpactError> {
+) -> Result<Trajectory, ImpactError> {
     let outwards = Coordinate { sign: -1.0, origin: barrier };
     let start = ode::State { t: 0.0, x: 0.0, v: -exit.v };
     let events = [Event::stop(|_: f64, _: f64, v: f64| v).falling()];
     let back = integrate(outwards.flight(swing), start, LONGEST_TIME, &events, options)?;
     match back.stop_reason() {
         StopReason::Event { .. } => Ok(back),
-        reason => Err(TrueImpactError::Stopped(reason)),
+        reason => Err(ImpactError::Stopped(reason)),
     }
 }
 
@@ -308,7 +279,7 @@ const TIGHTEST: f64 = 1e-14;
 /// where they differ the next one is closer.
 ///
 /// # Errors
-/// As [`true_impact`], and [`TrueImpactError::NotSettled`] where double precision does not know six
+/// As [`true_impact`], and [`ImpactError::NotSettled`] where double precision does not know six
 /// digits.
 ///
 /// ```
@@ -326,12 +297,12 @@ const TIGHTEST: f64 = 1e-14;
 /// };
 /// let truth = assured_impact(&pendulum, &Options::default())?;
 /// assert!((truth.penetration / 0.005446775 - 1.0).abs() < 1e-6); // rad
-/// # Ok::<(), lindstedt::impact::TrueImpactError>(())
+/// # Ok::<(), lindstedt::impact::ImpactError>(())
 /// ```
 pub fn assured_impact(
     collision: &Collision,
     options: &ode::Options,
-) -> Result<TrueImpact, TrueImpactError> {
+) -> Result<TrueImpact, ImpactError> {
     let with = |tolerance: f64| {
         let options = ode::Options {
             relative_tolerance: tolerance,
@@ -355,7 +326,7 @@ pub fn assured_impact(
             return Ok(if is_last { motion } else { other });
         }
         if is_last {
-            return Err(TrueImpactError::NotSettled { change });
+            return Err(ImpactError::NotSettled { change });
         }
         (tolerance, motion) = (closer, other);
     }
@@ -457,6 +428,7 @@ fn largest(from: f64, to: f64, function: impl Fn(f64) -> f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::impact::error::ImpactError;
     use crate::impact::hertz::{Design, elastic_force};
     use crate::impact::linearisation::Rule;
     use crate::impact::phases::{ContactSpeed, Swing, three_phases};
@@ -620,23 +592,23 @@ mod tests {
         };
         let refused = run(0.3, 0.323);
         assert!(
-            matches!(refused, TrueImpactError::Collision(CollisionError::NeverReaches { furthest, .. }) if (furthest - 0.3).abs() < 1e-8),
+            matches!(refused, ImpactError::Collision(CollisionError::NeverReaches { furthest, .. }) if (furthest - 0.3).abs() < 1e-8),
             "{refused}"
         );
         assert!(matches!(
             run(1.5, -1.5),
-            TrueImpactError::Collision(CollisionError::ReleasedBehindBarrier { .. })
+            ImpactError::Collision(CollisionError::ReleasedBehindBarrier { .. })
         ));
-        assert!(matches!(run(f64::NAN, 0.3), TrueImpactError::Integration(_)));
+        assert!(matches!(run(f64::NAN, 0.3), ImpactError::Integration(_)));
         let few = Options { maximum_steps: 5, ..Options::default() };
         let refused = true_impact(&collision(1.5, 0.323, 1e6), &few).unwrap_err();
         assert!(
-            matches!(refused, TrueImpactError::Stopped(StopReason::MaximumSteps { .. })),
+            matches!(refused, ImpactError::Stopped(StopReason::MaximumSteps { .. })),
             "{refused}"
         );
         // At rest on top: it never gets anywhere.
         let still = Collision { restoring_force: &|_| 0.0, ..collision(1.0, 0.3, 1.0) };
         let refused = true_impact(&still, &Options::default()).unwrap_err();
-        assert!(matches!(refused, TrueImpactError::Stopped(StopReason::EndReached)), "{refused}");
+        assert!(matches!(refused, ImpactError::Stopped(StopReason::EndReached)), "{refused}");
     }
 }

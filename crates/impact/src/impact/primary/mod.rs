@@ -38,7 +38,7 @@ use crate::system::SystemError;
 
 pub use follow::simulate_primary;
 pub use linear::{Alone, Others};
-pub use parameter::{PrimaryParameter, UnknownPrimaryParameter};
+pub use parameter::PrimaryParameter;
 pub use path::PrimaryState;
 pub use si::MainMass;
 pub use sweep::{PrimaryRow, sweep_primary};
@@ -191,7 +191,7 @@ pub struct PrimaryMotion {
     path: PrimaryPath,
 }
 
-/// Why there is nothing to follow.
+/// Why there is nothing to follow, or nothing to vary.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PrimaryError {
@@ -222,6 +222,37 @@ pub enum PrimaryError {
     /// No time to follow it.
     #[error("the duration must be a positive number, not {0}")]
     Duration(f64),
+    /// No parameter that a sweep may vary has this name.
+    #[error(
+        "there is no parameter `{name}` of a main mass to sweep: choose one of {}",
+        PrimaryParameter::all().map(PrimaryParameter::name).collect::<Vec<_>>().join(", ")
+    )]
+    UnknownName {
+        /// The name.
+        name: String,
+        /// The known name that is nearest to it.
+        nearest: Option<&'static str>,
+    },
+    /// Two sections have a key of this name.
+    #[error("`{name}` is a key of two sections: write {}", .names.join(" or "))]
+    AmbiguousName {
+        /// The name.
+        name: String,
+        /// The names that tell them apart.
+        names: Vec<&'static str>,
+    },
+}
+
+impl PrimaryError {
+    /// The known name that may have been meant, as advice.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::UnknownName { nearest, .. } => {
+                nearest.map(|name| format!("did you mean `{name}`?"))
+            }
+            _ => None,
+        }
+    }
 }
 
 impl PrimaryCase {

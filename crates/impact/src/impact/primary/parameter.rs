@@ -6,8 +6,7 @@
 
 use std::str::FromStr;
 
-use thiserror::Error;
-
+use super::PrimaryError;
 use crate::impact::Parameter;
 use crate::spelling::nearest;
 
@@ -114,45 +113,10 @@ impl PrimaryParameter {
     }
 }
 
-/// A name that is not that of one parameter.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum UnknownPrimaryParameter {
-    /// No parameter has this name.
-    #[error(
-        "there is no parameter `{name}` of a main mass to sweep: choose one of {}",
-        PrimaryParameter::all().map(PrimaryParameter::name).collect::<Vec<_>>().join(", ")
-    )]
-    Unknown {
-        /// The name.
-        name: String,
-        /// The known name that is nearest to it.
-        nearest: Option<&'static str>,
-    },
-    /// Two sections have a key of this name.
-    #[error("`{name}` is a key of two sections: write {}", .names.join(" or "))]
-    Ambiguous {
-        /// The name.
-        name: String,
-        /// The names that tell them apart.
-        names: Vec<&'static str>,
-    },
-}
-
-impl UnknownPrimaryParameter {
-    /// The known name that may have been meant, as advice.
-    pub fn help(&self) -> Option<String> {
-        match self {
-            Self::Unknown { nearest, .. } => nearest.map(|name| format!("did you mean `{name}`?")),
-            Self::Ambiguous { .. } => None,
-        }
-    }
-}
-
 impl FromStr for PrimaryParameter {
-    type Err = UnknownPrimaryParameter;
+    type Err = PrimaryError;
 
-    fn from_str(name: &str) -> Result<Self, UnknownPrimaryParameter> {
+    fn from_str(name: &str) -> Result<Self, PrimaryError> {
         let is_meant = |parameter: &Self| {
             let (section, key) = parameter.key();
             name == key || name.strip_suffix(key).is_some_and(|rest| rest == format!("{section}."))
@@ -160,11 +124,11 @@ impl FromStr for PrimaryParameter {
         let meant: Vec<Self> = Self::all().filter(is_meant).collect();
         match meant[..] {
             [parameter] => Ok(parameter),
-            [] => Err(UnknownPrimaryParameter::Unknown {
+            [] => Err(PrimaryError::UnknownName {
                 name: name.to_owned(),
                 nearest: nearest(name, Self::all().map(Self::name)),
             }),
-            _ => Err(UnknownPrimaryParameter::Ambiguous {
+            _ => Err(PrimaryError::AmbiguousName {
                 name: name.to_owned(),
                 names: meant.into_iter().map(Self::name).collect(),
             }),

@@ -1,0 +1,122 @@
+//! Why a formula could not be judged.
+
+use super::comparison::Refused;
+use crate::decimal::decimal;
+use crate::expr::{EvaluationError, ExprError, LostDigits};
+use crate::numeric::period::PeriodError;
+use crate::numeric::return_map::NoLimitCycle;
+use crate::oscillator::OscillatorError;
+use crate::symbol::Symbol;
+use crate::symbol::letters::{AMPLITUDE, FREQUENCY};
+use crate::trajectory::TrajectoryError;
+
+/// Why a formula could not be judged, or formulas not compared.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum VerificationError {
+    /// Values are missing.
+    #[error("to judge the formula, values are needed for: {}", .0.iter().map(|name| name.written()).collect::<Vec<_>>().join(", "))]
+    Missing(Vec<Symbol>),
+    /// A value for a symbol that does not occur.
+    #[error("`{name}` does not occur in the formula{}", letters_of(known))]
+    Unknown {
+        /// The name.
+        name: Symbol,
+        /// The names that do occur.
+        known: Vec<Symbol>,
+    },
+    /// An amplitude so large that the force has no digits there.
+    #[error(transparent)]
+    LostDigits(#[from] LostDigits),
+    /// The equation has no motion to compare with at these values.
+    #[error(transparent)]
+    Period(#[from] PeriodError),
+    /// The equation has no limit cycle to compare with at these values.
+    #[error(transparent)]
+    LimitCycle(#[from] NoLimitCycle),
+    /// The equation could not be taken apart.
+    #[error(transparent)]
+    Oscillator(#[from] OscillatorError),
+    /// The equation could not be evaluated.
+    #[error(transparent)]
+    Evaluation(#[from] EvaluationError),
+    /// The values do not fit the equation.
+    #[error(transparent)]
+    Expression(#[from] ExprError),
+    /// A motion whose amplitude changes.
+    #[error("the amplitude of the motion changes, so it has no period to be compared with")]
+    NotPeriodic,
+    /// A motion under drives whose frequencies have no ratio.
+    #[error(
+        "under drives whose frequencies have no ratio no motion repeats itself, and there is none to compare with"
+    )]
+    NeverRepeats,
+    /// The equation cannot be followed.
+    #[error(transparent)]
+    Trajectory(#[from] TrajectoryError),
+    /// A motion that ends where it begins.
+    #[error("the true motion cannot be followed past t = {}: a state or its rate has no value there", decimal(*time))]
+    NotFollowed {
+        /// When it ends.
+        time: f64,
+    },
+    /// A motion whose period alone is known.
+    #[error(
+        "Runge-Kutta does not follow the true motion, of which the energy tells the period alone: there is no path to compare with"
+    )]
+    NoPath,
+    /// A start off the limit cycle that a formula describes.
+    #[error(
+        "x(0) = {} is a start off the limit cycle, and this method describes the cycle alone",
+        AMPLITUDE
+    )]
+    OffCycle,
+    /// A motion that dies out or grows before it swings.
+    #[error("the true motion does not swing: it goes through its equilibrium less than twice")]
+    NoSwing,
+    /// A rate of the phase that is not positive at the start.
+    #[error("not real: the rate of the phase is not positive at the start")]
+    NoSlowFrequency,
+    /// The amplitude is zero, and at rest there is nothing to compare.
+    #[error(
+        "at amplitude zero the motion is rest: the formula gives the linear limit, which has nothing to be judged against"
+    )]
+    AtRest,
+    /// No method applies, each for its reason; the message has that of the first.
+    #[error("no method applies{}", .0.first().map_or(String::new(), |first| format!(": {}", first.reason)))]
+    NoMethod(Vec<Refused>),
+    /// No curve of omega against the amplitude: why not, in words.
+    #[error("there is no curve of {omega} against the amplitude: {0}", omega = FREQUENCY)]
+    NoBackbone(&'static str),
+}
+
+impl VerificationError {
+    /// Whether there may be a true motion all the same: it was not found, or could not be followed.
+    pub(super) fn leaves_the_truth_open(&self) -> bool {
+        match self {
+            Self::Period(error) => matches!(
+                error,
+                PeriodError::Waves
+                    | PeriodError::NearSeparatrix { .. }
+                    | PeriodError::NoReturn(_)
+                    | PeriodError::Pole { .. }
+                    | PeriodError::Overflow { .. }
+                    | PeriodError::Quadrature(_)
+                    | PeriodError::Root(_)
+                    | PeriodError::Integration(_)
+            ),
+            Self::LimitCycle(_) => true,
+            _ => false,
+        }
+    }
+}
+
+/// The letters that there are, after "does not occur in the formula".
+fn letters_of(known: &[Symbol]) -> String {
+    let names: Vec<&str> = known.iter().map(|name| name.written()).collect();
+    match names.is_empty() {
+        true => ", which has no letters: it is judged without values, by `--tolerance 0.01` say"
+            .to_owned(),
+        false => format!("; it has: {}", names.join(", ")),
+    }
+}

@@ -40,7 +40,7 @@ use hold::{Layout, StateEquations};
 use root::roots_across_corners;
 use section::OnSection;
 
-/// What is followed, from where, and how long.
+/// An initial value problem: equations, initial state and duration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Course {
     /// The coordinates.
@@ -53,11 +53,11 @@ pub struct Course {
     pub energy: Option<Energy>,
     /// A number for every parameter.
     pub values: BTreeMap<Symbol, f64>,
-    /// Where each coordinate begins and how fast, in the order of the states.
+    /// Initial positions and velocities, in the order of the states.
     pub start: Vec<f64>,
-    /// How long it is followed.
+    /// Duration, in the unit of time.
     pub duration: f64,
-    /// Where it is looked at, beside the times that are asked for.
+    /// The Poincaré section at which states are recorded beside the requested times.
     pub section: Option<Section>,
     /// From when on: what is before that has not settled.
     pub after: f64,
@@ -81,7 +81,7 @@ pub struct Energy {
 /// A motion.
 #[derive(Clone, Debug)]
 pub struct Trajectory {
-    /// What was asked.
+    /// The initial value problem that was solved.
     pub course: Course,
     /// By which integrator it was followed.
     pub integrator: Integrator,
@@ -99,9 +99,9 @@ pub struct Balance {
     pub start: f64,
     /// h at the end.
     pub end: f64,
-    /// What forces, dampers and moving constraints have done, all together.
+    /// Work of all forces, dampers and moving constraints together.
     pub work: f64,
-    /// What each of them has done, by its name.
+    /// Work of each of them, by its name.
     pub works: Vec<(String, f64)>,
     /// The largest |h - h(0) - work| of many times, over the largest |h - h(0)| or kinetic share:
     /// how far the account is off.
@@ -123,7 +123,7 @@ pub enum TrajectoryError {
     NoState {
         /// The name.
         name: Symbol,
-        /// What there is.
+        /// The names of the states that there are.
         states: String,
     },
     /// A duration that is none.
@@ -157,9 +157,9 @@ fn names(symbols: &[Symbol]) -> String {
 const ACCOUNTS: u32 = 2000;
 
 impl Course {
-    /// That of an equation of motion, from rest at zero for 50 units of time. Its energy is that of
-    /// the velocity and of all terms of the position alone that have a potential in closed form;
-    /// every other term works for itself.
+    /// The initial value problem of an equation of motion, from rest at zero for 50 units of time.
+    /// Its energy is that of the velocity and of all terms of the position alone that have a
+    /// potential in closed form; every other term has a work of its own.
     pub fn of_equation(oscillator: &Oscillator) -> Self {
         let coordinate = oscillator.coordinate;
         let velocity = oscillator.velocity();
@@ -175,7 +175,7 @@ impl Course {
         )
     }
 
-    /// That of a mechanism, likewise.
+    /// The initial value problem of a mechanism, from rest at zero for 50 units of time.
     ///
     /// # Errors
     /// Energies that give no accelerations.
@@ -531,8 +531,8 @@ impl Ready {
 struct Piece {
     from: f64,
     path: Path,
-    /// How all states are read from those of the path, where something is held; nothing where the
-    /// path has all states.
+    /// The map from the integrated states to all states on a sliding segment; `None` if all states
+    /// are integrated.
     layout: Option<Layout>,
     /// The number of events of the path that are those of the section; they come first.
     recorded: usize,
@@ -559,7 +559,7 @@ impl Piece {
 
 /// The states at many times.
 struct Sampled {
-    /// Those of the times at which there are states.
+    /// The times at which states were requested.
     times: Vec<f64>,
     /// State by state the values then.
     columns: Vec<Vec<f64>>,

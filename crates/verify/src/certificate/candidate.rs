@@ -32,7 +32,7 @@ use crate::verify::{self, VerificationError};
 
 /// Binary digits behind the point of the harmonics: thirty-three decimal ones.
 pub(super) const BITS: usize = 112;
-/// Those of the inverse, which need not be exact.
+/// Bits of the entries of the approximate inverse, which need not be exact.
 pub(super) const INVERSE_BITS: usize = 56;
 
 /// Why there is no certificate. This is no evidence against a formula, but for a motion that the
@@ -50,7 +50,7 @@ pub enum NotCertified {
         "`{term}` is not linear in the velocity: certificates of limit cycles are of x'' + g(x)*x' + h(x) = 0"
     )]
     NotLienard {
-        /// What is not.
+        /// The term that is not linear in the velocity.
         term: String,
         /// The equation of the velocity, where that has this form.
         of_velocity: Option<String>,
@@ -126,7 +126,7 @@ pub enum NotCertified {
 }
 
 impl NotCertified {
-    /// What to do about it.
+    /// Returns advice on what to do about the refusal, in a sentence; `None` if there is none.
     pub fn help(&self) -> Option<String> {
         let help = match self {
             Self::NotConservative(_) => {
@@ -262,7 +262,7 @@ pub(super) fn blocks(seen: usize) -> impl Iterator<Item = usize> {
     sizes.take_while(|size| *size < HIGHEST_HARMONIC).take(8)
 }
 
-/// What is to be proved.
+/// The motion to be proved: `x'' + force = 0` from rest at `start`.
 struct Question {
     force: Expr,
     start: Rational,
@@ -348,8 +348,8 @@ pub(super) fn judged(
     let mut formula = unclaimed([&cosines, &sines[..length]], bits);
     (formula.law, formula.values) = law::of_frequency(solution, at);
     formula.frequency = units(motion.frequency(), bits);
-    // Where the law, as text, can be evaluated, that is the formula; a double of it may have lost
-    // digits.
+    // If the law can be evaluated exactly from its text, that value is the frequency of the
+    // formula; the double of it may have lost digits.
     match law::frequency(&formula) {
         Some(exact) if is_near(&exact, motion.frequency()) => {
             formula.frequency = Balls { bits }.converted(&exact, WORKING).middle;
@@ -385,7 +385,7 @@ pub(super) fn unclaimed([cosines, sines]: [&[f64]; 2], bits: usize) -> JudgedFor
     }
 }
 
-/// What the numbers of Runge-Kutta have no digits for.
+/// Relative size below which the numbers of a Runge-Kutta orbit are integration error.
 pub(super) const NOISE: f64 = 1e-11;
 
 /// `1/omega^2` and the cosine coefficients of one period.

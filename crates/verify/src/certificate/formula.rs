@@ -1,4 +1,4 @@
-//! What a proved motion says about a formula: how far it is off, from both sides.
+//! Bounds from both sides of the error of a formula, from the proved motion.
 //!
 //! ```text
 //! x~(t) = X~(omega~ t),   D(theta) = Xbar(theta) - X~(theta), a series of degree K;   theta_j = pi j/M
@@ -33,7 +33,7 @@ use crate::values::Values;
 pub struct Enclosure {
     /// The middle.
     pub middle: Rational,
-    /// How far the number may be from it.
+    /// Bound of the distance of the number from it.
     pub radius: Bound,
 }
 
@@ -73,7 +73,7 @@ pub struct Range {
     pub upper: f64,
 }
 
-/// How the amplitude and the frequency are written in a law, beside the letters of the equation.
+/// The letters of amplitude and frequency in a law, beside the parameters of the equation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LettersOfLaw {
     /// The amplitude at the start, `A` where the equation has no such name.
@@ -121,18 +121,18 @@ pub struct JudgedFormula {
     pub coefficients: Vec<Integer>,
     /// Its sine coefficients by harmonic, likewise; none of a motion that begins at rest.
     pub sines: Vec<Integer>,
-    /// What is claimed of `max |X - X~|`.
+    /// Claimed lower and upper bound of `max |X - X~|`.
     pub deviation: [Rational; 2],
-    /// What is claimed of `|omega - omega~|`.
+    /// Claimed bounds of `|omega - omega~|`.
     pub frequency_error: [Rational; 2],
-    /// What is claimed of `max |X~'| |omega - omega~|`, by which the two motions part at most in a
-    /// unit of time.
+    /// Claimed bounds of `max |X~'| |omega - omega~|`, the largest rate at which the two motions
+    /// drift apart.
     pub drift: [Rational; 2],
     /// Of a driven motion, what is claimed of `|a - a~|`; zeros of others.
     pub amplitude_error: [Rational; 2],
 }
 
-/// How far a formula is off.
+/// Errors of a formula, each between two bounds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Errors {
@@ -203,7 +203,7 @@ pub(super) struct Truth<'a> {
     pub(super) radius: Bound,
 }
 
-/// What follows from a proof.
+/// Returns the frequency, the motion and the errors of the formula that follow from a proof.
 ///
 /// # Errors
 /// A frequency without a value.
@@ -260,8 +260,8 @@ impl Truth<'_> {
         }
     }
 
-    /// How far a formula of this motion is off, whose frequency is that of the drive; the
-    /// amplitudes are that of the formula and the true one.
+    /// Errors of a formula of a driven motion, whose frequency is that of the drive. The last
+    /// argument has the amplitude by the formula and the true one.
     pub(super) fn errors_of_driven(
         &self,
         own_motion: &FourierSeries,
@@ -277,7 +277,7 @@ impl Truth<'_> {
         }
     }
 
-    /// How far a formula of this frequency and motion is off.
+    /// Errors of a formula with this frequency and this motion.
     pub(super) fn errors(&self, own_frequency: &Ball, own_motion: &FourierSeries) -> Errors {
         let (frequency_error, relative) = apart(own_frequency, self.frequency);
         let (flattest, steepest) = largest(&own_motion.derivative());
@@ -294,7 +294,7 @@ impl Truth<'_> {
     }
 }
 
-/// How far a number is from the true one, and that over the true one.
+/// Absolute and relative error of a number, each between two bounds.
 fn apart(own: &Ball, truth: &Ball) -> (Range, Range) {
     let off = WORKING.difference(own, truth);
     let error = Range {

@@ -27,13 +27,15 @@ use crate::numeric::harmonics::Transform;
 /// The digits with which functions are computed. Those of an approximate motion are fewer.
 pub(super) const WORKING: Balls = Balls { bits: 224 };
 
-/// What is negligible in a series unless its digits say otherwise, and at most.
+/// Binary exponent below which a coefficient is negligible if its digits are not known, and the
+/// largest such exponent.
 const NEGLIGIBLE: i32 = 120;
 
 /// No series has more harmonics; what is beyond is a part of its tail.
 const LONGEST: usize = 1600;
 
-/// How often an argument is halved; one of a larger norm has no value here.
+/// The largest number of halvings of an argument; the function of a series of larger norm is
+/// refused.
 const MOST_HALVINGS: u32 = 6;
 
 /// Steps of Newton's iteration, each of which doubles the digits: from those of a double to more
@@ -78,7 +80,7 @@ pub(super) fn sum_of_angles(one: &[Ball; 2], other: &[Ball; 2]) -> [Ball; 2] {
 pub(super) struct FourierSeries {
     /// The coefficients of the cosines, that of the constant first.
     pub(super) cosines: Vec<Ball>,
-    /// Those of the sines by their harmonic, that of the constant zero; none of an even function.
+    /// Sine coefficients by harmonic, the entry of the constant zero; empty for an even function.
     pub(super) sines: Vec<Ball>,
     /// The norm of what is not in them.
     pub(super) tail: Bound,
@@ -97,7 +99,7 @@ impl FourierSeries {
         Self { cosines, sines, tail: Bound::ZERO, negligible: NEGLIGIBLE }
     }
 
-    /// The same, of which so many binary digits count.
+    /// This function, of whose coefficients only so many bits are significant.
     pub(super) fn of_digits(mut self, bits: usize) -> Self {
         const MORE: i32 = 16;
         let bits = i32::try_from(bits).unwrap_or(NEGLIGIBLE);
@@ -133,7 +135,7 @@ impl FourierSeries {
         all.map(|ball| WORKING.magnitude(ball)).sum()
     }
 
-    /// How many harmonics it has, the constant among them.
+    /// Number of harmonics, the constant included.
     pub(super) fn length(&self) -> usize {
         self.cosines.len().max(self.sines.len())
     }
@@ -161,7 +163,7 @@ impl FourierSeries {
         }
     }
 
-    /// The same function at an angle that is larger by one whose cosine and sine are given.
+    /// The function `theta -> f(theta + a)`, with the cosine and the sine of `a` given.
     pub(super) fn turned(&self, by: &[Ball; 2]) -> Self {
         let (mut cosines, mut sines) = (vec![], vec![]);
         let mut angle = [WORKING.integer(1), Ball::zero()];
@@ -192,7 +194,7 @@ impl FourierSeries {
         }
     }
 
-    /// The same with all functions within a distance of it.
+    /// The set of all functions within a distance of those in this one.
     pub(super) fn widened(mut self, distance: Bound) -> Self {
         self.tail += distance;
         self
@@ -221,7 +223,7 @@ impl FourierSeries {
         self
     }
 
-    /// The same, its harmonics at the end that are smaller than `2^-digits` moved into the tail.
+    /// This function with its trailing harmonics smaller than `2^-digits` moved into the tail.
     pub(super) fn shortened(mut self, digits: i32) -> Self {
         self.negligible = self.negligible.min(digits);
         self.trimmed()
@@ -241,7 +243,7 @@ impl FourierSeries {
         }
     }
 
-    /// The same with every coefficient and the tail mapped.
+    /// Applies one map to every coefficient and another to the tail.
     fn mapped(&self, coefficient: impl Fn(&Ball) -> Ball, tail: Bound) -> Self {
         Self {
             cosines: self.cosines.iter().map(&coefficient).collect(),
@@ -507,8 +509,8 @@ impl FourierSeries {
         let all = harmonics.cosines.iter().chain(&harmonics.sines);
         let largest = all.fold(0.0_f64, |most, value| most.max(value.abs()));
         let balls = |mut coefficients: Vec<f64>| {
-            // What an even or odd function has not must be missing: half of all products are those
-            // with zero.
+            // Coefficients that the parity of the function excludes must be exactly zero: half of
+            // all products are skipped for it.
             for coefficient in &mut coefficients {
                 if coefficient.abs() < DIGITS * largest {
                     *coefficient = 0.0;
@@ -553,13 +555,13 @@ fn add_products(
     }
 }
 
-/// What of a guess need not become smaller: its square is negligible.
+/// The residual at which an initial guess is good enough: its square is negligible.
 fn enough(negligible: i32) -> Bound {
     Bound::power_of_two(-negligible / 2)
 }
 
-/// What is left of a Taylor series of sine, cosine or exponential function from a power on, of an
-/// argument of a norm of at most 1/2: `sum_(k >= n) 2^-k/k! <= 2 * 2^-n/n!`.
+/// Bound of the remainder of the Taylor series of sine, cosine or exponential from the power n on,
+/// for an argument of norm at most 1/2: `sum_(k >= n) 2^-k/k! <= 2 * 2^-n/n!`.
 fn remainder(from: u32) -> Bound {
     (1..=from).fold(Bound::exactly(2.0), |bound, k| bound / (2 * k))
 }

@@ -14,9 +14,9 @@
 //! and steady motions of such an equation with a drive have a [`DampedCertificate`] and a theorem
 //! in `damped/`.
 //!
-//! How the refined motion was found is of no importance (`candidate.rs`: Newton's iteration): what
-//! is proved rests on `theorem.rs` and what it is computed with, `force.rs`, `fourier_series.rs`
-//! and balls. A certificate that fails says nothing about the formula.
+//! The way in which the refined motion was found does not matter (`candidate.rs`: Newton's
+//! iteration): the proof rests on `theorem.rs` and on what computes for it, `force.rs`,
+//! `fourier_series.rs` and balls. A certificate that fails says nothing about the formula.
 
 mod approximate_inverse;
 mod candidate;
@@ -90,7 +90,7 @@ pub struct Certificate {
     pub formula: Option<JudgedFormula>,
 }
 
-/// What has been proved.
+/// The proved motion and its errors.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Certified {
@@ -130,7 +130,7 @@ pub enum CheckError {
     ClaimedLess {
         /// Of which number.
         what: &'static str,
-        /// What is proved.
+        /// The proved upper bound.
         proved: f64,
     },
     /// Likewise larger.
@@ -138,7 +138,7 @@ pub enum CheckError {
     ClaimedMore {
         /// Of which number.
         what: &'static str,
-        /// What is proved.
+        /// The proved lower bound.
         proved: f64,
     },
 }
@@ -225,7 +225,7 @@ impl Certificate {
             && self.coefficients.iter().step_by(2).all(|c| c.is_zero()))
     }
 
-    /// What does not fit together.
+    /// Checks that sizes and numbers fit together; the error names what does not.
     fn well_formed(&self) -> Result<(), &'static str> {
         let fits = Sizes {
             bits: [self.bits, self.inverse_bits],
@@ -308,9 +308,9 @@ const ROUNDING_OF_EQUILIBRIUM: usize = 30;
 /// they are doubles, of series that may cancel.
 const ROUNDING_OF_START: i32 = 20;
 
-/// What of a certificate may be too large, or may not fit together.
+/// The parts of a certificate whose sizes are checked before anything is computed with them.
 struct Sizes<'a> {
-    /// Those of the numbers, and of the inverse.
+    /// Bits of the numbers, and of the approximate inverse.
     bits: [usize; 2],
     sigma: i32,
     highest: usize,

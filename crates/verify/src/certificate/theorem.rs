@@ -149,8 +149,8 @@ impl<'a> Theorem<'a> {
     }
 }
 
-/// What is to be subtracted from `mu` and the harmonics of a certificate, so that it is nearer to
-/// the solution; nothing is proved of it.
+/// The Newton correction: subtracted from `mu` and the harmonics of a certificate, it brings them
+/// nearer to the solution. It proves nothing.
 ///
 /// # Errors
 /// As [`prove`].
@@ -184,7 +184,7 @@ impl Slope {
     }
 }
 
-/// What the bounds are made of.
+/// The quantities from which the bounds Y0, Z1 and Z2 are computed.
 struct System<'a> {
     certificate: &'a Certificate,
     inverse: Inverse,
@@ -332,7 +332,8 @@ impl<'a> System<'a> {
         for (index, &j) in self.block.iter().enumerate() {
             largest = largest.max(self.column(slope, j, Some(index + 1)));
         }
-        // Where the coefficients of f' reach into the block, and beyond.
+        // Columns with entries in the block, where the coefficients of f' couple them to it, then
+        // beyond.
         for j in self.beyond(highest + last) {
             largest = largest.max(self.column(slope, j, None));
         }

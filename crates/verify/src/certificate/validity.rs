@@ -33,7 +33,7 @@ use crate::oscillator::Oscillator;
 use crate::solution::Solution;
 use crate::values::Values;
 
-/// How far a formula is proved to hold.
+/// The range of amplitudes in which a formula is proved to be within its tolerance.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Validity {
@@ -45,7 +45,7 @@ pub struct Validity {
     pub within: f64,
     /// The intervals, each proved.
     pub intervals: usize,
-    /// What is beyond.
+    /// Why the range ends.
     pub beyond: Beyond,
 }
 
@@ -75,8 +75,8 @@ const BITS: usize = 48;
 /// shorter intervals alone.
 const HEAVIEST: i32 = 4;
 
-/// How far a formula is proved to be within a tolerance, for the amplitudes from `from` to `to`,
-/// both positive.
+/// Computes the range of amplitudes from `from` to `to`, both positive, in which a formula is
+/// proved to be within a tolerance.
 ///
 /// # Errors
 /// No proof at the first amplitude, or a law that is none of the amplitude in closed form.
@@ -157,7 +157,7 @@ struct Family<'a> {
     at: Values,
     /// The last motion that was looked for, from where the next one is.
     certificate: Certificate,
-    /// Where it swings about.
+    /// The equilibrium about which the motion oscillates.
     equilibrium: Rational,
     /// omega~^2 as an expression in the amplitude, which has the letter of the coordinate here.
     squared: Expr,
@@ -204,7 +204,7 @@ impl<'a> Family<'a> {
         let two = Integer::from(2);
         let (middle, half) = ((from + to) / &two, (to - from) / &two);
         let spread = Bound::of_fraction(&half);
-        // Where this fails, the last motion that was proved is still the nearest one.
+        // If a later step fails, the last motion that was proved is still the nearest one.
         let mut certificate = self.certificate.clone();
         certificate.start = &self.equilibrium + &middle;
         refine(&mut certificate, spread * spread * Bound::power_of_two(-4))?;

@@ -37,16 +37,16 @@ pub struct TransitionCurve {
     pub tongue: usize,
     /// The curve, or the middle of the two.
     pub middle: Polynomial,
-    /// What stands under the root; none where the curve is a power series.
+    /// The radicand; `None` if the curve is a power series.
     pub under_root: Option<Polynomial>,
     /// Whether it is the upper one of its pair where what is small is positive: the one to which
     /// the root is added.
     pub upper: bool,
-    /// What the motion on the curve is made of.
+    /// The harmonics of the periodic motion on the curve.
     pub motion: WavesOfMotion,
 }
 
-/// What a motion on a curve is made of.
+/// The kind of Fourier series of the motion on a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WavesOfMotion {
     /// Of cosines alone.
@@ -116,7 +116,8 @@ fn separate(
         of_waves("a", tongue, power.solved(cosine, tongue)),
         of_waves("b", tongue, power.solved(sine, tongue)),
     ];
-    // Which is the upper one may show beyond the order only.
+    // The order of the two curves may show beyond the truncation order only: the n-th tongue opens
+    // with the power n or later.
     let further = match pair[0].middle == pair[1].middle {
         false => None,
         true => Some(effective_matrix(hill, tongue, order + 2 * tongue as u32)),
@@ -137,7 +138,7 @@ fn separate(
 
 /// Both curves where H mixes cosines and sines: the mean of its diagonal, and a root beside it.
 fn mixed(hill: &Hill, tongue: usize, order: u32) -> Vec<TransitionCurve> {
-    // What opens the tongue enters Q squared: with the power 2 n.
+    // The terms that open the tongue enter the radicand Q squared, with the power 2 n.
     let beyond = order.max(2 * tongue as u32);
     let further = effective_matrix(hill, tongue, beyond);
     let power = Powers { hill, order: beyond };
@@ -419,7 +420,7 @@ impl Powers<'_> {
         sum
     }
 
-    /// What is kept while a series is made: a little more than what is shown.
+    /// The truncation order while a series is computed: two more than the order shown.
     fn highest(&self) -> i64 {
         i64::from(self.order) + 2
     }

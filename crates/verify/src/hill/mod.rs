@@ -39,7 +39,7 @@ pub const HIGHEST_ORDER: u32 = 60;
 /// The most tongues that are derived, beside that of number 0.
 pub const MOST_TONGUES: usize = 20;
 
-/// What is wanted of an equation.
+/// Order, number of tongues and unknowns of a derivation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
     /// Highest power of the small parameters, all together, that is kept.
@@ -48,7 +48,8 @@ pub struct Options {
     pub tongues: usize,
     /// The small parameters, where they are named.
     pub small: Vec<String>,
-    /// What the curves are solved for, where it is named: the mean stiffness or the frequency.
+    /// The letter for which the curves are solved, in the mean stiffness or the frequency; chosen
+    /// by the equation if `None`.
     pub solve_for: Option<String>,
 }
 
@@ -59,7 +60,7 @@ impl Default for Options {
     }
 }
 
-/// What a curve gives.
+/// The quantity that a transition curve gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unknown {
     /// A power of a letter that stands in one term of the mean stiffness and nowhere else.
@@ -100,9 +101,9 @@ impl Unknown {
 pub struct TransitionCurves {
     /// The equation, as it was understood.
     pub equation: Equation,
-    /// What the curves give.
+    /// The quantity that the curves give.
     pub unknown: Unknown,
-    /// What is small; the order counts their powers together.
+    /// The small parameters; the order counts their powers together.
     pub small: Vec<Symbol>,
     /// The highest power kept.
     pub order: u32,
@@ -214,7 +215,7 @@ pub enum HillError {
     /// A coefficient that is a number.
     #[error("the coefficient of `{0}` is a number, and the expansion is in a small letter")]
     NumberIsSmall(String),
-    /// Which letters are small does not follow.
+    /// Several letters might be small, and none was named.
     #[error("which of {0} are small?")]
     SeveralSmall(String),
     /// A letter that is small by request and is none.
@@ -242,7 +243,7 @@ impl HillError {
         }
     }
 
-    /// What to try instead.
+    /// Returns advice on what to try instead, in a sentence; `None` if there is none.
     pub fn help(&self) -> Option<String> {
         let words = match self {
             Self::NotLinear(_) => {
@@ -278,7 +279,7 @@ struct Hill {
     /// The term that stands before the unknown power in the mean stiffness; zero where the
     /// frequency is unknown.
     factor: Polynomial,
-    /// What of the mean stiffness is neither the unknown nor small.
+    /// The part of the mean stiffness that is neither the unknown nor small.
     constant: Polynomial,
     small: Vec<Symbol>,
     frequency: Frequency,
@@ -519,7 +520,8 @@ impl Hill {
     }
 }
 
-/// What the curves give: a letter that stands in the mean stiffness alone, or the frequency.
+/// Chooses the unknown of the curves: a letter that stands in the mean stiffness alone, or the
+/// frequency.
 fn unknown(
     mean: &Polynomial,
     coefficients: [&FourierSeries<Polynomials>; 2],
@@ -583,8 +585,8 @@ fn listed(names: &[Symbol]) -> String {
     names.join(", ")
 }
 
-/// What is small: what was named, or `eps` and every letter that alone stands before a wave or the
-/// velocity.
+/// The small parameters: those that were named, or else `eps` and every letter that stands alone
+/// before a harmonic or the velocity.
 fn small(
     oscillator: &Oscillator,
     [damping, stiffness]: [&FourierSeries<Polynomials>; 2],

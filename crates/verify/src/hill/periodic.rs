@@ -38,7 +38,7 @@ impl Frequency {
         Polynomial::term(self.unit.clone(), self.number.clone())
     }
 
-    /// How often `rate` holds it.
+    /// Returns n if `rate` is n times this frequency, n a whole number.
     fn multiple(&self, rate: &Rational) -> Option<usize> {
         let multiple = rate / &self.number;
         multiple.is_integer().then(|| multiple.to_integer().to_usize())?
@@ -159,7 +159,7 @@ fn series_of(
     (series.highest_harmonic() <= 2 * MOST_HARMONICS).then_some(series)
 }
 
-/// The same with the period as short as it is: of `cos(t)^2` it is pi.
+/// The coefficients with their shortest period: that of `cos(t)^2` is pi.
 pub(super) fn in_lowest_terms(
     frequency: Frequency,
     series: [FourierSeries<Polynomials>; 2],

@@ -27,17 +27,17 @@ use crate::values::Values;
 /// Harmonics beyond those that the coefficients ask for.
 const SPARE_HARMONICS: usize = 16;
 
-/// How many times a wave of the motion is taken on by the highest harmonic of the coefficients.
+/// Highest harmonic of the motion, in multiples of the highest harmonic of the coefficients.
 const TIMES_TAKEN_ON: usize = 3;
 
 /// The most harmonics of the determinant.
 const MOST_HARMONICS: usize = 200;
 
-/// What a value of the determinant is good to, over the square of the frequency.
+/// Rounding error of a value of the determinant, over the square of the frequency.
 const ROUNDING: f64 = 1e-12;
 
-/// How far the multiplier may miss its place, in the equation `1 -+ tr Phi + det Phi = 0` over the
-/// size of its terms.
+/// Largest residual of the characteristic equation `1 -+ tr Phi + det Phi = 0` at a multiplier,
+/// over the size of its terms.
 const MULTIPLIER_TOLERANCE: f64 = 1e-6;
 
 /// The imaginary part up to which an eigenvalue counts as real, over the size of the matrix.
@@ -46,7 +46,7 @@ const REAL: f64 = 1e-10;
 /// A curve at given values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedCurve {
-    /// Which of the curves.
+    /// Index of the curve.
     pub curve: usize,
     /// By the formula; none where it is not real.
     pub value: Option<f64>,
@@ -61,11 +61,11 @@ pub struct JudgedCurve {
 /// Formula and truth of a curve against the size of what is small.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
-    /// Which of the curves.
+    /// Index of the curve.
     pub curve: usize,
     /// `(unknown, small parameter)` by the formula.
     pub formula: Vec<(f64, f64)>,
-    /// The same in truth.
+    /// `(unknown, small parameter)` of the true curve.
     pub truth: Vec<(f64, f64)>,
 }
 
@@ -221,7 +221,8 @@ fn is_upper(
     }
 }
 
-/// Where the equation has the motion of the curve in truth; none where its tongue is closed there.
+/// The value of the unknown at which the equation truly has the periodic motion of the curve;
+/// `None` if its tongue is closed there.
 fn true_value(
     curves: &TransitionCurves,
     curve: &TransitionCurve,
@@ -252,7 +253,7 @@ fn true_value(
                 let above = is_upper(curves, curve, numbers) == (slope > 0.0);
                 let coefficients = Coefficients::of(curves, &with(reference))?;
                 let mu = coefficients.eigenvalue(curve, above)?;
-                // What is nothing but rounding is zero.
+                // A value below the rounding error is zero.
                 let rounding = ROUNDING * coefficients.frequency.powi(2);
                 let mu = mu.is_real.then_some(mu.value);
                 let mu = mu.map(|mu| if mu.abs() < rounding { 0.0 } else { mu / slope });
@@ -290,7 +291,7 @@ fn frequency_without_remainder(
     let upper = is_upper(curves, curve, &with(1.0));
     // mu grows with the frequency: the larger of two comes to zero first.
     let mu = |frequency: f64| Coefficients::of(curves, &with(frequency))?.eigenvalue(curve, !upper);
-    // Where nothing varies mu is n^2 Omega^2/4 less the mean stiffness.
+    // Without variation of the coefficients mu is n^2 Omega^2/4 less the mean stiffness.
     let unit = Coefficients::of(curves, &with(1.0))?;
     let count = curve.tongue as f64 * unit.frequency;
     let mean = unit.mean_stiffness();

@@ -17,9 +17,8 @@
 //! is: the phases at which the velocity passes it are located, and what is more above it is
 //! integrated between them.
 //!
-//! Where nothing drives the motion its frequency is an unknown, and when it begins is free: it
-//! begins where the first sine is zero, and the frequency takes the place of b_1 among the
-//! unknowns.
+//! Without a drive the frequency is an unknown and the phase is free: the phase is fixed by a
+//! vanishing first sine, and the frequency takes the place of b_1 among the unknowns.
 
 use std::cell::Cell;
 
@@ -201,7 +200,8 @@ impl<'a> Balance<'a> {
         let count = motion.len();
         let (mut inertia, mut force) = (Vec::with_capacity(count), Vec::with_capacity(count));
         let mut slopes: [Vec<f64>; 4] = std::array::from_fn(|_| Vec::with_capacity(count));
-        // What a jump adds above it is counted where the velocity is.
+        // The contribution of the side above a jump is added at the phases at which the velocity is
+        // there.
         let above = self.above(coefficients, parameter, omega, &motion);
         const BELOW: [f64; 1] = [-1.0];
         let located = driven.jump_speed(parameter).is_some();
@@ -250,10 +250,10 @@ impl<'a> Balance<'a> {
         })
     }
 
-    /// What the force and its derivatives have more above a jump than below it, as parts at phases
-    /// of the motion: an integral by Gauss and Legendre between the phases at which the velocity
-    /// passes the jump, and these phases themselves, at which the derivatives by the velocity and
-    /// by what moves the jump are Dirac's.
+    /// Differences of the force and its derivatives between above and below a jump, as weighted
+    /// samples at phases of the motion: Gauss-Legendre quadrature over the spans in which the
+    /// velocity is above the jump, and Dirac terms of the derivatives by the velocity, the
+    /// parameter and the frequency at the phases at which it crosses.
     fn above(
         &self,
         coefficients: &DVector<f64>,

@@ -1,4 +1,4 @@
-//! Where a branch changes: folds, crossings, period doublings, and a second frequency coming in.
+//! Bifurcations along a branch: folds, branch points, period doublings and Neimark-Sacker points.
 //!
 //! ```text
 //! fold                     dp changes its sign along the branch; one multiplier is 1
@@ -62,7 +62,8 @@ impl BifurcationKind {
     }
 }
 
-/// What changes its sign at a bifurcation of this kind; nothing where it cannot be told.
+/// The test function of a kind of bifurcation, which changes its sign there; `None` if it has no
+/// value at this point.
 fn test(kind: BifurcationKind, node: &Node, floquet: Option<Floquet>) -> Option<f64> {
     let (trace, determinant) = match floquet {
         Some(floquet) => (floquet.monodromy.trace(), floquet.monodromy.determinant()),
@@ -133,7 +134,8 @@ pub fn between(
             BranchPoint => Some(halved(value)),
             _ => find_root(value, 0.0, 1.0).ok(),
         };
-        // Where branches cross Newton's method may not settle: beside it is near enough.
+        // At a branch point the Jacobian is singular and Newton's method may not converge; a point
+        // slightly beside it is near enough.
         const BESIDE: [f64; 5] = [0.0, 1e-6, -1e-6, 1e-3, -1e-3];
         let beside =
             |part: f64| BESIDE.iter().find_map(|aside| between((part + aside).clamp(0.0, 1.0)));
@@ -151,7 +153,7 @@ pub fn between(
     found
 }
 
-/// Where a sign changes between 0 and 1, to 1e-9.
+/// Bisects the sign change of a function between 0 and 1, to 1e-9.
 fn halved(mut value: impl FnMut(f64) -> f64) -> f64 {
     let before = value(0.0);
     let is_before = |part: f64| match value(part) {

@@ -8,7 +8,7 @@ use super::continuation::{self, BranchEnd, Node, Path, Walk};
 use super::seeds::Seed;
 use super::{Asked, MOST_BRANCHES};
 
-/// How a motion is known.
+/// The relation of a known motion to a branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Known {
     /// It lies on a branch.

@@ -37,8 +37,8 @@ pub struct Node {
 }
 
 impl Node {
-    /// Where a parameter lies on the way to the next node, from zero to one; `None` where it does
-    /// not.
+    /// Fraction, from zero to one, of the way to the next node at which the parameter has this
+    /// value; `None` if it lies outside.
     pub fn part_of_way(&self, next: &Self, parameter: f64) -> Option<f64> {
         let way = next.parameter - self.parameter;
         let part = if way == 0.0 { 0.0 } else { (parameter - self.parameter) / way };
@@ -62,9 +62,10 @@ impl Node {
 pub enum BranchEnd {
     /// At an end of the range.
     Range,
-    /// Where another branch crosses: beyond there are its own motions, begun later or mirrored.
+    /// A branch point: beyond it lie the motions of the other branch itself, with another phase or
+    /// mirrored.
     Crossing,
-    /// Where it began.
+    /// The branch has come back to its start.
     Closed,
     /// The amplitude grows without bound.
     Unbounded,
@@ -96,7 +97,7 @@ pub struct Path {
     pub mirrored: bool,
 }
 
-/// How a branch is followed.
+/// Range, step size and limits of the continuation of a branch.
 #[derive(Clone, Copy, Debug)]
 pub struct Walk {
     /// The range of the parameter.
@@ -115,7 +116,7 @@ pub struct Walk {
     pub interrupt: Interrupt,
 }
 
-/// What a step is measured in.
+/// Weights of the norm in which step lengths are measured.
 #[derive(Clone, Copy, Debug)]
 struct Weights {
     coefficients: f64,
@@ -370,7 +371,7 @@ impl Walk {
         const SLOW: f64 = 0.05;
         let [low, high] = self.range;
         let bound = ENORMOUS * balance.extent(&start.coefficients).max(self.ordinary);
-        // Where a self-excited motion is near rest it may be born there.
+        // Near rest a branch of self-excited motions may end in a Hopf point.
         let at_rest = |here: &Node, near: f64| match self.rest_beside(balance, here, near) {
             Some(rest) => Ended(Some(rest), BranchEnd::Rest),
             None => Ended(None, BranchEnd::Lost),
@@ -396,12 +397,12 @@ impl Walk {
             });
             let Some((node, iterations)) = found else {
                 return match 0.5 * length < SHORTEST {
-                    // Where the damping has a corner at rest the branch has one there as well.
+                    // If the damping has a corner at rest, the branch has one there as well.
                     true => at_rest(here, here.parameter),
                     false => TooLong,
                 };
             };
-            // What it ends for unless a shorter step does better.
+            // Ends the branch for this reason unless a shorter step may do better.
             let ends = |end: BranchEnd| match 0.5 * length < SHORT {
                 true => Ended(None, end),
                 false => TooLong,
@@ -410,8 +411,8 @@ impl Walk {
                 return ends(BranchEnd::Harmonics);
             }
             if node.parameter < low || node.parameter > high {
-                // Where the end of the range is a resonance of a harmonic there is no motion, or
-                // more than one: near it is near enough.
+                // If the end of the range is a resonance of a harmonic, it has no motion, or more
+                // than one: a point near it will do.
                 return match self.at_bound(balance, here, &node) {
                     Some(last) => Ended(Some(last), BranchEnd::Range),
                     None => ends(BranchEnd::Range),

@@ -101,9 +101,9 @@ pub fn true_cycle(
     Some(TrueMotion::new(start, frequency, floquet, &positions, 0.0))
 }
 
-/// Where a simulation has come to that was let go here and followed for so many periods of about
-/// this frequency: its frequency by its own return, and its positions over that period at equal
-/// steps. Nothing where it does not come back, escapes, or the budget is spent.
+/// Simulates the motion from a start for a number of periods of about the guessed frequency.
+/// Returns its frequency by its own return and its positions over that period at equal steps;
+/// `None` if it does not return, escapes, or the budget is spent.
 pub fn settled(
     driven: &Driven,
     guess: &Guess,

@@ -60,7 +60,8 @@ struct Jump {
     level: [CompiledFunction; 2],
 }
 
-/// The same in symbols.
+/// The line `normal . (x, v) = level`, or with n_x = 1 if n_v is zero, in exact numbers and
+/// symbols.
 #[derive(Clone, Debug, PartialEq)]
 struct Line {
     normal: [Rational; 2],
@@ -417,7 +418,7 @@ impl Driven {
     }
 }
 
-/// What a function gives for a place and the sides of so many jumps.
+/// Calls a function with the arguments of the force and the sides of a number of jumps behind them.
 fn with<T>(
     [x, v, phase, p]: &[f64; 4],
     sides: &[f64],

@@ -47,7 +47,7 @@ pub enum ResponseError {
         value: f64,
         /// The parameter.
         parameter: Symbol,
-        /// Where.
+        /// The value of the parameter.
         at: f64,
     },
     /// The parameter to vary is none of the equation.
@@ -73,7 +73,7 @@ pub enum ResponseError {
     /// A count beyond what can be kept.
     #[error("{what} must lie between 1 and {most}, not {given}")]
     Count {
-        /// What is counted.
+        /// The quantity that is counted.
         what: &'static str,
         /// The value given.
         given: usize,
@@ -108,7 +108,7 @@ pub enum ResponseError {
     Interrupted {
         /// The parameter.
         parameter: Symbol,
-        /// What was done until then.
+        /// The progress of the search until then.
         tried: Tried,
     },
     /// The equation has no such values.

@@ -1,4 +1,4 @@
-//! Where a self-excited motion is born from rest: a Hopf point.
+//! Hopf points: the parameter at which a self-excited motion is born from rest.
 //!
 //! ```text
 //! f(x, 0; p) = 0,   f_v(x, 0; p) = 0,   omega^2 = f_x(x, 0; p) > 0

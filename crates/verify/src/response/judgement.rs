@@ -17,7 +17,8 @@ use crate::trajectory;
 pub(super) type Judged = (Option<Floquet>, Option<TrueMotion>);
 
 impl Asked<'_> {
-    /// The same, or nothing once somebody has asked for an end.
+    /// The multipliers and the true motion of [`Self::judged`]; both `None` once an interrupt was
+    /// requested.
     pub(super) fn judged_in_time(&self, balance: &Balance, node: &Node) -> Judged {
         match self.question.interrupt.is_requested() {
             true => (None, None),
@@ -57,7 +58,8 @@ impl Asked<'_> {
         (floquet.or_else(along), truth)
     }
 
-    /// The same of a motion without drive: the true one may begin at another phase.
+    /// The multipliers and the true motion of a point without drive; the true motion may have
+    /// another phase.
     fn judged_cycle(&self, balance: &Balance, node: &Node) -> Judged {
         const OTHER: f64 = 0.3;
         let (u, parameter) = (&node.coefficients, node.parameter);
@@ -218,7 +220,8 @@ impl Asked<'_> {
                         )?;
                         Some(simulated(point, &settled.positions, point.frequency, size))
                     };
-                    // Where the first leads to another motion the second, much smaller, decides.
+                    // If the first disturbance leads to another motion, the second, much smaller
+                    // one decides.
                     let first = run(DISTURBANCES[0]);
                     let near = match first {
                         Some(first) if first.error <= OTHER => Some(first),

@@ -26,7 +26,7 @@ type Values = [f64; 6];
 #[derive(Clone, Debug)]
 pub struct Course {
     legs: Vec<Trajectory<Point<Values>>>,
-    /// How long it sticks.
+    /// Duration of all sticking phases, in the unit of time.
     stuck: f64,
     /// Whether it has ended where it turns back.
     turned: bool,
@@ -34,7 +34,7 @@ pub struct Course {
     pub end: [f64; 6],
 }
 
-/// How far a motion is followed.
+/// The condition at which the integration stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Until {
     /// For so long.
@@ -72,7 +72,7 @@ impl Course {
         (from, to)
     }
 
-    /// How long it takes.
+    /// Duration, in the unit of time.
     pub fn duration(&self) -> f64 {
         let (from, to) = self.span();
         to - from
@@ -91,7 +91,7 @@ impl Course {
         self.turned
     }
 
-    /// How far it gets from where it begins.
+    /// The largest distance from the initial position.
     pub fn extent(&self) -> f64 {
         let positions = self.positions(super::stability::SAMPLES);
         let from = positions.first().copied().unwrap_or(0.0);
@@ -330,7 +330,7 @@ impl<'a> Run<'a> {
         let speed = by_position * self.y[1] + by_velocity * before;
         for column in [2, 4] {
             let height = by_position * self.y[column] + by_velocity * self.y[column + 1];
-            // What is zero stays so, however slowly it comes.
+            // A variation that is zero stays zero, also if the speed across the jump vanishes.
             if height != 0.0 {
                 self.y[column + 1] += (behind - before) * height / speed;
             }

@@ -74,7 +74,7 @@ use seeds::{Seed, size_of};
 use slow::SlowResponse;
 use stability::Budget;
 
-/// What is asked.
+/// A response to be computed: equation, parameter, range and accuracy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Question {
     /// The equation.
@@ -85,10 +85,10 @@ pub struct Question {
     pub parameter: Symbol,
     /// Its lowest and its highest value.
     pub range: [f64; 2],
-    /// How many harmonics are kept; without it as many as bring the error below a tenth of the
-    /// tolerance, 64 at most.
+    /// Number of harmonics; if `None`, as many as bring the error below a tenth of the tolerance,
+    /// 64 at most.
     pub harmonics: Option<usize>,
-    /// How many periods of the drive a period of the motion takes.
+    /// Number of drive periods in one period of the motion.
     pub periods: usize,
     /// The relative error up to which it passes.
     pub tolerance: f64,
@@ -171,7 +171,7 @@ pub struct Bifurcation {
 impl Bifurcation {
     /// Whether this is the same place, met from another branch or by the other half of one.
     fn is_near(&self, other: &Self, [low, high]: [f64; 2], size: f64) -> bool {
-        // Where branches cross, each finds the place as well as it can.
+        // At a branch point each branch locates the bifurcation with less accuracy.
         let near = if self.kind == BifurcationKind::BranchPoint { 2e-4 } else { 1e-5 };
         self.kind == other.kind
             && (self.parameter - other.parameter).abs() <= near * (high - low)
@@ -216,10 +216,10 @@ impl Elsewhere {
     }
 }
 
-/// What was found.
+/// The steady states over the range of the parameter: branches, bifurcations and simulations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
-    /// What was asked.
+    /// The request that this answers.
     pub question: Question,
     /// The frequency of the drive; where there is none a name for that of the motion, of which each
     /// point has the number.
@@ -233,7 +233,7 @@ pub struct Response {
     /// Whether all branches are those of the map of a period, because harmonic balance does not
     /// take the jumps.
     pub by_map: bool,
-    /// How many harmonics were kept.
+    /// Number of harmonics kept.
     pub harmonics: usize,
     /// The branches, in the order in which they were found.
     pub branches: Vec<Branch>,
@@ -320,7 +320,8 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
             harmonics *= 2;
             continue;
         }
-        // What was stopped on the way to more harmonics has the answer by fewer of them.
+        // If the computation is interrupted on the way to more harmonics, the result with fewer of
+        // them is the answer.
         let mut response = match (attempt, fewer.take()) {
             (Ok(response), None) => response,
             (Ok(response), Some(_)) if response.complete => response,
@@ -335,10 +336,11 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
             && judged
             && followed
             && response.error.is_some_and(|error| error <= 0.1 * question.tolerance);
-        // What more harmonics do not better is not theirs, such as a jump of the force.
+        // An error that more harmonics do not reduce has another cause, such as a jump of the
+        // force.
         let now = (response.error.unwrap_or(f64::INFINITY), response.unjudged);
         let stalled = resolved && followed && now.0 >= 0.7 * before.0 && now.1 >= before.1;
-        // What has no branch yet has no error either.
+        // Without a branch there is no error either.
         before = if followed { now } else { (f64::INFINITY, usize::MAX) };
         let fixed = question.harmonics.is_some() || !response.complete;
         let last = fixed || good || stalled || 2 * harmonics > MOST_HARMONICS;
@@ -361,7 +363,7 @@ impl Response {
         self.branches.iter().any(|branch| branch.ends.contains(&end))
     }
 
-    /// The same with the largest error of its points and simulations, and the verdict on it.
+    /// This response with the largest error of its points and simulations, and the verdict on it.
     fn with_verdict(mut self) -> Self {
         let points = || self.branches.iter().flat_map(|branch| &branch.points);
         let errors = points().filter_map(|point| point.error);
@@ -412,7 +414,7 @@ struct Asked<'a> {
     /// The equation with all values but one.
     oscillator: Oscillator,
     driven: Driven,
-    /// How the search for motions to begin with gets on.
+    /// Progress of the search for initial motions.
     tried: Cell<Tried>,
 }
 
@@ -481,7 +483,7 @@ impl<'a> Asked<'a> {
         Ok(self)
     }
 
-    /// What the simulations of one purpose may take together.
+    /// The evaluations that the simulations of one purpose may take together.
     fn budget(&self) -> Budget {
         Budget { evaluations: MOST_EVALUATIONS, interrupt: self.question.interrupt }
     }
@@ -513,7 +515,7 @@ impl<'a> Asked<'a> {
         let size = largest_motion.fold(size_of(seeds), f64::max);
         self.follow_sticking(&balance, seeds, &mut paths, size);
         let (all_judged, changes, ripple) = self.judged_paths(&balance, seeds, &mut paths);
-        // What is small is small beside the largest motion of all.
+        // Sizes are compared with the largest motion of all branches.
         let size = paths.iter().map(|path| largest(&balance, path)).fold(0.0, f64::max);
         let bifurcations = self.bifurcations(&balance, changes, size);
         let branches: Vec<Branch> = paths
@@ -573,8 +575,8 @@ impl<'a> Asked<'a> {
         Ok(response.with_verdict())
     }
 
-    /// The same without what waves cannot say: ends of branches on which no true motion was found,
-    /// because the period grows without bound or the waves are too few.
+    /// This response without the ends of branches at which no true motion was found, because the
+    /// period grows without bound or there are too few harmonics.
     fn without_tails(&self, mut response: Response) -> Result<Response, ResponseError> {
         /// Points without a true motion in a row that are no accident.
         const FEW: usize = 3;
@@ -612,7 +614,7 @@ impl<'a> Asked<'a> {
             let frequencies = points.iter().map(|point| point.frequency);
             slowest.push(frequencies.fold(f64::INFINITY, f64::min));
         }
-        // What changes beyond the end of a branch is not known to.
+        // Bifurcations beyond the new end of a branch are not reliable.
         let slowest_of = |branch: usize| slowest.get(branch).copied().unwrap_or(f64::INFINITY);
         let bifurcations = response.bifurcations.iter();
         let kept = bifurcations.filter(|found| found.frequency >= slowest_of(found.branch));

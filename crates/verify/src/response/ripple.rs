@@ -4,10 +4,10 @@
 //! det(1 - M) changes its sign where a multiplier of the true motion passes 1: at its folds, and where branches cross
 //! ```
 //!
-//! Where a motion has sharp turns the branch of its balance waves about that of the true motion,
-//! and near the top of a resonance, where the parameter hardly changes, each wave turns it back.
-//! In: the points of a branch with the true motions beside them, and the places where it turns.
-//! Out: the places where the true motion does not.
+//! If a motion has sharp turns, the branch of its balance oscillates about that of the true motion,
+//! and near the top of a resonance, where the parameter hardly changes, each oscillation makes a
+//! spurious fold. In: the points of a branch with the true motions beside them, and its folds. Out:
+//! the folds that the true motion does not have.
 
 use super::bifurcation::BifurcationKind;
 use super::continuation::Node;
@@ -69,7 +69,7 @@ pub(super) fn without_ripple(
     let mut from = 0;
     let mut rest = found.into_iter().peekable();
     while rest.peek().is_some() {
-        // Where branches cross the sign changes too.
+        // The sign changes at branch points, too.
         let mut folds = Vec::new();
         let mut to = nodes.len();
         for place in rest.by_ref() {

@@ -141,8 +141,8 @@ impl Asked<'_> {
         }
     }
 
-    /// How far beyond the range branches are followed that might come back: not to where the
-    /// parameter has another sign.
+    /// The range, widened, in which branches that leave it are followed because they might come
+    /// back; it does not reach a parameter of the other sign.
     fn surroundings(&self) -> [f64; 2] {
         const TIMES: f64 = 4.0;
         let [low, high] = self.question.range;

@@ -31,7 +31,7 @@ pub struct SlowResponse {
     /// The largest error of the amplitude at the stable points of the branches, over the amplitude
     /// there.
     pub error: Option<f64>,
-    /// Where that is.
+    /// The parameter at that point.
     pub worst: Option<f64>,
     /// Stable points of the branches near which the slow equations have no stable motion.
     pub missing: usize,
@@ -39,7 +39,7 @@ pub struct SlowResponse {
     /// [left out](Solution::steady_motions), the lowest and the highest amplitude of these; `None`
     /// where there are none.
     pub spurious: Option<Spurious>,
-    /// How many stable points there are.
+    /// Number of stable points.
     pub points: usize,
     /// Whether the error is within the tolerance and no more than one point in twenty is missing.
     pub verdict: Verdict,
@@ -48,7 +48,7 @@ pub struct SlowResponse {
 /// Steady motions that only the truncation of slow equations makes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spurious {
-    /// How many, at all values of the parameter together.
+    /// Their number, summed over all values of the parameter.
     pub count: usize,
     /// Their lowest and their highest amplitude.
     pub amplitudes: [f64; 2],
@@ -88,7 +88,7 @@ fn motions_at(question: &Question, solution: &Solution, parameter: f64) -> Stead
 }
 
 impl Response {
-    /// The same with the steady motions of these slow equations beside it.
+    /// This response with the steady motions of these slow equations beside it.
     ///
     /// ```
     /// # use lindstedt_verify as lindstedt;

@@ -22,7 +22,7 @@ use crate::numeric::periodic::{PeriodicOrbit, Shooting, eigenvalues_of_two};
 /// Samples of a period from which its harmonics and its peaks are taken.
 pub(super) const SAMPLES: usize = 256;
 
-/// What a small disturbance of a periodic motion has become after a period.
+/// The monodromy matrix: the image of a small disturbance of a periodic motion after one period.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Floquet {
     /// M(T).
@@ -208,8 +208,8 @@ pub fn half_of_peak_to_peak(positions: &[f64]) -> f64 {
     0.5 * (top(1.0) + top(-1.0))
 }
 
-/// What several simulations share: evaluations of the force that they may take, and who may ask
-/// them to end.
+/// The budget of several simulations together: the evaluations of the force that are left, and the
+/// interrupt.
 #[derive(Clone, Copy, Debug)]
 pub struct Budget {
     /// Evaluations that are left.
@@ -226,7 +226,7 @@ impl Budget {
     }
 }
 
-/// Where a simulation has come to.
+/// The steady state that a simulation has reached.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settled {
     /// Position and velocity at phase zero.
@@ -336,8 +336,8 @@ pub fn settle(
     };
     let end = states.len() - 1;
     let repeats = |count: usize| apart(end, count).is_some_and(|apart| apart <= 1e-3 * extent);
-    // What dies out slowly beside a motion comes back to itself as well, where its frequency is a
-    // fraction of the drive's.
+    // A slowly decaying disturbance repeats itself, too, if its frequency is a fraction of that of
+    // the drive.
     let dies_out = |count: usize| {
         let around = |quarter: usize| {
             let last = end * quarter / 4;

@@ -75,8 +75,8 @@ impl<'a> PeriodMap<'a> {
         if driven.self_excited {
             let mut course =
                 follow(driven, [start[0], 0.0], parameter, Until::Turn(LONGEST), &options)?;
-            // What is beside the start in the velocity is no other start; what is beside the end
-            // along the motion is the same end.
+            // A displacement along the trajectory is no other motion: the start counts by its
+            // position alone, and the velocity at the end is zero.
             let [x, _, by_start, ..] = course.end;
             course.end = [x, 0.0, by_start, 0.0, 0.0, 0.0];
             return course.turned().then_some(course);
@@ -312,7 +312,7 @@ impl Asked<'_> {
             let (start, _) = map.start(&shot.at);
             let known =
                 |path: &Path| self.lies_on(balance, path, start, seed.parameter, map.sizes[0]);
-            // What rests all the time is no motion.
+            // An equilibrium is not a motion.
             let own = shot.course.stuck() > 0.0 || !self.driven.is_balanced();
             if own && shot.course.extent() > 1e-6 * size && !paths.iter().any(known) {
                 let found = self.stuck_branch(balance, &map, shot, paths);

@@ -20,8 +20,7 @@ struct Motion {
 }
 
 impl Asked<'_> {
-    /// Where simulations have settled on motions that lie on none of these branches, each motion
-    /// once.
+    /// The motions reached by simulations that lie on none of these branches, each motion once.
     pub(super) fn unfollowed(
         &self,
         balance: &Balance,
@@ -97,7 +96,7 @@ impl Asked<'_> {
         let parameter = motion.parameter;
         let is_it = |guess: [f64; 2]| {
             let truth = periodic_motion(&self.driven, guess, parameter, motion.size);
-            // What shooting does not come to is taken as it is.
+            // A motion to which shooting does not converge is taken as simulated.
             self.is_one(motion, truth.map_or(guess, |truth| truth.start))
         };
         // A branch may end a little before an end of the range.

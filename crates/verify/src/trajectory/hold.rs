@@ -67,7 +67,7 @@ struct Surface {
     strength: f64,
 }
 
-/// How a surface counts on a stretch of the motion.
+/// The mode of a switching surface on a segment of the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Regime {
     /// As the equations are typed: a corner of theirs.
@@ -84,7 +84,7 @@ enum Regime {
 /// The surfaces that a motion was on where a stretch of it begins.
 type Regimes = Vec<(Surface, Regime)>;
 
-/// How all states are read from those that are followed.
+/// The map from the integrated states to all states.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     /// For each state its place among those that are followed, or its value in terms of them.
@@ -142,7 +142,7 @@ impl Course {
             pieces.push(piece);
             let Some(last) = last else { break reason };
             state = last;
-            // What else may hold it is looked for where there is more friction than is needed.
+            // Other surfaces can hold the motion only if there is more friction than is needed.
             let hit = match reason {
                 End::Event(event) => hit(&regimes, event.saturating_sub(recorded)),
                 _ => None,
@@ -371,9 +371,9 @@ fn surfaces(
     Ok(found)
 }
 
-/// How each of these surfaces, on which a state is, counts from there on: held where the friction
-/// that this needs is within its bound. Nothing where that cannot be told. Of the surface that was
-/// just hit the friction is at its bound, unless others take it over.
+/// Determines the mode of each of these surfaces, on all of which a state lies: held if the
+/// friction that this needs is within its bound. On the surface that was just hit the friction is
+/// at its bound, unless others take it over. Returns `None` if the modes cannot be determined.
 fn regimes_at(
     equations: &StateEquations,
     found: Vec<Surface>,

@@ -1,5 +1,5 @@
-//! Where a drive is short: the times at which a step has to end, so that no integrator steps over a
-//! pulse.
+//! Short pulses of a drive: the times at which a step has to end, so that no integrator steps over
+//! one.
 //!
 //! ```text
 //! F(t) = exp(-((t - s)/w)^2), tanh((t - s)/w), ...      s +- 2 w, 4 w, 8 w, ..., half the way to the next pulse

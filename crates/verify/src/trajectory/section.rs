@@ -22,12 +22,12 @@ use crate::system::{Event, Occurrence};
 /// The most states that one section holds.
 pub const MOST_CROSSINGS: f64 = 1e6;
 
-/// Where a motion is looked at.
+/// The condition for recording a point of the motion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Section {
     /// Once in this time, which may depend on the parameters: `2*pi/Omega`.
     Every(Expr),
-    /// Where this grows through zero: `x'`, `x - 0.1`.
+    /// An expression that grows through zero: `x'`, `x - 0.1`.
     Rising(Expr),
 }
 
@@ -48,8 +48,8 @@ impl Section {
         }
     }
 
-    /// What the integrator has to look out for: the expression, and its rate, whose zeros are where
-    /// a touch may be. A rate that cannot be written is left out.
+    /// The events that the integrator locates: the zeros of the expression, and those of its rate,
+    /// at which it may touch zero. A rate that cannot be written is left out.
     pub(super) fn events(&self, rates: &Rates) -> Vec<Event> {
         match self {
             Self::Every(_) => vec![],
@@ -72,7 +72,7 @@ fn rate(expression: &Expr, rates: &Rates) -> Option<Expr> {
     (!rate.is_zero()).then_some(rate)
 }
 
-/// What a motion leaves behind on its section.
+/// Crossings and touches of the section.
 #[derive(Clone, Debug, Default)]
 pub(super) struct OnSection {
     pub(super) crossings: Vec<Crossing>,

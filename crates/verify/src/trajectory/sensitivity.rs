@@ -17,13 +17,13 @@ use crate::system::End;
 /// differences grow in proportion.
 pub const DISPLACEMENT: f64 = 1e-12;
 
-/// What the errors of the integration begin with, at least.
+/// Least relative error that the integration starts with.
 const ROUNDING: f64 = 1e-15;
 
 /// The part of a motion whose size displaces what begins at zero.
 const BEGINNING: u32 = 100;
 
-/// What is lost when the sixth digit is.
+/// The relative error at which the sixth digit is lost.
 const SIX_DIGITS: f64 = 1e-6;
 
 impl Trajectory {

@@ -106,7 +106,8 @@ fn next_choice(chosen: &mut [usize], count: usize) -> bool {
 /// One solution of linear equations and the directions in which there are more; `None` where they
 /// contradict each other.
 fn solutions(matrix: &[Vec<f64>], right: &[f64]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
-    /// What rounding, and places that are on their surfaces to rounding, leave of zero.
+    /// Relative size below which an entry is zero: rounding, and the error of the positions on
+    /// their surfaces.
     const APART: f64 = 1e-6;
     let count = matrix.first().map_or(0, Vec::len);
     let mut rows: Vec<Vec<f64>> = matrix
@@ -183,7 +184,7 @@ mod tests {
         assert_eq!(groups([1.0, 0.5], [1.2, 0.0]), Some(vec![vec![(0, 1), (2, 1)]]));
         assert_eq!(groups([0.1, 0.5], [1.0, 0.0]), Some(vec![vec![(0, 1), (1, 1)]]));
         assert_eq!(groups([1.0, 0.5], [0.0, -1.0]), Some(vec![vec![(1, -1), (2, 1)]]));
-        // What contradicts itself has no shares.
+        // Contradicting equations have no solution.
         assert_eq!(of_one_size(&[vec![1.0, 1.0], vec![1.0, 1.0]], &[1.0, 2.0]), None);
         assert_eq!(of_one_size(&[vec![f64::NAN, 1.0], vec![1.0, 1.0]], &[1.0, 2.0]), None);
         // Nothing is open.

@@ -10,7 +10,7 @@ use crate::parallel::{each, threads};
 use crate::symbol::Symbol;
 use crate::system::{End, Integrator, LANES};
 
-/// What one of many motions leaves behind.
+/// The record of one motion of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweptMotion {
     /// The values of what is varied, in the order of the names.

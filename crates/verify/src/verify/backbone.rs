@@ -21,14 +21,14 @@ pub(super) struct TrueBackbone<'a> {
     well: Option<Well>,
     /// Amplitudes at which the motion reaches a corner or a narrow place of the force.
     places: Vec<f64>,
-    /// How many times the amplitude asked for a motion without escape is looked at.
+    /// Range of the search in multiples of the given amplitude, for a motion without escape.
     times: f64,
 }
 
-/// How far beyond the amplitude asked for a motion without escape is looked at.
+/// Range of the search in multiples of the given amplitude, for a motion without escape.
 const FARTHEST: f64 = 100.0;
 
-/// The same where each frequency is found step by step: what velocities add may grow without a
+/// That range if each frequency is found by integration: terms in the velocity may grow without
 /// bound.
 const FARTHEST_BY_STEPS: f64 = 2.0;
 

@@ -18,11 +18,11 @@ use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
 use crate::symbol::letters::{AMPLITUDE, FREQUENCY};
 
-/// How far `f/x` must have moved to count, relatively: less may be rounding.
+/// The relative change of `f/x` that counts: a smaller one may be rounding.
 const VISIBLE: f64 = 1e-12;
 
-/// What the bounds of the max-min approach are at these numbers; outside where they are not those
-/// at rest and at `x = A`.
+/// Checks the bounds of the max-min approach at these numbers; the range is outside if they are not
+/// those at rest and at `x = A`.
 pub(super) fn bounds(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -105,7 +105,7 @@ fn course(force: &Force, amplitude: f64) -> Option<Vec<(f64, f64)>> {
     let at_rest = Some(force.slope(0.0)).filter(|slope| slope.is_finite());
     let mut course = vec![(0.0, at_rest.unwrap_or_else(|| quotient(1e-9 * amplitude)))];
     course.extend(places.iter().map(|&place| (place, quotient(place))));
-    // Where it is stationary: x f' = f.
+    // The quotient f/x is stationary where x f' = f.
     let rate = |x: f64| force.slope(x) - quotient(x);
     for pair in places.windows(2) {
         if rate(pair[0]) * rate(pair[1]) < 0.0

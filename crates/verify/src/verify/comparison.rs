@@ -29,7 +29,7 @@ use crate::values::Values;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Row {
-    /// What it derived.
+    /// The derived answer.
     pub solution: Solution,
     /// omega by the formula; `None` where there is none.
     pub frequency: Option<f64>,
@@ -93,7 +93,7 @@ pub struct Comparison {
     pub rows: Vec<Row>,
     /// Those that do not.
     pub refused: Vec<Refused>,
-    /// Where the true motion is periodic.
+    /// The ranges of validity, in words, if the true motion is periodic.
     pub validity: Vec<String>,
 }
 
@@ -218,8 +218,8 @@ pub fn compare(
     })
 }
 
-/// What every method says: periodic motions, slow ones that settle on none, and refusals of those
-/// that say nothing else.
+/// Answers of all methods: periodic motions, slow ones that do not settle, and the refusals of
+/// those that give neither.
 fn answers(
     oscillator: &Oscillator,
     at: &Values,
@@ -235,8 +235,8 @@ fn answers(
         };
         let mut found = solved(&options);
         if found.is_err() && in_a_parameter {
-            // Where the parameter that is small by default leaves a method nothing to expand in,
-            // the amplitude may be.
+            // If the default small parameter leaves a method nothing to expand in, the amplitude
+            // may serve.
             let by_amplitude = solved(&Options {
                 small: Some(AmplitudeConvention::Initial.symbol().to_string()),
                 ..options.clone()
@@ -262,7 +262,7 @@ fn answers(
                 Some(settled) => solutions.push(settled),
                 None => slow.push(solution),
             },
-            // What nothing tells the start of is no motion to compare.
+            // A motion without a known initial state cannot be compared.
             (Ok(solution), Some(method))
                 if solution.response.is_none() && super::periodic(&solution).is_err() =>
             {

@@ -49,12 +49,12 @@ pub struct Singularity {
 /// Coefficients to which a law of ratios is fitted.
 const WINDOW: usize = 8;
 
-/// How well, relative to the radius, two windows must agree.
+/// Relative agreement of the radii by two windows of coefficients that is required.
 const AGREEMENT: f64 = 0.01;
 
-/// How far the series of omega^2 in a solution converges, by its
-/// [own exact coefficients](crate::series::singularity); `None` where it has too few, or symbols
-/// that do not enter in step with the order, or none that show a law.
+/// The nearest singularity of the series of omega^2 in a solution, by its [own exact
+/// coefficients](crate::series::singularity); `None` if it has too few of them, symbols that do not
+/// enter in step with the order, or coefficients that show no law.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -428,7 +428,7 @@ fn pair(coefficients: &[f64]) -> Option<Singularity> {
         return None;
     }
     let solved = matrix.clone().svd(true, true).solve(&right, 1e-14).ok()?;
-    // What is left over says whether the coefficients follow the law at all.
+    // The residual of the fit says whether the coefficients follow the law at all.
     let left_over = (&matrix * &solved - &right).norm() / right.norm();
     let (alpha, beta) = (solved[0], solved[3]);
     let cosine = 0.5 * alpha / (-beta).sqrt();

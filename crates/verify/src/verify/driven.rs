@@ -12,10 +12,9 @@
 //! slope          = log2(max_deviation at delta / at delta/2), delta before all that is small, the detuning among it
 //! ```
 //!
-//! Where two steady motions lead to one true motion, it belongs to the nearer of those that are as
-//! stable; for the other one the search goes on with the motions that are known kept away from, and
-//! what it finds counts where it is nearer to this steady motion than to any other that is as
-//! stable.
+//! If two steady motions lead to the same true motion, it belongs to the nearer of those of the
+//! same stability; for the other one the search is repeated away from the known motions, and a
+//! result counts if it is nearer to this steady motion than to any other of the same stability.
 //!
 //! Slow equations of order n are off by `delta^(n+1)`; the amplitude where they balance by
 //! `delta^n`, which is the slope to expect. It may be more where a coefficient of the error
@@ -138,7 +137,7 @@ impl<'a> Question<'a> {
         self.solution.steady_motions(&|name| self.numbers.get(&name).copied())
     }
 
-    /// What the formula leaves of the equation, over the force.
+    /// Root mean square residual of the formula in the equation, over that of the force.
     fn residual(&self, state: SteadyState) -> Option<f64> {
         let times = (0..SAMPLES).map(|k| self.truth.period * k as f64 / SAMPLES as f64);
         let (mut defects, mut forces) = (0.0, 0.0);
@@ -155,7 +154,7 @@ impl<'a> Question<'a> {
     /// is as stable or else nearer. Of those at an amplitude at which the series does not converge
     /// only what has a true motion of its own near by, and how many have none.
     fn judged_states(&self) -> (Vec<JudgedState>, usize) {
-        /// How far the true amplitude may be off.
+        /// Largest relative error of the true amplitude.
         const NEAR: f64 = 0.3;
         let SteadyMotions { states, spurious } = self.steady_motions();
         let (count, states) = (states.len(), [states, spurious].concat());
@@ -233,7 +232,7 @@ impl<'a> Question<'a> {
     }
 }
 
-/// Where a true motion begins.
+/// Position and velocity at the start of a true motion.
 fn start_of(found: &Option<PeriodicOrbit>) -> Option<(f64, f64)> {
     found.as_ref().map(|found| found.at(0.0))
 }
@@ -244,7 +243,7 @@ fn slope(oscillator: &Oscillator, question: &Question, judged: &JudgedState) -> 
     const HALVINGS: i32 = 3;
     /// The truth is good to 1e-10, and a hundred times that is measured to a per cent.
     const FLOOR: f64 = 1e-8;
-    /// By how much of itself the amplitude may have changed.
+    /// The relative change of the amplitude beyond which it is another motion.
     const OTHER: f64 = 0.5;
     let deviation = |halvings: i32| {
         if halvings == 0 {
@@ -267,7 +266,7 @@ fn slope(oscillator: &Oscillator, question: &Question, judged: &JudgedState) -> 
     };
     let errors: Vec<f64> =
         (0..HALVINGS).map_while(deviation).take_while(|error| *error >= FLOOR).collect();
-    // What is halved is the square of a small amplitude.
+    // The halved quantity is the square of a small amplitude.
     let power = if is_small_in_amplitude(question.solution) { 2.0 } else { 1.0 };
     slopes_of(&errors).map(|slope| power * slope)
 }
@@ -334,7 +333,7 @@ struct Truth {
     period: f64,
     /// The harmonic of the period whose amplitude is meant.
     own: u32,
-    /// How many periods of the drive it takes.
+    /// Number of drive periods in a period of the motion.
     drives: u32,
 }
 
@@ -382,7 +381,7 @@ impl Truth {
     /// The true periodic motion near one by the formula; where a second one is near that is as
     /// stable as it, and the first is not, that one.
     fn as_stable(&self, motion: &Formula, state: SteadyState) -> Option<PeriodicOrbit> {
-        /// How far the amplitude of the second may be off.
+        /// Largest relative error of the amplitude of the second motion.
         const NEAR: f64 = 0.3;
         let found = self.near(motion, state)?;
         let is_alike = |found: &PeriodicOrbit| found.attracts() == state.is_stable();
@@ -439,8 +438,8 @@ impl Truth {
         (size > 0.0).then(search).flatten()
     }
 
-    /// Where a true motion begins, and where it does a period of the drive later and so on, which
-    /// are other starts of the same one.
+    /// Initial states of a true motion at every period of the drive: all of them are starts of the
+    /// same motion.
     fn starts(&self, found: &PeriodicOrbit) -> Vec<[f64; 2]> {
         let part = self.period / f64::from(self.drives);
         let start = |k: u32| found.at(part * f64::from(k)).into();

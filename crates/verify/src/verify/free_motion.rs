@@ -16,19 +16,19 @@ use crate::oscillator::Oscillator;
 use crate::symbol::Symbol;
 use crate::trajectory::{Course, Trajectory};
 
-/// What is followed.
+/// A motion released from rest, and for how long it is followed.
 pub(super) struct Start {
-    /// What it swings about.
+    /// The equilibrium about which it oscillates.
     pub(super) equilibrium: f64,
-    /// Where it begins, at rest, from the equilibrium.
+    /// The initial distance from the equilibrium, at rest.
     pub(super) distance: f64,
-    /// How long it is followed.
+    /// Duration, in the unit of time.
     pub(super) duration: f64,
-    /// How often it is looked at, well below a quarter of a period.
+    /// The interval between samples, well below a quarter of a period.
     pub(super) step: f64,
 }
 
-/// How a motion is known.
+/// The representation of a motion.
 enum Path {
     /// From the equation, and held where friction holds it.
     Series(Box<Trajectory>),

@@ -23,7 +23,7 @@ use crate::symbol::Symbol;
 use crate::symbol::letters::AMPLITUDE;
 use crate::values::Values;
 
-/// How many periods of the slowest part are followed, and of the fastest at most.
+/// Number of periods of the slowest component that are followed, and of the fastest one at most.
 const PERIODS: [f64; 2] = [10.0, 200.0];
 const SAMPLES: usize = 4096;
 

@@ -106,7 +106,7 @@ pub struct Verification {
     pub true_frequency: f64,
     /// `frequency / true_frequency - 1`.
     pub relative_error: Option<f64>,
-    /// Which law the frequency comes from: `omega^2`, of which it is the root, or `omega`.
+    /// The law that gives the frequency: `omega^2`, of which it is the root, or `omega`.
     pub judged_on: &'static str,
     /// The error of the other law, the series of omega itself, where the formula has both.
     pub error_of_omega: Option<f64>,
@@ -123,7 +123,7 @@ pub struct Verification {
     /// Whether the motion runs over several wells through an unstable equilibrium: such motions
     /// have a least amplitude.
     pub over_several_wells: bool,
-    /// Where the formula holds, in words and numbers; what lies outside is marked.
+    /// The ranges in which the formula holds, in words and numbers; values outside are marked.
     pub ranges: Vec<validity::Range>,
     /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as
     /// they were solved for.
@@ -347,7 +347,7 @@ pub fn judge(
     judge_to(oscillator, solution, at, tolerance, Extent::Range)
 }
 
-/// How much is judged.
+/// The extent of a verification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// The motion at the values given, and nothing else: where motions are periodic, neither how
@@ -583,7 +583,7 @@ fn on_cycle(solution: &Solution, at: &Values) -> Option<Solution> {
     solution.slow().filter(|_| !started).and_then(|_| solution.on_cycle())
 }
 
-/// What the amplitude among the values is called: that of the start, where it changes.
+/// The symbol of the amplitude among the values: that of the start if the amplitude changes.
 fn amplitude_symbol(solution: &Solution) -> Symbol {
     match solution.slow() {
         Some(_) => AmplitudeConvention::Initial.symbol(),
@@ -648,7 +648,7 @@ fn checked_numbers(
     if !missing.is_empty() {
         return Err(VerificationError::Missing(missing));
     }
-    // Where the frequency does not depend on the amplitude, any will do to compare the motion.
+    // If the frequency does not depend on the amplitude, any one will do to compare the motion.
     let amplitude_symbol = amplitude_symbol(solution);
     let numbers = at.with(amplitude_symbol, at.get(amplitude_symbol).unwrap_or(1.0));
     let may_rest = solution.limit_cycle.is_some() || solution.in_time().is_some();
@@ -852,7 +852,7 @@ fn formula_motion(
     Some((found.frequency_squared.sqrt(), found.motion?))
 }
 
-/// Which true motion an answer is meant for.
+/// Returns the true motion that an answer is meant for.
 fn meant(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Meant {
     let value_of = |symbol: Symbol| numbers.get(&symbol).copied();
     let near = |cycle: &crate::solution::LimitCycle| {
@@ -900,7 +900,7 @@ fn force_of(
     Force::new(force, coordinate, &solution.equilibrium, numbers, amplitude)
 }
 
-/// Where a true limit cycle lies and what it does to its neighbours.
+/// Describes the position of a true limit cycle and whether it attracts.
 fn about_the_cycle(truth: &TrueMotion, coordinate: Symbol) -> Option<validity::Range> {
     let cycle = truth.limit_cycle()?;
     let does = if cycle.attracts() { "attracts" } else { "repels" };
@@ -943,8 +943,8 @@ fn largest_deviation(
     largest.is_finite().then_some(largest)
 }
 
-/// What is positive where the limit cycle of a formula attracts, negative where it repels, and zero
-/// where the amplitude is free.
+/// A number that is positive if the limit cycle of a formula attracts, negative if it repels, and
+/// zero if the amplitude is free.
 fn attraction(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
     let cycle = solution.limit_cycle.as_ref()?;
     let own = cycle.cycles.get(cycle.number.wrapping_sub(1))?;
@@ -1035,9 +1035,9 @@ fn slopes_of(errors: &[f64]) -> Option<f64> {
     }
 }
 
-/// Where the small parameter marks terms with numbers before them: the equation with that parameter
-/// in it, so that it can be varied. What is not the linear restoring force is multiplied by
-/// `delta / value`.
+/// If the small parameter marks terms with numbers before them, returns the equation with that
+/// parameter in it, so that it can be varied: every term but the linear restoring force is
+/// multiplied by `delta / value`.
 fn with_small_parameter(
     oscillator: &Oscillator,
     solution: &Solution,

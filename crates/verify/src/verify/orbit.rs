@@ -20,20 +20,20 @@ use crate::symbol::Symbol;
 /// Points per period on which motions are compared and their harmonics taken.
 pub(super) const SAMPLES: usize = 1024;
 
-/// Which true motion is meant.
+/// The true motion that an answer is compared with.
 pub(super) struct Meant {
-    /// What it swings about.
+    /// The equilibrium about which it oscillates.
     pub(super) equilibrium: Expr,
-    /// What the amplitude measures.
+    /// The definition of its amplitude.
     pub(super) convention: AmplitudeConvention,
-    /// Where it is a limit cycle: near which one.
+    /// The neighbourhood of a limit cycle; `None` for a member of a family of periodic motions.
     pub(super) limit_cycle: Option<NearCycle>,
     /// About which omega to expect where the energy does not tell the period: how long to wait for
     /// the return, no more.
     pub(super) frequency: Option<f64>,
 }
 
-/// Where to look for a limit cycle.
+/// The neighbourhood in which a limit cycle is searched.
 pub(super) struct NearCycle {
     /// About its amplitude.
     pub(super) amplitude: f64,
@@ -95,7 +95,8 @@ impl TrueMotion {
         meant: &Meant,
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
-        /// How well the Runge-Kutta return and the energy must agree for the path to be used.
+        /// Relative agreement of the periods by Runge-Kutta and by the energy that is required to
+        /// use the path.
         const AGREEMENT: f64 = 1e-6;
         let physics = Physics::new(oscillator, meant, numbers)?;
         if let Some(near) = &meant.limit_cycle {
@@ -193,12 +194,12 @@ impl TrueMotion {
 pub(super) struct Physics {
     /// The force at rest.
     pub(super) rest: Force,
-    /// What velocities add to it, as a function of position and velocity; `None` where the period
-    /// follows from the energy.
+    /// The velocity-dependent part of the force as a function of position and velocity; `None` if
+    /// the period follows from the energy.
     moving: Option<CompiledFunction>,
-    /// How long a motion is followed.
+    /// The longest time for which a motion is followed.
     longest: f64,
-    /// What the amplitude measures.
+    /// The definition of the amplitude.
     convention: AmplitudeConvention,
 }
 

@@ -1,5 +1,5 @@
-//! How far a formula is good: the first amplitude at which the error of its frequency crosses the
-//! tolerance.
+//! The amplitude range of a formula: the first amplitude at which the error of its frequency
+//! crosses the tolerance.
 //!
 //! The error is followed from rest outwards. Between two points it is taken to be as straight as
 //! its value in the middle says: where that leaves room for a crossing the stretch is halved. Where
@@ -48,7 +48,7 @@ pub(super) fn places_of_law(
     cuts.into_iter().map(|place| place * to.signum()).filter(|size| *size > 0.0).collect()
 }
 
-/// How far a formula is good; amplitudes have their sign.
+/// The amplitude range in which a formula is within the tolerance; amplitudes have their sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reach {
     /// At every amplitude looked at, up to this one.
@@ -252,7 +252,7 @@ struct Follow<'a> {
 impl Follow<'_> {
     /// The first crossing between two points, of which the first is good.
     fn first_crossing(&self, from: (f64, f64), to: (f64, f64)) -> Option<f64> {
-        /// How many stretches may be halved in all, and how often one.
+        /// Largest number of bisections in all, and of one interval.
         const MOST: usize = 160;
         const DEEPEST: usize = 8;
         /// Of the tolerance: where the error is larger, one look at the middle is not enough, for
@@ -269,7 +269,7 @@ impl Follow<'_> {
                 continue;
             }
             let Some(value) = (self.error)(middle) else {
-                // Where nothing is known in between the range ends with what is.
+                // If nothing is known in between, the range ends with the last known amplitude.
                 if high.1.abs() > self.tolerance {
                     return Some(low.0);
                 }
@@ -288,7 +288,7 @@ impl Follow<'_> {
                 continue;
             }
             if value.abs() > self.tolerance {
-                // What lies beyond the middle does not matter any more.
+                // Everything beyond the middle is irrelevant once an error is found there.
                 open.clear();
                 if bend.is_finite() && bend < 0.1 * self.tolerance {
                     return Some(self.crossing(low, middle));

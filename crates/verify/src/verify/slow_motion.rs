@@ -21,7 +21,7 @@ use crate::symbol::Symbol;
 const MOST_PERIODS: f64 = 50.0;
 /// Periods that are always followed.
 const LEAST_PERIODS: f64 = 3.0;
-/// How often in a period a motion is looked at.
+/// Samples of a motion per period.
 pub(super) const LOOKS: f64 = 32.0;
 
 /// The slow equations with numbers, solved from the start.
@@ -36,8 +36,8 @@ pub(super) struct SlowMotion {
     pub(super) equilibrium: f64,
     /// The amplitude at the start.
     start: f64,
-    /// What the phase begins with beside its own start: pi for a negative one, whose size the
-    /// formula takes.
+    /// An angle added to the initial phase: pi for a negative amplitude, whose size the formula
+    /// takes.
     turn: f64,
     /// 2 pi over the rate of the phase there.
     pub(super) period: f64,
@@ -53,7 +53,7 @@ pub(super) struct SlowMotion {
 /// Amplitude and phase at a time.
 type SlowPath = Box<dyn Fn(f64) -> Option<[f64; 2]>>;
 
-/// How amplitude and phase are known.
+/// The representation of amplitude and phase.
 enum Slow {
     /// In closed form, in the time.
     Closed([CompiledFunction; 2]),
@@ -66,7 +66,7 @@ struct Numbers {
     /// Parameters, definitions and the amplitude at the start, which is the size of one that is
     /// turned.
     known: BTreeMap<Symbol, f64>,
-    /// The same as exact numbers.
+    /// These values as exact numbers.
     exact: BTreeMap<Symbol, Expr>,
     /// Whether a negative amplitude is taken as half a turn.
     turned: bool,
@@ -224,7 +224,7 @@ impl SlowMotion {
         if a == 0.0 { 0.0 } else { self.place.call(&[a, phase]) }
     }
 
-    /// Where the formula turns on the side of a true turning point.
+    /// The extremum of the formula on the side of a true turning point.
     pub(super) fn turned(&self, t: f64, x: f64) -> f64 {
         let turn = |side: f64| {
             let speed = |phase: f64| self.speed.call(&[self.slow_at(t)[0], phase]);
@@ -277,7 +277,7 @@ impl SlowMotion {
         find_root(excess, time(place - 1), time(place)).ok()
     }
 
-    /// How long it is worth following, and why no longer.
+    /// The time for which the motion is worth following, and the reason for its end.
     pub(super) fn duration(&self) -> (f64, &'static str) {
         let longest = MOST_PERIODS * self.period;
         let start = self.start.abs();

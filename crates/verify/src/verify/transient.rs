@@ -198,7 +198,7 @@ struct Judged {
     start: f64,
 }
 
-/// How far a formula is off, over the amplitude at the start.
+/// Errors of a formula, over the initial amplitude.
 struct Errors {
     /// At the turning points.
     amplitude: Option<f64>,
@@ -255,7 +255,7 @@ impl Judged {
         }
     }
 
-    /// What the formula leaves of the equation, over the force.
+    /// Root mean square residual of the formula in the equation, over that of the force.
     fn residual(&self, oscillator: &Oscillator, numbers: &BTreeMap<Symbol, f64>) -> Option<f64> {
         let known = numbers.iter();
         let known =
@@ -283,7 +283,8 @@ struct Slopes {
     deviation: Option<f64>,
 }
 
-/// What is small is halved again and again, and the motion followed twice as long each time.
+/// Measures the exponents of the errors: the small quantities are halved again and again, and the
+/// motion is followed twice as long each time.
 fn slopes(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -291,7 +292,7 @@ fn slopes(
     judged: &Judged,
 ) -> Slopes {
     const HALVINGS: i32 = 4;
-    /// How long the first motion is followed: the last one is as long as all before.
+    /// Duration of the first motion in periods; it is doubled with each halving.
     const PERIODS: f64 = 8.0;
     /// The truth is good to 1e-11, and a hundred times that is measured to a per cent.
     const FLOOR: f64 = 1e-9;
@@ -310,14 +311,14 @@ fn slopes(
         (judged.until >= until).then(|| judged.errors(until))
     };
     let mut errors = vec![];
-    // Where the first cannot be had no other is asked for.
+    // Without the first error the others are not needed.
     for halving in 0..HALVINGS {
         match error(halving) {
             Some(found) => errors.push(found),
             None => break,
         }
     }
-    // What is halved is the square of a small amplitude.
+    // The halved quantity is the square of a small amplitude.
     let power = if is_small_in_amplitude(solution) { 2.0 } else { 1.0 };
     let measured = |of: fn(&Errors) -> Option<f64>| {
         let errors: Vec<f64> =

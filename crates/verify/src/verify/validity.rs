@@ -1,4 +1,4 @@
-//! Where a formula holds: the well of the true motion, the amplitude at which a law loses its
+//! The validity of a formula: the well of the true motion, the amplitude at which a law loses its
 //! frequency, the radius of convergence of its series, and the range in which its error stays
 //! small.
 
@@ -35,7 +35,7 @@ pub struct Range {
     pub outside: bool,
 }
 
-/// What is known of where `solution` holds at these numbers.
+/// Collects the known limits of validity of `solution` at these numbers.
 pub(super) fn ranges(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -46,7 +46,7 @@ pub(super) fn ranges(
     if let Some(cycle) = &solution.limit_cycle {
         let series =
             Entry::of(solution.method).sees == Sees::Derivatives && cycle.small_with.is_empty();
-        // Where nothing feeds the motion there is no cycle to expand from.
+        // Without self-excitation there is no cycle to expand from.
         let feeds = numbers.get(&solution.small_parameter).is_some_and(|value| *value != 0.0);
         let found = (series && feeds).then(|| convergence(oscillator, solution, numbers)).flatten();
         ranges.extend(found.map(|range| {
@@ -113,7 +113,7 @@ pub(super) fn of_equation(
     })
 }
 
-/// How good the integral of a law by quadrature is.
+/// The error of the numerical integral of a law, as a remark.
 fn integral_error(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -246,7 +246,7 @@ fn vanishing(
     limit: f64,
 ) -> Option<Range> {
     const STEPS: usize = 256;
-    /// How far the search goes, in amplitudes, where the motion has no escape.
+    /// Range of the search in amplitudes, if the motion has no escape.
     const FARTHEST: f64 = 100.0;
     let symbol = solution.amplitude.symbol();
     let amplitude = *numbers.get(&symbol)?;

@@ -427,7 +427,7 @@ fn refine(certificate: &mut DampedCertificate) -> Result<(), NotProved> {
     iterate(certificate, few_units(bits), step, |certificate, step| {
         let short = |ball| Balls { bits }.converted(ball, WORKING).middle;
         let block = certificate.problem().block();
-        // That of 1/omega is the first, where the drive does not give it.
+        // If the drive does not give the frequency, 1/omega is the first unknown of the block.
         let first = usize::from(certificate.drive.is_none());
         if certificate.drive.is_none() {
             certificate.reciprocal -= short(&step.block[0]);

@@ -30,7 +30,7 @@ use theorem::Problem;
 pub struct Drive {
     /// Omega, a positive fraction.
     pub frequency: Rational,
-    /// How many periods of the drive the motion takes, n.
+    /// Number n of drive periods in one period of the motion.
     pub periods: usize,
     /// The harmonic of the motion whose amplitude the formula is about.
     pub harmonic: usize,
@@ -45,7 +45,7 @@ pub struct DampedCertificate {
     /// `h`, likewise; of a driven equation it has the letters `c` and `s` too, `cos(Omega t)` and
     /// `sin(Omega t)`.
     pub force: Expr,
-    /// What drives the motion; `None` of a limit cycle.
+    /// The drive; `None` for a limit cycle.
     pub drive: Option<Drive>,
     /// Whether the motion has odd harmonics alone, as it may where half a period later the equation
     /// is its mirror image: `g` is even and `h` odd.
@@ -104,7 +104,8 @@ pub fn check_damped(certificate: &DampedCertificate) -> Result<Certified, CheckE
 }
 
 impl DampedCertificate {
-    /// What is to be proved, and from what.
+    /// Returns the equation and the approximate motion of this certificate in the form that the
+    /// theorem takes.
     fn problem(&self) -> Problem<'_> {
         Problem {
             damping: &self.damping,
@@ -158,7 +159,7 @@ impl DampedCertificate {
         FourierSeries::exactly(balls(&self.cosines), balls(&self.sines)).of_digits(self.bits)
     }
 
-    /// What does not fit together.
+    /// Checks that sizes, letters and numbers fit together; the error names what does not.
     fn well_formed(&self) -> Result<(), &'static str> {
         let drive = self.drive.as_ref();
         let waves = drive.map(|_| theorem::waves_of_drive()).into_iter().flatten();
@@ -268,7 +269,7 @@ impl DampedCertificate {
         })
     }
 
-    /// What follows from a proof.
+    /// Returns the frequency, the motion and the errors of the formula that follow from a proof.
     ///
     /// # Errors
     /// A frequency without a value, or a damping without one.
@@ -367,8 +368,8 @@ fn amplitude_of(motion: &FourierSeries, harmonic: usize) -> Ball {
     })
 }
 
-/// The same motion with another phase: that where the first harmonic is a positive cosine; as it is
-/// where it has no first harmonic.
+/// The motion with its phase shifted so that the first harmonic is a positive cosine; unchanged if
+/// it has no first harmonic.
 fn turned(motion: FourierSeries) -> FourierSeries {
     let (cosine, sine) = (motion.cosine(1), motion.sine(1));
     if sine.is_zero() && cosine.middle.is_positive() {

@@ -83,13 +83,13 @@ pub(super) fn waves_of_drive() -> [Symbol; 2] {
     ["c", "s"].map(Symbol::new)
 }
 
-/// What a certificate says, whatever kind it is of.
+/// A certificate in the form that the theorem takes, of a limit cycle or of a driven motion.
 pub(super) struct Problem<'a> {
     /// g.
     pub(super) damping: &'a Expr,
     /// h, with the letters of the [drive](waves_of_drive) where there is one.
     pub(super) force: &'a Expr,
-    /// How many periods the drive has in one of the motion; `None` of a limit cycle, of which p is
+    /// Number of drive periods in one period of the motion; `None` for a limit cycle, of which p is
     /// an unknown.
     pub(super) drive: Option<usize>,
     /// Whether the motion has odd harmonics alone.
@@ -215,8 +215,8 @@ pub(super) fn prove(problem: Problem) -> Result<Proof, NotProved> {
     radius(defect, contraction, curvature, distinct)
 }
 
-/// What is to be subtracted from p and the harmonics of a certificate, so that it is nearer to the
-/// solution; nothing is proved of it.
+/// The Newton correction: subtracted from p and the harmonics of a certificate, it brings them
+/// nearer to the solution. It proves nothing.
 ///
 /// # Errors
 /// As [`prove`].
@@ -295,7 +295,7 @@ struct Derivative {
 }
 
 impl Derivative {
-    /// How many harmonics g(X) and h'(X) have.
+    /// Number of harmonics that g(X) or h'(X) have, the larger of the two.
     fn width(&self) -> usize {
         self.damping.length().max(self.slope.length())
     }
@@ -318,7 +318,8 @@ impl Derivative {
         )
     }
 
-    /// The same with `e''`.
+    /// The entry of the derivative, `e'' + p (g e)' + p^2 h' e`: that of [`Self::bent`] and on the
+    /// diagonal `-k^2` of `e''`.
     fn entry(&self, row: Wave, column: Wave) -> Ball {
         let bent = self.bent(row, column);
         match row == column {
@@ -337,8 +338,8 @@ struct Equations<'a> {
     drag: FourierSeries,
     /// h(X).
     force: FourierSeries,
-    /// Those of the block, that of the sine of the first harmonic first; of the unknowns p has its
-    /// place.
+    /// The equations of the block, the sine of the first harmonic first. Among the unknowns p takes
+    /// the place of that sine.
     block: Vec<Wave>,
 }
 
@@ -356,7 +357,8 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// How many of the unknowns are no waves: p, where it is one.
+    /// Number of unknowns in front of the Fourier coefficients: one if p is an unknown, otherwise
+    /// zero.
     fn unknowns_before_waves(&self) -> usize {
         usize::from(self.problem.is_free())
     }
@@ -405,7 +407,7 @@ impl<'a> Equations<'a> {
     }
 }
 
-/// What the bounds are made of.
+/// The quantities from which the bounds Y0, Z1 and Z2 are computed.
 struct System<'a> {
     equations: Equations<'a>,
     inverse: Inverse,
@@ -483,7 +485,7 @@ impl<'a> System<'a> {
         let waves_from = self.equations.unknowns_before_waves();
         let in_block = self.equations.block.iter().enumerate().skip(waves_from);
         let in_block = in_block.map(|(place, wave)| (*wave, Some(place)));
-        // Where g and h' reach into the block, and beyond.
+        // Columns with entries in the block, first where g and h' couple them to it, then beyond.
         let near = self.equations.beyond(0, highest + width).map(|wave| (wave, None));
         for (wave, place) in in_block.chain(near) {
             largest = largest.max(self.column(derivative, wave, place));
@@ -801,7 +803,7 @@ mod tests {
                         None => system.column_of_reciprocal(),
                         Some(wave) => system.column(&derivative, wave, place_of(&system, wave)),
                     };
-                    // What was cut from g and h' is not in the column, but in the sum.
+                    // The truncated part of g and h' is in the norm `size`, not in the column.
                     assert!(size <= bound.value() + 1e-9, "{direction:?}: {size}, {bound:?}");
                     assert!(size > 0.99 * bound.value() - 1e-9, "{direction:?}: {size}, {bound:?}");
                     assert!(size <= contraction, "{direction:?}: {size}, {contraction}");

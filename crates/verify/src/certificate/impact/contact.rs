@@ -1,4 +1,4 @@
-//! How deep and how long an elastic contact is, enclosed.
+//! Enclosures of the greatest depth and of the duration of an elastic contact.
 //!
 //! Between the touch with the speed v and the deepest point the energy is kept. With the depth d =
 //! q^2 every function is analytic:
@@ -32,7 +32,8 @@ use crate::exact::{Integer, Rational};
 /// Powers of a Taylor series that are kept.
 const ORDER: usize = 64;
 
-/// What is left of a piece is no more than this, or it is halved.
+/// Binary exponent of the largest remainder of the Taylor series on a piece of the integral; a
+/// piece with a larger one is halved.
 const NEGLIGIBLE: i32 = -140;
 
 /// The contact of the pendulum with a barrier of Hertz's law.
@@ -100,7 +101,8 @@ impl Contact {
     /// `qm`, the square root of the greatest depth.
     ///
     /// # Errors
-    /// Where no two signs enclose it, or it lies beyond `pi/2`.
+    /// [`NotEnclosed::Digits`] if no two signs enclose the root, [`NotEnclosed::Deep`] if it lies
+    /// beyond `pi/2`.
     pub(super) fn root_of_depth(&self) -> Result<Ball, NotEnclosed> {
         let mut q = self.candidate().ok_or(NotEnclosed::Digits)?;
         q.radius = Bound::power_of_two(-170);
@@ -125,7 +127,7 @@ impl Contact {
     /// The duration of the whole contact.
     ///
     /// # Errors
-    /// Where the integral needs more pieces than there may be.
+    /// [`NotEnclosed`] if the integral needs more pieces than the limit.
     pub(super) fn duration(&self, qm: &Ball) -> Result<Ball, NotEnclosed> {
         const FIRST: u32 = 5;
         const SMALLEST: u32 = 12;
@@ -362,8 +364,8 @@ mod tests {
         assert!(inverse_root(&[Ball { radius: Bound::exactly(3.0), ..wide }]).is_none());
     }
 
-    /// What is left out of the series of a function is in the radii: fewer terms have wider ones,
-    /// and all contain the function.
+    /// The radii include the remainder of the series of a function: with fewer terms they are
+    /// wider, and all of them contain the function.
     #[test]
     fn a_function_of_a_series_holds_what_was_left_out() {
         let y = [ball(1, 3), ball(1, 2)];

@@ -27,7 +27,7 @@ use super::fourier_series::WORKING;
 use crate::exact::Rational;
 use crate::exact::ball::Ball;
 
-/// What is proved of an impact; times in units of 1/omega, angles in rad.
+/// The proved enclosures of an impact; times in units of 1/omega, angles in rad.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ImpactEnclosure {
@@ -94,7 +94,7 @@ pub enum NotEnclosed {
 /// ```
 ///
 /// # Errors
-/// Where there is no such impact, or its numbers are not proved.
+/// [`NotEnclosed`] if there is no such impact, or its numbers are not proved.
 pub fn enclose_impact(
     amplitude: &Rational,
     barrier: &Rational,

@@ -1,9 +1,9 @@
-//! How an answer came about, as it stands on paper: the orders of an expansion, and lines of words
-//! and equations.
+//! The derivation of an answer as on paper: the orders of an expansion, and lines of words and
+//! equations.
 //!
 //! In: what a method did, in its order. Out: [`Step`]s and [`Line`]s for every format to lay out.
 //!
-//! What prints as text prints as LaTeX: both read the same formulas.
+//! Text and LaTeX are printed from the same formulas.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -25,7 +25,7 @@ pub struct Step {
     pub resonance: Polynomial,
     /// `W_n`, which the secular condition fixes.
     pub correction: Polynomial,
-    /// What pins down the homogeneous solution.
+    /// The conditions that fix the homogeneous solution.
     pub conditions: Vec<Condition>,
     /// `y_n`.
     pub displacement: FourierSeries<Polynomials>,
@@ -34,13 +34,13 @@ pub struct Step {
 }
 
 impl Step {
-    /// What drives `y_n` beside the secular term: `y_n'' + y_n`.
+    /// `y_n'' + y_n`, the forcing of the n-th order without its secular term.
     pub fn right_side(&self) -> FourierSeries<Polynomials> {
         self.displacement.derivative().derivative().sum(&self.displacement)
     }
 }
 
-/// What a homogeneous solution is chosen by.
+/// A condition that fixes a homogeneous solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Condition {
     /// `y_n(0)` has this value.
@@ -68,13 +68,13 @@ pub struct AmplitudeCondition {
 /// One line of a derivation: words, an equation, or an equation with the reason for it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
-    /// What is done; may be empty.
+    /// The step in words; may be empty.
     pub words: String,
     /// Formulas that are equal, from left to right; may be empty.
     pub equal: Vec<Formula>,
 }
 
-/// What a line is made of: an expression, or what no expression of the grammar can say.
+/// A part of a line: an expression, or a formula that the grammar of expressions cannot write.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Formula {
     /// An expression.
@@ -90,7 +90,7 @@ pub enum Formula {
     Oscillator {
         /// `y`.
         of: Symbol,
-        /// What stands before `y`.
+        /// The coefficient of `y`.
         square: Expr,
     },
     /// `y(0)`, or `y'(0)`.
@@ -102,13 +102,13 @@ pub enum Formula {
     },
     /// `factor * int_from^to integrand d(variable)`.
     Integral {
-        /// What stands before the integral.
+        /// The factor in front of the integral.
         factor: Expr,
         /// The lower end.
         from: Expr,
         /// The upper end.
         to: Expr,
-        /// What is integrated.
+        /// The integrand.
         integrand: Box<Self>,
         /// Over which variable.
         variable: Symbol,
@@ -117,9 +117,9 @@ pub enum Formula {
     OverRoot(Expr, Box<Self>),
     /// `factor * d(of)/d(by)`.
     Slope {
-        /// What stands before the derivative.
+        /// The factor in front of the derivative.
         factor: Expr,
-        /// What is differentiated.
+        /// The dependent variable.
         of: Symbol,
         /// By what.
         by: Symbol,
@@ -164,7 +164,7 @@ impl Line {
         self
     }
 
-    /// The same line with words in front of it.
+    /// Returns this line with words in front of it.
     pub fn because(self, words: impl Into<String>) -> Self {
         Self { words: words.into(), ..self }
     }

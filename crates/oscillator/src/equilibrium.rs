@@ -1,5 +1,5 @@
-//! Where a motion swings about: the stable equilibrium nearest to `x = 0`, or the one asked for,
-//! and the equation seen from there.
+//! The equilibrium about which a motion oscillates, the stable one nearest to `x = 0` or the one
+//! asked for, and the equation in the deviation from it.
 //!
 //! In comes an [`Oscillator`], with or without an equilibrium asked for; out goes a [`Centred`]:
 //! the position, the equation about it, and what its symbols stand for; or an [`OscillatorError`]
@@ -53,7 +53,7 @@ pub struct Centred {
     /// The equilibrium in numbers and parameters; seventeen digits where it has no closed form
     /// here.
     pub position: Expr,
-    /// The same with the symbol of `definition` in it, where there is one.
+    /// The equilibrium with the symbol of `definition` in it, if there is one.
     pub written: Expr,
     /// The symbol that stands for the equilibrium, or its negative, in the force.
     pub definition: Option<Definition>,
@@ -101,7 +101,7 @@ pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, 
     let Ok(expanded) = oscillator.force.expand() else {
         return Ok(Centred::at_origin(oscillator));
     };
-    // What drives the motion does not decide where it swings.
+    // Terms with the time in them do not decide about the equilibrium.
     let (driving, quiet): (Vec<Expr>, Vec<Expr>) =
         expanded.terms().iter().cloned().partition(|term| term.contains(t));
     let mut free = oscillator.clone();
@@ -124,7 +124,7 @@ pub fn centred(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, 
 /// As [`centred`], of a force that does not know the time.
 fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred, OscillatorError> {
     let position = oscillator.coordinate;
-    // Where the force has no value at rest the methods refuse it.
+    // If the force has no value at rest, the methods refuse it.
     let Ok(still) = oscillator.force.substitute(oscillator.velocity(), &Expr::zero()) else {
         return Ok(Centred::at_origin(oscillator));
     };
@@ -178,8 +178,8 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
     };
     if force.is_numerical() {
         let mut stable = force.stable();
-        // Where it is infinite it is none, whatever an expression with a sign in it is worth at
-        // zero itself.
+        // A point at which the force is infinite is no equilibrium, whatever the sign function in
+        // the expression is worth at zero.
         stable.retain(|found| pull.is_none() || found.position.abs() > 1e-100);
         let nearest = stable.iter().find(|found| found.reachable);
         return match (nearest, stable.is_empty()) {
@@ -273,7 +273,7 @@ fn about(
     asked: &Expr,
     degree: Option<u32>,
 ) -> Result<Centred, OscillatorError> {
-    /// How far a number typed may be from the equilibrium it means, relatively.
+    /// Relative error of a typed number that still means the equilibrium.
     const ROUNDING: f64 = 1e-3;
     let force = Force::new(still, oscillator.coordinate);
     let none_there = || OscillatorError::NoSuchEquilibrium {
@@ -356,7 +356,7 @@ pub(crate) fn stable_elsewhere(oscillator: &Oscillator) -> Option<OscillatorErro
         .then(|| force.unstable(oscillator.of_position_alone()))
 }
 
-/// Where an equilibrium is.
+/// The position of an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 enum Place {
     /// In closed form.
@@ -412,7 +412,7 @@ fn seen_from(
         centred.oscillator.force = &oscillator.force - &at_rest;
         return Ok(centred);
     }
-    // What stands for the equilibrium is positive wherever that is known, as edges of barriers are
+    // The symbol of the equilibrium is positive if its sign is known, as edges of barriers are
     // taken to be.
     let negative = number.is_some_and(|number| number < 0.0);
     let symbol = fresh(&format!("{coordinate}_e"), &oscillator.names());

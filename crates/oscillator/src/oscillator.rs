@@ -184,12 +184,12 @@ pub enum OscillatorError {
         /// For one that is zero where the root has no value, where another term pulls back there.
         zero: Option<String>,
     },
-    /// What was asked for is no stable equilibrium.
+    /// The given position is no stable equilibrium.
     #[error("{coordinate} = {asked} is no stable equilibrium{}", stable_ones(*coordinate, .stable))]
     NoSuchEquilibrium {
         /// The coordinate.
         coordinate: Symbol,
-        /// What was asked for.
+        /// The given position.
         asked: Expr,
         /// Those that are stable.
         stable: Equilibria,
@@ -224,13 +224,13 @@ pub enum OscillatorError {
 /// The stable equilibria of a force, as many as a message names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Equilibria {
-    /// Where they are; those without a short closed form by their numbers.
+    /// Positions of the equilibria; numbers for those without a short closed form.
     pub positions: Vec<Position>,
-    /// Where there are others.
+    /// The positions of further equilibria; `None` if there are no others.
     pub others: Option<Others>,
 }
 
-/// Where there are more equilibria than a message names.
+/// Description of further equilibria if there are more than a message names.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Others {
     /// Again after each period of the force.
@@ -280,7 +280,7 @@ impl OscillatorError {
         }
     }
 
-    /// What to try, where something is worth trying.
+    /// Returns advice on what to try; `None` if there is nothing worth trying.
     pub fn help(&self) -> Option<Advice> {
         let either = |words: &str, [first, second]: [Method; 2]| {
             let first = Advice::words(words).choose(Setting::Method(first));
@@ -408,7 +408,8 @@ impl Oscillator {
         }
         let rest = residual.substitute(acceleration, &Expr::zero())?;
         let force = Expr::divide(&rest, &mass)?;
-        // Where the force has a pole there no motion comes to rest; elsewhere the mass is another.
+        // If the force has a pole there, no motion comes to rest; otherwise the mass is the
+        // problem.
         let vanishes = at_rest(&mass, coordinate).is_ok_and(|mass| mass.is_zero());
         if vanishes && at_rest(&force, coordinate).is_ok() {
             return Err(OscillatorError::VanishingMass(mass.to_string()));
@@ -432,14 +433,14 @@ impl Oscillator {
         })
     }
 
-    /// The same equation, to be seen from this equilibrium.
+    /// Returns the equation, to be solved about this equilibrium.
     #[must_use]
     pub fn about(mut self, equilibrium: Expr) -> Self {
         self.about = Some(equilibrium);
         self
     }
 
-    /// The same equation with exact values for some of its parameters.
+    /// Returns the equation with exact values for some of its parameters.
     ///
     /// # Errors
     /// A value at which a term has none.
@@ -784,7 +785,7 @@ impl Oscillator {
                 1,
             ),
         };
-        // Where a singularity is removable the force at rest is known by its series alone.
+        // At a removable singularity the force at rest is known by its series alone.
         if let (SmallParameter::Amplitude, Some(at_rest)) = (small, parts.first())
             && !vanishes_identically(at_rest)
         {
@@ -998,7 +999,7 @@ impl PerturbedForce {
     /// Whether the linear force is known not to restore: nothing, a negative number, or a negative
     /// multiple of one product of parameters, which are taken to be positive.
     fn lacks_restoring_force(&self) -> bool {
-        /// What a sum of constants has left of its terms where it is zero but for rounding.
+        /// Relative size of a sum of constants that is zero but for rounding.
         const ROUNDING: f64 = 1e-14;
         let named = |symbol: &Symbol| self.definitions.iter().any(|entry| entry.symbol == *symbol);
         let parameters: Vec<Symbol> =

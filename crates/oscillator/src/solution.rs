@@ -51,7 +51,7 @@ use crate::series::FourierSeries;
 use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY, Letters};
 use crate::symbol::{Symbol, fresh, phase_beside};
 
-/// What the amplitude in a formula measures.
+/// The definition of the amplitude in a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AmplitudeConvention {
     /// `A` = x(0) minus the equilibrium, with x'(0) = 0.
@@ -92,7 +92,8 @@ impl AmplitudeConvention {
         }
     }
 
-    /// What the symbol is in a motion of this coordinate: `A = x(0) - equilibrium, x'(0) = 0`.
+    /// The definition of the symbol for a motion of this coordinate: `A = x(0) - equilibrium, x'(0)
+    /// = 0`.
     pub fn in_words(self, coordinate: Symbol) -> String {
         match self {
             Self::Initial => format!(
@@ -144,7 +145,7 @@ pub struct LimitCycle {
     /// The amplitude, in the convention of the solution; to leading order where the motion is left
     /// out.
     pub amplitude: Polynomial,
-    /// Which of the cycles it is, counted from one.
+    /// Number of this cycle, counted from one.
     pub number: usize,
     /// All limit cycles of the equation that start from a harmonic motion, smallest first.
     pub cycles: Vec<LeadingCycle>,
@@ -157,8 +158,8 @@ pub struct LimitCycle {
 pub struct LeadingCycle {
     /// Its amplitude where the small parameter vanishes.
     pub amplitude: Expr,
-    /// Where this is positive the cycle attracts, and repels where it is negative; `None` at a
-    /// multiple root of the equation for the amplitude, which says neither.
+    /// An expression that is positive if the cycle attracts and negative if it repels; `None` at a
+    /// multiple root of the equation for the amplitude, which does not decide.
     pub attracts_where: Option<Expr>,
 }
 
@@ -199,7 +200,7 @@ pub struct Solution {
     /// The parameter in which the expansion runs; the amplitude symbol where it runs in the
     /// amplitude.
     pub small_parameter: Symbol,
-    /// What the amplitude symbol measures.
+    /// The definition of the amplitude symbol.
     pub amplitude: AmplitudeConvention,
     /// The parameters of the equation, in alphabetical order.
     pub parameters: Vec<Symbol>,
@@ -207,7 +208,7 @@ pub struct Solution {
     pub definitions: Vec<Definition>,
     /// The equilibrium about which the motion swings; `A` is measured from it.
     pub equilibrium: Expr,
-    /// What ties the frequency to the amplitude.
+    /// The law of frequency and amplitude.
     pub law: Law,
     /// The motion, equilibrium included.
     pub displacement: FourierSeries<Polynomials>,
@@ -223,13 +224,13 @@ pub struct Solution {
     /// Whether the coefficients are rounded to fifteen digits, because the equilibrium is no
     /// fraction.
     pub numerical: bool,
-    /// What is known of where the formula holds.
+    /// Notes on the validity of the formula.
     pub validity: Vec<Note>,
-    /// How far the series of omega^2 converges, where that has been looked for.
+    /// Nearest singularity of the series of omega^2; `None` if it was not looked for.
     pub convergence: Option<Convergence>,
     /// The derivation, order by order, of an expansion.
     pub steps: Vec<Step>,
-    /// What precedes the orders, or the derivation of any other method, line by line.
+    /// Lines in front of the orders, or the derivation of any other method.
     pub derivation: Vec<Line>,
 }
 
@@ -445,8 +446,8 @@ impl Solution {
         self.validity.push(Note::RoundedCoefficients);
     }
 
-    /// What the order counts, in words: `to order 4 in A`, `3 harmonics`; empty for methods of one
-    /// order.
+    /// The meaning of the order in words: `to order 4 in A`, `3 harmonics`; empty for methods of
+    /// one order.
     pub fn order_in_words(&self) -> String {
         let order = self.order;
         match self.method.counts() {
@@ -623,13 +624,13 @@ impl Solution {
         closed_root::is_the_branch(relation, self.amplitude.symbol()).then_some(form)
     }
 
-    /// How far the coefficients are rounded, relatively: to fifteen digits, or as any double.
+    /// Relative rounding error of the coefficients: of fifteen digits, or of a double.
     fn precision(&self) -> f64 {
         if self.numerical { 5e-15 } else { f64::EPSILON }
     }
 
-    /// How far rounding of the coefficients may move omega^2, relatively, where the law is a
-    /// polynomial: its terms cancel far outside of its reach. `None` where a value is missing.
+    /// Bound of the relative change of omega^2 by rounding of the coefficients, if the law is a
+    /// polynomial: its terms cancel far outside of its range. `None` if a value is missing.
     pub fn rounding_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
         let (law, power) = match (self.law.frequency_squared(), self.law.frequency()) {
             (Some(law), _) => (law, 1.0),
@@ -639,9 +640,9 @@ impl Solution {
         Some(power * self.precision() * size / value.abs())
     }
 
-    /// How far rounding of the coefficients may move the swing about the equilibrium, over the
-    /// amplitude: the terms of its harmonics cancel far outside of its reach. `None` if a value is
-    /// missing, or the amplitude is zero.
+    /// Bound of the change of the deviation from the equilibrium by rounding of the coefficients,
+    /// over the amplitude: the terms of its harmonics cancel far outside of its range. `None` if a
+    /// value is missing, or the amplitude is zero.
     pub fn rounding_of_motion_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
         let amplitude = value_of(self.amplitude.symbol()).filter(|amplitude| *amplitude != 0.0)?;
         let harmonics = self.displacement.harmonics();

@@ -37,7 +37,7 @@ pub struct Force {
     evaluations: Cell<u64>,
 }
 
-/// What does not depend on the size of the motion.
+/// The part of a force that does not depend on the size of the motion.
 struct AtNumbers {
     force: Expr,
     coordinate: Symbol,
@@ -109,8 +109,7 @@ impl Force {
         Some(Self::of_amplitude(Rc::new(of), amplitude))
     }
 
-    /// The same force for motions of about another amplitude: what was found out about it is not
-    /// found out again.
+    /// The force for motions of about another amplitude; everything known about it is shared.
     #[must_use]
     pub fn with_amplitude(&self, amplitude: f64) -> Self {
         Self::of_amplitude(Rc::clone(&self.of), amplitude)
@@ -188,8 +187,8 @@ impl Force {
         Some((if from <= to { sum } else { -sum }, error))
     }
 
-    /// How often the force or its slope was evaluated so far: a measure of work that is the same on
-    /// every machine.
+    /// Number of evaluations of the force or its slope so far: a measure of work that is the same
+    /// on every machine.
     pub fn evaluations(&self) -> u64 {
         self.evaluations.get()
     }
@@ -201,7 +200,7 @@ impl Force {
         function.call(&arguments)
     }
 
-    /// Where to cut an interval of distances so that the force is smooth on each piece.
+    /// Distances that divide an interval so that the force is smooth on each piece.
     pub fn cuts(&self, from: f64, to: f64) -> Vec<f64> {
         let at = self.equilibrium();
         let cuts = self.of.features().cuts(at + from, at + to);
@@ -218,8 +217,8 @@ impl Force {
     fn near_rest(&self, amplitude: f64) -> Option<NearRest> {
         /// Relative errors below this are no loss.
         const HARMLESS: f64 = 2e-14;
-        /// How many amplitudes the polynomial may reach: farther than the search for the edge of a
-        /// well.
+        /// Largest ratio of a distance to the amplitude at which the polynomial is used: beyond the
+        /// range of the search for the edge of a well.
         const FARTHEST: f64 = 1e12;
         let (coordinate, numbers, place) =
             (self.of.coordinate, &self.of.numbers, self.equilibrium());
@@ -328,8 +327,8 @@ impl Force {
             })
     }
 
-    /// What of the force is beyond double precision at the distance `y`, in words, where that is
-    /// why it has no finite value there.
+    /// The part of the force that is beyond double precision at the distance `y`, in words; `None`
+    /// if the force is finite there or has no value for another reason.
     pub fn overflow(&self, y: f64) -> Option<String> {
         let mut there = self.of.numbers.clone();
         there.insert(self.of.coordinate, self.equilibrium() + y);

@@ -1,6 +1,6 @@
-//! Where a motion of a force about its equilibrium, released at rest, turns back
-//! ([`crate::numeric::ode::energy`]), in distances from the equilibrium, so that nothing is lost
-//! near rest. What lies between the turning points is integrated by who asks for it.
+//! Turning points of a motion released from rest ([`crate::numeric::ode::energy`]), in distances
+//! from the equilibrium, so that no digits are lost near rest. The integral between the turning
+//! points is left to the caller.
 
 use super::force::Force;
 use super::well::Well;
@@ -19,8 +19,8 @@ impl Force {
         self.between_turning_points(start, |_, end| Ok(end))
     }
 
-    /// What `run` makes of the force and the other turning point, where no pole stands in the way:
-    /// one so weak that rounding hides its energy would be passed unseen.
+    /// Calls `run` with the force and the other turning point. Poles between them are an error: one
+    /// so weak that rounding hides its energy would be passed unseen.
     ///
     /// # Errors
     /// See [`PeriodError`]; places are positions.

@@ -22,14 +22,15 @@ use crate::numeric::ode::root::find_root;
 pub struct Passage {
     /// The amplitude that all of its motions exceed; zero where they begin at rest.
     pub from: f64,
-    /// How far from the equilibrium the hilltop is that they pass and the motion of that amplitude
-    /// does not: zero for the equilibrium itself.
+    /// Distance from the equilibrium of the hilltop that these motions pass and the motion of
+    /// amplitude `from` does not; zero for the equilibrium itself.
     pub over: f64,
-    /// Where the range ends, if it does: the place as a distance from the equilibrium.
+    /// The boundary at which the range ends, at its distance from the equilibrium; `None` if it
+    /// does not end.
     pub to: Option<Rim>,
 }
 
-/// How many decades on either side of the unit are searched, and the growth of the steps.
+/// Number of decades searched on either side of the unit, and the growth of the steps.
 const DECADES: i32 = 12;
 const GROWTH: f64 = 1.02;
 
@@ -126,11 +127,11 @@ fn beginning(force: &Force, begin: f64, end: Option<f64>, height: f64) -> Option
 
 /// The right side of a force, from its equilibrium outwards.
 struct Side {
-    /// Where it changes its sign.
+    /// Distances at which the force changes its sign.
     places: Vec<f64>,
     /// Whether it pulls back up to each of these, and beyond the last.
     pulls: Vec<bool>,
-    /// Where it ends, or has a pole.
+    /// The end of the force, or a pole.
     end: Option<Rim>,
     /// Whether all of it was looked at.
     is_whole: bool,

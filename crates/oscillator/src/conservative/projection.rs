@@ -189,8 +189,8 @@ fn of_term(mut factors: Vec<Expr>, coordinate: Symbol, amplitude: &Expr, k: usiz
 
 /// `c_k` of `|cos|^n`, or of `sgn(cos) |cos|^n` where `odd`.
 fn power_coefficient(exponent: &Rational, odd: bool, k: usize) -> Option<Expr> {
-    // Where the cosine is zero those of its odd multiples are, too: one power of it more that an
-    // integral may take.
+    // The odd multiples of the cosine vanish together with it, so the integral converges with a
+    // power lower by one.
     let lowest = if odd { ratio(-2, 1) } else { ratio(-1, 1) };
     if *exponent <= lowest {
         return None;

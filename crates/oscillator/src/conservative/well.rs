@@ -21,7 +21,7 @@ use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
 use crate::numeric::ode::root::{Until, bisect, find_root};
 use crate::symbol::Symbol;
 
-/// Where a well ends on one side.
+/// The boundary of a well on one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rim {
     /// The unstable equilibrium, or the place where the force ends; infinite where the force dies
@@ -51,7 +51,7 @@ impl Wall {
 pub struct End {
     /// The amplitude, measured from the equilibrium.
     pub amplitude: f64,
-    /// What lies beyond.
+    /// The boundary of the well beyond this amplitude.
     pub rim: Rim,
 }
 
@@ -62,7 +62,7 @@ pub struct Well {
     pub low: Option<End>,
     /// On the positive side.
     pub high: Option<End>,
-    /// Where the motions begin, if not at rest.
+    /// The smallest amplitude of motions over several wells; `None` if the motions begin at rest.
     pub inner: Option<Inner>,
 }
 
@@ -76,7 +76,7 @@ pub struct Inner {
     pub place: f64,
 }
 
-/// How far the search for the rims of a well goes, in units of the amplitude.
+/// Range of the search for the boundaries of a well, in units of the amplitude.
 const FARTHEST: f64 = 1e10;
 
 /// Steps of the search over the first amplitude, and the growth of later ones.
@@ -190,7 +190,7 @@ impl Well {
         if amplitude < 0.0 { self.low } else { self.high }
     }
 
-    /// Where the motion is periodic, in words; `name` is the letter of the amplitude.
+    /// Describes the range of periodic motions in words; `name` is the letter of the amplitude.
     pub fn in_words(&self, name: Symbol, coordinate: Symbol) -> String {
         let because = |rim: Rim| {
             let place = significant(rim.place, 6);
@@ -442,15 +442,15 @@ fn levels_off(force: &Force, side: f64, unit: f64, weakened: f64) -> Option<Wall
     Some(Wall { height: Some(height), ..Wall::new(side * f64::INFINITY, false) })
 }
 
-/// Where a force ends between a distance at which it has a value and one at which it has none, from
-/// outside.
+/// The distance at which a force ends, from outside, between one at which it has a value and one at
+/// which it has none.
 pub(super) fn end_of_force(pull: &dyn Fn(f64) -> f64, inside: f64, outside: f64) -> f64 {
     let [_, end] = bisect(|size| pull(size).is_finite(), inside, outside, Until::Halvings(60));
     end
 }
 
-/// Where the force turns its sign between two distances, and whether through zero; `None` where it
-/// has only died away.
+/// The distance at which the force changes its sign between two others, and whether it passes
+/// through zero; `None` if the force has only become negligible.
 pub(super) fn sign_change(
     pull: &dyn Fn(f64) -> f64,
     from: f64,

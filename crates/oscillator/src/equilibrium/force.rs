@@ -25,7 +25,7 @@ use crate::series::taylor::taylor;
 use crate::solution::note::{CrossWell, CrossWellEnd, Position};
 use crate::symbol::Symbol;
 
-/// How a force that is infinite at `x = 0` pulls towards it.
+/// The strength of the attraction by a force that is infinite at `x = 0`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pull {
     /// So weakly that its potential is finite there, as `sgn(x)/abs(x)^(1/3)`: the motion swings
@@ -113,15 +113,15 @@ impl<'a> Force<'a> {
         })
     }
 
-    /// How a force that is infinite at zero pulls towards it from both sides; `None` where it does
-    /// not.
+    /// Classifies a force that is infinite at zero and attracts from both sides; `None` for any
+    /// other force.
     pub(super) fn pull_without_bound(&self) -> Option<Pull> {
         /// Two exponents that differ by less than this are the same: over seventy decades rounding
         /// makes one of 1e-17.
         const SAME: f64 = 1e-12;
         let value = self.at_numbers(&self.sample(1.0))?;
-        // By how much force times distance falls from far to near, in decades a decade: p + 1 of a
-        // power p.
+        // Decay of force times distance from far to near, in decades per decade: p + 1 for a power
+        // p.
         let falls = |side: f64| {
             let work = |decade: i32| {
                 let distance = 10.0_f64.powi(-decade);
@@ -229,7 +229,7 @@ impl<'a> Force<'a> {
         form.map_or(Place::Rounded(position), Place::Exact)
     }
 
-    /// What the equilibria of a force with parameters may be.
+    /// Candidates for the equilibria of a force with parameters, in closed form.
     fn forms(&self) -> Vec<Expr> {
         let forms = closed_forms(self.force, self.coordinate);
         match forms.is_empty() {
@@ -318,8 +318,8 @@ impl<'a> Force<'a> {
     /// between them; `position` is where zero is. With letters it is one where it is for positive
     /// ones of all sizes.
     pub(super) fn cross_well(&self, position: &Expr) -> Option<CrossWell> {
-        /// How far a closed form may be from the number found: that is good to the quadrature of
-        /// the energy.
+        /// Largest relative difference of a closed form and the number found, which is as accurate
+        /// as the quadrature of the energy.
         const AGREEMENT: f64 = 1e-7;
         let samples = match self.value {
             Some(_) => vec![BTreeMap::new()],
@@ -383,8 +383,8 @@ impl<'a> Force<'a> {
         })
     }
 
-    /// What the amplitude may be at which the potential is again that at zero: `near` is its value
-    /// for numbers.
+    /// Candidates for the amplitude at which the potential is again that at zero; `near` is its
+    /// numerical value.
     fn edges(&self, near: f64) -> Vec<Expr> {
         let x = self.coordinate;
         let risen = || {

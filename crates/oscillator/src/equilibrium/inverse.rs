@@ -14,8 +14,8 @@
 //!                                 x = 2 sqrt(-p/3) cos(acos(3 q sqrt(-3/p)/(2 p))/3 - 2 pi k/3)           three
 //! ```
 //!
-//! Which of them is real depends on the values of the letters, and is left to who puts some in. In:
-//! a force and its coordinate. Out: candidates, some of which may be zeros for no values at all.
+//! The values of the letters decide which of them are real; that is left to the caller. In: a force
+//! and its coordinate. Out: candidates, some of which may be zeros for no values at all.
 
 use num_integer::Integer as _;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -79,7 +79,7 @@ fn split(term: &Expr, x: Symbol) -> Option<(Expr, Expr)> {
     Some((Expr::product(still.chain([Expr::number(number)])), (*moving).clone()))
 }
 
-/// Where `function` has the value `y`.
+/// Solves `function = y` for x.
 fn before(function: &Expr, y: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     let both = |value: Expr| vec![value.clone(), -value];
     let call = |function, argument: Expr| Expr::function(function, vec![argument]);
@@ -124,7 +124,7 @@ fn before(function: &Expr, y: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> 
     through(inner, values, x)
 }
 
-/// Where `inner` has one of these values.
+/// Solves `inner = value` for x, for each of these values.
 fn through(inner: &Expr, values: Vec<Expr>, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     let found: Result<Vec<Vec<Expr>>, ExprError> =
         values.iter().map(|value| zeros(&(inner - value), x)).collect();
@@ -174,8 +174,8 @@ fn of_polynomial(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     }
 }
 
-/// Where a sum of powers of one base, or of exponentials, has the value `r`: they are a polynomial
-/// in one of them, up to a factor.
+/// Solves a sum of powers of one base, or of exponentials, equal to `r`: up to a factor it is a
+/// polynomial in one of them.
 fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     let powers: Option<Vec<Vec<Power>>> = parts.iter().map(|part| powers(part, x)).collect();
     let powers = powers.unwrap_or_default().concat();
@@ -233,7 +233,8 @@ struct Power {
     exponent: Expr,
 }
 
-/// What moves, times its factor, as powers: one, or the two exponentials of a hyperbolic function.
+/// A function of x times its factor as powers: one, or the two exponentials of a hyperbolic
+/// function.
 fn powers((factor, function): &(Expr, Expr), x: Symbol) -> Option<Vec<Power>> {
     let exponential = |factor: Expr, exponent: Expr| Power { factor, base: None, exponent };
     let (base, exponent) = function.base_and_exponent();
@@ -337,7 +338,7 @@ mod tests {
 
     use super::*;
 
-    /// What is put in for the letters, and how many places have a value there: each has to be a
+    /// Values of the letters, and the number of candidates that are real for them: each has to be a
     /// zero of the force.
     #[test]
     fn every_real_candidate_is_a_zero() {

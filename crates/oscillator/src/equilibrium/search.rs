@@ -14,7 +14,7 @@ use crate::numeric::ode::root::{find_minimum, find_root};
 /// A zero of the force at which it changes its sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Zero {
-    /// Where.
+    /// Its position.
     pub position: f64,
     /// Whether the force pulls back: from negative on the left to positive on the right.
     pub stable: bool,
@@ -132,7 +132,7 @@ impl ZeroSearch<'_> {
         found.append(&mut walk.found);
     }
 
-    /// What lies between the last place and this one, or about the last.
+    /// Looks for zeros between the last point and this one, and for a double zero about the last.
     fn between(&mut self, before: Option<ForceSample>, last: ForceSample, now: ForceSample) {
         if last.1.signum() != now.1.signum() {
             self.change_of_sign(last.0, now.0);
@@ -187,7 +187,7 @@ impl ZeroSearch<'_> {
     }
 }
 
-/// Where a function changes its sign; `None` where it has no value on the way.
+/// The point at which a function changes its sign; `None` if it has no value on the way.
 fn crossing(value: &dyn Fn(f64) -> f64, from: f64, to: f64) -> Option<f64> {
     find_root(value, from, to).ok()
 }

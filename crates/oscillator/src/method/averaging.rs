@@ -366,7 +366,7 @@ fn steady(
     };
     let z = fresh("z", taken);
     match equation.cycles(delta, omega0, taken) {
-        // What marks the orders is one.
+        // The bookkeeping parameter is one.
         Ok(cycles) => {
             let leading = cycles.iter().map(|cycle| cycle.to_leading(delta, z));
             (leading.collect(), vec![])
@@ -448,8 +448,8 @@ impl Slow {
         }
     }
 
-    /// Where a motion released at `A` begins: `a = A - u_1(A, 0)` and, so that it is at rest,
-    /// `psi = (A_1/omega0 + u_1'(A, 0))/A`.
+    /// The initial amplitude and phase of a motion released at `A`: `a = A - u_1(A, 0)` and, so
+    /// that it is at rest, `psi = (A_1/omega0 + u_1'(A, 0))/A`.
     fn release(&self) -> Result<Release, ExprError> {
         let start = AmplitudeConvention::Initial.symbol();
         let at_start = |value: &Expr| value.substitute(self.a, &Expr::from(start))?.expand();

@@ -46,8 +46,8 @@ pub struct Balance {
     pub frequency_squared: f64,
     /// The motion about the equilibrium.
     pub motion: FourierSeries<Doubles>,
-    /// Where the branch from rest ends before this amplitude: the motion is then one followed down
-    /// from large amplitudes.
+    /// The largest amplitude that the branch from rest reaches, if that is less than this one: the
+    /// motion was then followed down from large amplitudes.
     pub rest_ends_at: Option<f64>,
     /// Whether it passes other equilibria on its way.
     pub over_several_wells: bool,
@@ -78,7 +78,7 @@ pub enum Lost {
         significant(*amplitude, 6)
     )]
     EndsOnTheWay {
-        /// Where it was taken up.
+        /// The amplitude from which the branch was followed.
         from: f64,
         /// The last amplitude reached.
         amplitude: f64,
@@ -91,20 +91,19 @@ pub enum Lost {
     /// The motion found runs through a place where the force has no value.
     #[error("no balance: the motion of these harmonics runs through {}, where the force has no finite value", significant(*place, 6))]
     Gap {
-        /// Where.
+        /// The position.
         place: f64,
     },
 }
 
-/// What is known of the branch from rest of one balance, force and harmonics being the same, from
-/// the amplitudes that were asked for before: the next is reached from the nearest below it instead
-/// of from rest.
+/// Known solutions on the branch from rest of one balance, the force and the harmonics being the
+/// same: the next amplitude is reached from the nearest known one below it instead of from rest.
 #[derive(Debug, Default)]
 pub struct Continuation {
     states: RefCell<Vec<State>>,
-    /// How much finer than usual the sums had to be for the last of them; none yet is 0.
+    /// Refinement factor of the sums of the last solution; 0 if there is none yet.
     fineness: Cell<usize>,
-    /// How often a motion over several wells was followed in vain.
+    /// Number of failed continuations of motions over several wells.
     in_vain: Cell<usize>,
 }
 
@@ -198,7 +197,7 @@ impl State {
         self.0[self.0.len() - 1]
     }
 
-    /// That of the release, by `sum_k b_k = +-1`.
+    /// The side of the release, by `sum_k b_k = +-1`.
     fn side(&self) -> f64 {
         self.0.rows(1, self.0.len() - 2).sum().signum()
     }
@@ -208,22 +207,22 @@ struct Problem<'a> {
     force: &'a Force,
     harmonics: &'a [usize],
     count: usize,
-    /// Where the first harmonic stands.
+    /// Index of the first harmonic.
     first: usize,
     /// Points of equal steps that are enough for a polynomial, or to begin with.
     points: usize,
     polynomial: bool,
-    /// How much finer the sums are than usual.
+    /// Refinement factor of the sums.
     fineness: usize,
     amplitude: f64,
-    /// Where the force turns fast, up to this distance.
+    /// Narrow places and corners of the force, up to the distance `reach`.
     cuts: Vec<f64>,
     reach: f64,
     /// The points of equal steps, once they were asked for.
     equal_steps: OnceCell<Rc<Nodes>>,
 }
 
-/// Where a sum takes the force, and what stands before its value and before its slope.
+/// Nodes of a sum over the period, with the weights of the force and of its slope.
 struct Nodes {
     /// One row of cosines of the harmonics for each point.
     cosines: DMatrix<f64>,
@@ -768,10 +767,11 @@ impl<'a> Problem<'a> {
         (norm.is_finite() && norm > 0.0).then(|| tangent / norm)
     }
 
-    /// The same solution by finer and finer sums, until they agree.
+    /// Repeats the solution with finer and finer sums until two of them agree.
     fn refined(&self, mut state: State) -> Result<State, Lost> {
         const MOST_POINTS: usize = 1 << 17;
-        /// Where the sums are as fine as they get: the digits that a user sees.
+        /// Largest change from one refinement to the next that is accepted: the digits that a user
+        /// sees.
         const ENOUGH: f64 = 1e-8;
         let (mut finer, mut change) = (1, f64::INFINITY);
         while change >= 1e-12 && 2 * finer * self.nodes(&state, 1).weights.len() <= MOST_POINTS {

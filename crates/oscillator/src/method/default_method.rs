@@ -1,4 +1,4 @@
-//! Which method answers where none is asked for.
+//! The choice of a method if none is asked for.
 //!
 //! ```text
 //! linear, free, damped or driven         exact, where no order, resonance or small parameter is asked for
@@ -70,7 +70,7 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Soluti
         Ok(_) => return found,
     };
     if usual == Method::MultipleScales {
-        // What has no series in the amplitude is averaged as it is.
+        // A force without a series in the amplitude is averaged as it is.
         return match &refusal.reason {
             Reason::Oscillator(
                 OscillatorError::NotPolynomial(_)
@@ -177,7 +177,7 @@ fn begins_wrongly(solution: &Solution, oscillator: &Oscillator) -> bool {
         && about_equilibrium(oscillator, |centred, _| has_quadratic_damping(centred))
 }
 
-/// What is so of the oscillator about its equilibrium.
+/// Whether a property holds for the oscillator about its equilibrium.
 fn about_equilibrium(oscillator: &Oscillator, is_so: impl Fn(&Oscillator, &Parts) -> bool) -> bool {
     let Ok(centred) = centred(oscillator, None) else {
         return false;

@@ -29,7 +29,7 @@ pub(super) struct Drive {
     pub(super) frequency: Expr,
     /// The phase of that frequency at which the first wave begins.
     pub(super) phase: Expr,
-    /// What they drive.
+    /// The driven terms.
     pub(super) terms: Vec<Driven>,
     /// Sines and cosines of phases that are no fractions.
     pub(super) definitions: Vec<Definition>,
@@ -37,7 +37,7 @@ pub(super) struct Drive {
 
 /// A term of the force that a wave multiplies.
 pub(super) struct Driven {
-    /// What stands before the wave.
+    /// The factor of the wave, without the time.
     pub(super) factor: Expr,
     /// The multiple of the driving frequency.
     pub(super) multiple: u32,
@@ -49,7 +49,7 @@ pub(super) struct Driven {
     pub(super) term: Expr,
 }
 
-/// Which wave a drive is.
+/// The quadrature of a drive: cosine or sine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Quadrature {
     /// `cos`.
@@ -210,8 +210,9 @@ impl Drive {
         found
     }
 
-    /// The same with functions of the motion as their series about rest, up to a degree:
-    /// `h sin(x) cos(Omega t)` of a shaken pendulum. What has no such series stays as it is.
+    /// Returns the drive with functions of the motion replaced by their series about rest, up to a
+    /// degree: `h sin(x) cos(Omega t)` of a shaken pendulum. A function without such a series stays
+    /// as it is.
     pub(super) fn in_small_motions(mut self, coordinate: Symbol, degree: u32) -> Self {
         self.terms = self
             .terms

@@ -13,7 +13,7 @@ use crate::solution::{
 };
 use crate::symbol::Symbol;
 
-/// What a method found of a driven motion.
+/// The result of a method for a driven motion.
 pub(super) struct DrivenMotion<'a> {
     pub(super) method: Method,
     pub(super) order: u32,

@@ -281,7 +281,7 @@ fn collect<'a, R: Ring, P: Fn(&R::Element) -> Polynomial>(
     }
 }
 
-/// What pins down `y_n`, beside the amplitude condition of a limit cycle.
+/// The conditions that fix `y_n`, beside the amplitude condition of a limit cycle.
 fn conditions(n: usize, scheme: &Scheme) -> Vec<Condition> {
     match (n, scheme.normalisation, scheme.amplitude) {
         (0, ..) => vec![Condition::Position(1), Condition::AtRest],

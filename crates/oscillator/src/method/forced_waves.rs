@@ -9,9 +9,9 @@
 //! u'' + omega0^2 u + eps <f(u + sum 2 Lambda_j cos(phi_j), u' - sum 2 Lambda_j W_j sin(phi_j))> = F cos(Omega t) + ...
 //! ```
 //!
-//! What the drives far from resonance hold is known beforehand. To the first order the slow
-//! equations of `u` are those of the force averaged over the phases `phi_j`, for no combination of
-//! the frequencies comes near omega0: `<(u + 2 Lambda cos phi)^3> = u^3 + 6 Lambda^2 u`.
+//! The slow equations of a motion with drives far from resonance are known beforehand. To first
+//! order they are those of the force averaged over the phases `phi_j`, because no combination of
+//! the frequencies is near omega0: `<(u + 2 Lambda cos phi)^3> = u^3 + 6 Lambda^2 u`.
 
 use std::collections::BTreeMap;
 

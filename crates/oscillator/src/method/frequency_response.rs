@@ -24,7 +24,7 @@ use crate::expr::Expr;
 use crate::solution::response::Branches;
 use crate::symbol::Symbol;
 
-/// What is known of steady motions, as `solution::Response` has it.
+/// The frequency response of the steady motions, as in `solution::Response`.
 pub(super) struct FrequencyResponse {
     pub(super) relation: Option<Polynomial>,
     pub(super) branches: Option<Branches>,
@@ -109,7 +109,7 @@ impl FrequencyResponse {
 /// A rate as waves of the phase, by its multiple: what stands before the cosine and the sine.
 pub(super) type PhaseWaves = BTreeMap<u32, [Polynomial; 2]>;
 
-/// What stands before the cosine and the sine of the phase itself.
+/// The coefficients of the cosine and the sine of the phase itself.
 pub(super) fn turning(rate: &PhaseWaves) -> [Polynomial; 2] {
     let zero = || [Polynomial::zero(), Polynomial::zero()];
     rate.get(&1).cloned().unwrap_or_else(zero)
@@ -177,8 +177,8 @@ pub(super) fn eliminated(
         ];
         [cosine, sine] = solved.map(|value| cut(&value.product(&over)));
     }
-    // Where all else comes d after the waves, so do c and s, and their squares are known to as many
-    // orders behind the first: that is twice d.
+    // If all other terms are d orders higher than the waves, so are c and s, and their squares are
+    // known to as many orders beyond their leading one: that is twice d.
     let behind = [&cosine, &sine].into_iter().filter_map(lowest).min()?;
     let squares = cosine.product(&cosine) + sine.product(&sine);
     let mut relation = squares.truncated(marker, highest + behind);
@@ -271,8 +271,8 @@ fn in_square(relation: &Polynomial, a: Symbol) -> Option<Vec<Polynomial>> {
     Some(coefficients)
 }
 
-/// Where two steady motions meet: their squared amplitudes by the detuning, and the discriminant
-/// that vanishes there.
+/// Folds of the frequency response: the squared amplitudes at which two steady motions meet, by the
+/// detuning, and the discriminant that vanishes there.
 fn folds(relation: &Polynomial, a: Symbol) -> (Vec<Expr>, Option<Polynomial>) {
     let Some(coefficients) = in_square(relation, a) else {
         return (vec![], None);

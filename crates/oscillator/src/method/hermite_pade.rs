@@ -10,12 +10,12 @@
 //! f = (-Q + S sqrt(D))/(2 R) = -2 P/(Q + S sqrt(D)),   D = Q^2 - 4 P R,   2 R + Q > 0 and S = 1 at s = 0
 //! ```
 //!
-//! Where a quotient lines up poles along a cut of omega^2, this has branch points of its own. The
-//! root is followed from rest: it goes on without a jump as long as D does not vanish, and ends
-//! where D has a single zero or the root is infinite. Where both roots meet so closely that D has
-//! two zeros all but in one place, they cross: the difference of the roots passes through zero like
-//! `s - m`, and S is the other sign from there on. All zeros of D and of R on the way are
-//! [counted for certain](crate::exact::zero_clusters).
+//! A quotient lines up poles along a cut of omega^2; this approximant has branch points of its own.
+//! The root is followed from rest: it is continuous as long as D does not vanish, and ends at a
+//! single zero of D or where it is infinite. If both roots come so close that D has two almost
+//! equal zeros, they cross: the difference of the roots passes through zero like `s - m`, and S is
+//! the other sign from there on. All zeros of D and of R on the way are [counted for
+//! certain](crate::exact::zero_clusters).
 //!
 //! Both forms of the root are quotients `N_i/M_i`. Where R vanishes and it is the other root that
 //! is infinite, the first is 0/0; so is the second where P vanishes and it is the other root that
@@ -110,7 +110,7 @@ fn of_degrees(
     numbers.resize(order as usize + 1, Rational::zero());
     let quadratic =
         Quadratic::of(&numbers, [p, q, r].map(|degree| degree as usize)).map_err(refused)?;
-    // What is squared has one sign.
+    // A squared variable has one sign.
     let squared = variable.factors().iter().all(|(_, exponent)| exponent % 2 == 0);
     let sides: &[i64] = if squared { &[1] } else { &[1, -1] };
     let root = quadratic.followed(sides).ok_or_else(|| {
@@ -145,11 +145,12 @@ struct Quadratic {
     lists: [Vec<Integer>; 3],
 }
 
-/// Where the root goes on either side of zero.
+/// The course of the root on either side of zero.
 struct RootCourse {
-    /// Where the sign of the root of D changes.
+    /// Points at which the sign of the root of D changes.
     crossings: Vec<Rational>,
-    /// Where it ends, and whether D says so itself everywhere beyond.
+    /// Ends of the root, and whether D is negative everywhere beyond, so that the formula shows the
+    /// end itself.
     ends: Vec<(Rational, RootEnd, bool)>,
     /// Whether the forms of the root over R and over `Q + S sqrt(D)` are 0/0 somewhere on the way.
     indeterminate: [bool; 2],
@@ -229,7 +230,7 @@ impl Quadratic {
             list.iter().map(&mut turned).collect()
         };
         let [p, q, r] = self.lists.each_ref().map(|list| floats(list));
-        // What is common to all coefficients of P or of R vanishes at zero alone.
+        // A common factor of all coefficients of P or of R vanishes at zero alone.
         let zeros = |list: &[BigFloat]| match list.iter().position(|value| !value.is_zero()) {
             None => Some(vec![]),
             Some(first) => clusters(&list[first..]),
@@ -244,7 +245,7 @@ impl Quadratic {
         let mut is_upper = true;
         let place =
             |cluster: &Cluster| Rational::from_integer(side.into()) * cluster.place.to_fraction();
-        // Where Q has the sign of the root of D, R vanishes with `S sqrt(D) - Q`; elsewhere P does
+        // If Q has the sign of the root of D, R vanishes with `S sqrt(D) - Q`; otherwise P does
         // with `Q + S sqrt(D)`.
         let same_sign = |zero: &&Cluster, is_upper: bool| {
             let nothing = BigFloat::zero(bits);
@@ -374,7 +375,7 @@ impl Words {
         })
     }
 
-    /// What the root of D is multiplied by: one up to the first crossing, not real beyond an end.
+    /// The factor of the root of D: one up to the first crossing, not real beyond an end.
     fn sign(&self, root: &RootCourse) -> Result<Expr, ExprError> {
         let s = Expr::from(&Polynomial::term(self.variable.clone(), Rational::one()));
         let before = |place: &Rational| -> Result<Expr, ExprError> {
@@ -386,7 +387,7 @@ impl Words {
         for place in &root.crossings {
             sign = &sign * &before(&short(place))?;
         }
-        // Where D is kept from being negative it says nothing itself.
+        // The root of D as it is written stays real beyond these ends, so a factor has to end it.
         let crosses = !root.crossings.is_empty();
         for (place, _, _) in root.ends.iter().filter(|(_, _, says_so)| crosses || !says_so) {
             sign = &sign * &before(&short(place))?.sqrt()?;
@@ -394,7 +395,7 @@ impl Words {
         Ok(sign)
     }
 
-    /// Where the root crosses the other one and where it ends, if it does.
+    /// The note of the crossings and the ends of the root; `None` if there are none.
     fn note(&self, root: &RootCourse) -> Option<Note> {
         let mut crossings: Vec<f64> = root.crossings.iter().map(to_f64).collect();
         crossings.sort_by(|a, b| a.abs().total_cmp(&b.abs()));

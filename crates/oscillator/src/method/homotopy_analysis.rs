@@ -302,7 +302,7 @@ impl<'a> HomotopyExpansion<'a> {
         m: usize,
         residual: &FourierSeries<Polynomials>,
     ) -> Result<(), Refusal> {
-        // What is left of the first harmonic has been removed by w_(m-1).
+        // The remaining first harmonic has been removed by w_(m-1).
         let (particular, _) = residual.solve_oscillator();
         let scaled = particular.product(&self.hbar).product(&self.inverse).product(&self.inverse);
         let mut next =

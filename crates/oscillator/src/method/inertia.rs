@@ -102,7 +102,7 @@ impl VariableMass {
         match &self.mass {
             Some(mass) => at_rest(mass).is_some_and(|mass| !mass.is_zero()),
             None => {
-                // What grows less than 1/x leaves its integral one.
+                // A function that grows less than 1/x leaves its integral finite.
                 let leaves_integral =
                     |product: Expr| at_rest(&product).is_some_and(|value| value.is_zero());
                 at_rest(&self.growth).is_some()
@@ -186,7 +186,7 @@ fn integrating_factor(n: i64, growth: &Expr, coordinate: Symbol) -> Option<Expr>
 /// omega^2 and the motion.
 type AtNumbers = (f64, FourierSeries<Doubles>);
 
-/// How a method takes equations whose inertia depends on the position.
+/// The way in which a method takes equations with a position-dependent inertia.
 #[derive(Clone, Copy)]
 pub struct Approach {
     solve: fn(&VariableMass, &Oscillator, &Options) -> Result<Solution, Refusal>,

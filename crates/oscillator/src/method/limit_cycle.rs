@@ -36,7 +36,7 @@ use crate::symbol::{Symbol, fresh};
 
 /// The equation `g(z) = 0` for the square of the amplitude.
 pub(super) struct AmplitudeEquation {
-    /// What all coefficients have in common, with every symbol in it.
+    /// Greatest common divisor of all coefficients, with every symbol in it.
     factor: Monomial,
     /// The power of `z` that stands before the rest.
     lowest: i32,
@@ -49,16 +49,16 @@ pub(super) struct AmplitudeEquation {
 pub(super) struct Cycle {
     /// The amplitude.
     pub amplitude: Expr,
-    /// Where this is positive the cycle attracts, and repels where it is negative; `None` where the
+    /// A polynomial that is positive if the cycle attracts and negative if it repels; `None` if the
     /// slope vanishes.
     pub attracts_where: Option<Polynomial>,
     /// The amplitude as a single term: a number, a product of parameters, or `a0`.
     pub unit: Polynomial,
-    /// What `a0` stands for.
+    /// The definition of `a0`.
     pub definition: Option<Definition>,
     /// `1/J`, where an expansion cannot find it by itself.
     pub inverse_slope: Option<Polynomial>,
-    /// What has to be said of the amplitude.
+    /// A remark on the amplitude.
     pub remark: Option<Note>,
     relation: Option<Relation>,
 }
@@ -457,8 +457,8 @@ fn common_monomial(polynomials: &[Polynomial]) -> Monomial {
     })
 }
 
-/// What of a monomial decides its sign: odd powers, but not of the linear frequency, which is
-/// positive.
+/// The factors of a monomial that decide its sign: odd powers, but not of the linear frequency,
+/// which is positive.
 fn sign_of(monomial: &Monomial, linear_frequency: &Polynomial) -> Monomial {
     let positive = linear_frequency.symbols();
     let odd = monomial

@@ -10,7 +10,7 @@
 //! y'' + y + sum_j delta^(a_j) C_j y^p (omega y'/omega0)^q = 0,  C_j = c_j A^(p+q-1) omega0^(q-2)
 //! ```
 //!
-//! What remains is [`secular::expand`](super::secular::expand), over whole numbers where every
+//! The expansion itself is [`secular::expand`](super::secular::expand), over whole numbers if every
 //! symbol can be scaled away (Duffing depends on `eps*A^2` alone) and over polynomials otherwise.
 //!
 //! Self-excited equations determine their amplitude: `A` is then a root of the secular sine of the
@@ -166,7 +166,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 pub(super) struct LinearPart {
     /// `omega0`, or what it is a name of.
     pub(super) frequency: Polynomial,
-    /// What `omega0` stands for, where it is no polynomial.
+    /// The definition of `omega0`, if it is not a polynomial.
     pub(super) root: Option<Definition>,
     /// That, and the constants of the other terms.
     pub(super) definitions: Vec<Definition>,
@@ -199,7 +199,7 @@ fn constants_beside(force: &PerturbedForce, linear_frequency: &Polynomial) -> Ve
 struct SelfExcitation {
     equation: AmplitudeEquation,
     cycles: Vec<Cycle>,
-    /// Which of them is asked for, counted from one.
+    /// Number of the cycle asked for, counted from one.
     number: usize,
 }
 
@@ -258,8 +258,8 @@ fn self_excitation(
     Ok(Some(SelfExcitation { equation, cycles, number }))
 }
 
-/// What the motion is measured in: the amplitude of the cycle to leading order, or the symbol of a
-/// free one.
+/// The unit of the motion: the amplitude of the cycle to leading order, or the amplitude symbol of
+/// a free motion.
 fn unit_of(cycle: Option<&Cycle>, convention: AmplitudeConvention) -> Polynomial {
     cycle.map_or_else(|| Polynomial::symbol(convention.symbol()), |cycle| cycle.unit.clone())
 }
@@ -310,7 +310,7 @@ fn expanded(
     })?;
     if let Some(excited) = excited {
         let is_parameter = delta == perturbation.small;
-        // What marked the order of a term is one where it is no parameter of the answer.
+        // The bookkeeping parameter is one if it is not a parameter of the answer.
         let one = Polynomial::constant(One::one());
         let unmarked =
             |polynomial: &Polynomial| match (is_parameter, polynomial.substitute(delta, &one)) {
@@ -343,7 +343,7 @@ pub(super) fn with_square(polynomial: &Polynomial, root: Symbol, square: &Ration
     written
 }
 
-/// What is expanded, and in what.
+/// The force to be expanded, and the small parameters.
 struct Perturbation {
     force: PerturbedForce,
     /// The parameter that marks the orders; `None` where it is the amplitude.
@@ -358,12 +358,12 @@ struct Perturbation {
 }
 
 impl Perturbation {
-    /// What marks the orders: the symbol of the amplitude where no parameter does.
+    /// The expansion parameter: the symbol of the amplitude if there is no other.
     fn delta(&self, convention: AmplitudeConvention) -> Symbol {
         self.marker.unwrap_or(convention.symbol())
     }
 
-    /// How the expansion is cut, in the small parameter of the answer.
+    /// The note of the truncation, in the small parameter of the answer.
     fn cut(&self, small: Symbol) -> Note {
         let together = self.small_with.iter().copied();
         Note::Cut(Cut::Truncated {
@@ -435,7 +435,7 @@ fn perturbation(
         }
     }
     let force = match expanded {
-        // What stops the expansion is named as what it is.
+        // Damping and excitation are named as the reason of the refusal.
         Err(OscillatorError::NotSmall { .. })
             if small == SmallParameter::Amplitude && !parts.damping.is_zero() =>
         {

@@ -139,8 +139,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 /// The most places where `f(x)/x` turns back that are written out.
 const MOST_PIECES: usize = 4;
 
-/// Where `f(x)/x` turns back for `x > 0`, with its value there, up to the end of the well; `None`
-/// where that depends on parameters.
+/// Extrema of `f(x)/x` for `x > 0` with their values, up to the end of the well; `None` if they
+/// depend on parameters.
 fn turning_backs(
     oscillator: &Oscillator,
     quotient: &Expr,

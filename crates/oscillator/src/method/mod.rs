@@ -84,7 +84,7 @@ pub const HIGHEST_ORDER: u32 = 400;
 /// fewer.
 pub const HIGHEST_ORDER_OF_FREQUENCY: u32 = 2000;
 
-/// What a user may choose; `None` leaves the choice to the method.
+/// The options of a derivation; `None` leaves the choice to the method.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Options {
     /// The method.
@@ -102,12 +102,12 @@ pub struct Options {
     /// The convergence-control parameter of homotopy analysis; a symbol that numbers are chosen for
     /// where it is not given.
     pub hbar: Option<Expr>,
-    /// Which limit cycle of a self-excited equation, counted from one by amplitude; without it the
-    /// smallest that attracts.
+    /// Number of the limit cycle of a self-excited equation, counted from one by amplitude; if
+    /// `None`, the smallest that attracts.
     pub cycle: Option<u32>,
-    /// Which resonance of a driven motion, Omega : omega0; without it the nearest to frequencies in
-    /// numbers, or the primary one, 2:1 where the drive is in a coefficient. Both are whole numbers
-    /// from 1 to 9.
+    /// The resonance of a driven motion, Omega : omega0, two whole numbers from 1 to 9; if `None`,
+    /// the nearest one to numerical frequencies, or the primary one, 2:1 for a drive in a
+    /// coefficient.
     pub resonance: Option<(u32, u32)>,
     /// The frequency without the motion, to a [higher order](HIGHEST_ORDER_OF_FREQUENCY) in less
     /// time.
@@ -175,8 +175,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     })
 }
 
-/// Where `x = 0` pushes away the stable equilibria are named. Methods that need no linear force
-/// take no damping and no drive: where there is one the way leads on to numbers.
+/// Adds a way forward to a refusal for want of a linear restoring force. If `x = 0` repels, it
+/// names the stable equilibria. Methods that need no linear force take no damping and no drive:
+/// with one of them it leads to the numerical commands.
 fn without_linear_force(refusal: Refusal, oscillator: &Oscillator, options: &Options) -> Refusal {
     let Reason::Oscillator(OscillatorError::NoRestoringForce(force)) = &refusal.reason else {
         return refusal;
@@ -250,7 +251,7 @@ fn solve_in_its_coordinate(
         None => default_method(oscillator) == Method::LindstedtPoincare,
         Some(method) => method == Method::LindstedtPoincare,
     };
-    // What damps is not seen at the order 0, and rules a periodic motion out all the same.
+    // Damping does not appear at order 0, and rules a periodic motion out all the same.
     if options.order == Some(0) && may_expand {
         let first = Options { order: Some(1), ..options.clone() };
         if let Err(refusal) = solve_by(Method::LindstedtPoincare, oscillator, &first)
@@ -363,7 +364,7 @@ fn move_back(
 ) -> Result<(), Refusal> {
     let x = oscillator.coordinate;
     let written = centred.written.to_polynomial(&mut |_| None)?;
-    // What is no polynomial has a symbol.
+    // An equilibrium that is not a polynomial has a symbol.
     let position = written.unwrap_or_else(Polynomial::zero);
     // A motion known by numbers alone is left to them.
     if !solution.displacement.is_zero() {

@@ -38,14 +38,14 @@ const NO_DIGITS: f64 = 1e-6;
 pub struct Numbers {
     /// omega^2, of either sign.
     pub frequency_squared: f64,
-    /// How far rounding of the formula's coefficients may move omega^2, relatively; zero where
-    /// omega^2 is solved for.
+    /// Bound of the relative change of omega^2 by rounding of the coefficients of the formula; zero
+    /// if omega^2 is solved for numerically.
     pub rounding: f64,
     /// The motion in theta; `None` where the frequency is not real.
     pub motion: Option<FourierSeries<Doubles>>,
     /// Values that were chosen or solved for: hbar, the coefficients of a balance.
     pub chosen: Vec<(Symbol, f64)>,
-    /// What a reader should know of these numbers beside them.
+    /// A remark on these numbers for the reader.
     pub remark: Option<String>,
 }
 
@@ -60,8 +60,8 @@ pub struct SymbolValues {
     pub phase: f64,
 }
 
-/// What the amplitudes that were asked for before have left for the next, all else being the same:
-/// a balance goes on from where it was, and what a force is at rest is found once.
+/// Results shared between amplitudes, all else being the same: a balance continues from its last
+/// solution, and the force at rest is analysed once.
 #[derive(Default)]
 pub struct Known {
     balance: balance::Continuation,
@@ -93,7 +93,7 @@ pub enum NoNumbers {
     /// for.
     #[error("not real: the root that continues the linear frequency ends at {} = {}", AMPLITUDE, significant(*amplitude, 6))]
     BranchEnds {
-        /// Where.
+        /// The amplitude.
         amplitude: f64,
     },
     /// About an unstable equilibrium no root of an implicit relation continues that of its first
@@ -120,7 +120,7 @@ pub enum NoNumbers {
     Gap {
         /// The coordinate.
         coordinate: Symbol,
-        /// Where.
+        /// The position.
         place: f64,
     },
     /// A symbol that the law is written with has no real value.
@@ -298,8 +298,8 @@ fn in_own_amplitude(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> BTr
     if initial == own || numbers.contains_key(&own) || !numbers.contains_key(&initial) {
         return numbers;
     }
-    // What the motion has at its start beside the amplitude and the equilibrium, by the power of
-    // the amplitude and by the order: each is marked by the small parameters, or by the amplitude
+    // The initial displacement beside the amplitude and the equilibrium, by the power of the
+    // amplitude and by the order: each term is marked by the small parameters, or by the amplitude
     // itself.
     let in_amplitude = solution.small_parameter == own;
     let one: Polynomial = Polynomial::symbol(own);
@@ -421,8 +421,8 @@ fn of_one_term(solution: &Solution) -> bool {
 /// The law that the frequency of an answer is taken from: `omega^2`, of which it is the root, or
 /// `omega`.
 pub fn law_name(solution: &Solution) -> &'static str {
-    // What is solved by numbers gives omega itself, but for the one-term laws, which are integrals
-    // for omega^2.
+    // Laws that are solved numerically give omega itself, but the one-term laws, which are
+    // integrals for omega^2, give that.
     let by_integral = solution.law.quadrature().is_some() && solution.method != Method::Exact;
     match solution.law.closed_form() {
         _ if solution.law.frequency_squared().is_some()
@@ -492,7 +492,8 @@ fn frequency_squared(
         let mut names = solution.definitions.iter().map(|definition| definition.symbol);
         names.find(|name| *name == missing)
     };
-    // What the exact motion is refused for is said rather than that its formula has no value.
+    // The reason for which the exact motion is refused is reported rather than that its formula has
+    // no value.
     let no_motion = || match is_exact(solution) {
         true => exact_motion(oscillator, solution, numbers, known).err(),
         false => None,
@@ -549,7 +550,8 @@ fn stays_defined(
     }
 }
 
-/// What of the force is beyond double precision along a motion of one term, where something is.
+/// The part of the force that is beyond double precision along a motion of one term; `None` if
+/// there is none.
 fn overflow(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -801,7 +803,8 @@ fn lost_projections(
     Some(projections.map(|(k, ..)| (k, one_term::coefficient(&force, amplitude, k).0)).collect())
 }
 
-/// What has to be solved: balances, integrals, the exact motion; and a remark.
+/// Solves the laws that are not explicit: balances, integrals, the exact motion. The last value is
+/// a remark.
 fn solve(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -907,7 +910,7 @@ fn best_hbar(
     const TRIALS: usize = 40;
     const SAMPLES: usize = 64;
     let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
-    // What does not depend on hbar is computed once.
+    // Definitions that do not depend on hbar are computed once.
     let mut numbers = numbers.clone();
     let fixed =
         solution.definitions.iter().take_while(|definition| !definition.meaning.contains(hbar));

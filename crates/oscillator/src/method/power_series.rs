@@ -183,7 +183,7 @@ impl Resummed {
         }
     }
 
-    /// How far an approximant of these degrees agrees with the series.
+    /// The note of the order through which an approximant of these degrees agrees with the series.
     pub fn agreement(&self, degrees: Degrees) -> Note {
         Note::AgreesThrough {
             degrees,

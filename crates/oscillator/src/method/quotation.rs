@@ -114,8 +114,8 @@ fn numbers_where(parts: &[Option<Expr>], holds: impl Fn(&Expr) -> bool) -> Vec<u
     numbers.map(|(number, _)| number).collect()
 }
 
-/// What each typed term adds to the force about the equilibrium; nothing for those with the
-/// acceleration in them, and for the zero of `= 0`.
+/// The contribution of each typed term to the force about the equilibrium; `None` for those with
+/// the acceleration in them, and for the zero of `= 0`.
 fn parts(oscillator: &Oscillator, centred: &Centred) -> Vec<Option<Expr>> {
     let (coordinate, acceleration) = (oscillator.coordinate, oscillator.velocity().derivative());
     let Ok(mass) = oscillator.residual.differentiate(acceleration) else {

@@ -15,13 +15,13 @@ use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY};
 /// Why a method does not answer, and what to do instead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
-    /// What is in the way.
+    /// The reason.
     pub reason: Reason,
     refuser: Option<Refuser>,
     pub(super) quoted: Option<Box<Quotation>>,
 }
 
-/// What is in the way of an answer. A term of the equation, where there is one to name, is that of
+/// The reason of a refusal. The term of the equation, if there is one to name, is that of
 /// [`Refusal::term`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -117,7 +117,8 @@ pub enum Reason {
     ConventionOfFirstHarmonic,
     /// An even term of the force, in a method for odd forces.
     NotOdd,
-    /// The same about an equilibrium that is not zero: the coordinate, and its value there.
+    /// The force is not odd about an equilibrium that is not zero: the coordinate, and its value
+    /// there.
     NotOddAbout(Symbol, Expr),
     /// A term of inertia that grows beyond all bounds towards the equilibrium, or has no value
     /// there: no motion passes it.
@@ -145,7 +146,7 @@ pub enum Reason {
     PolynomialOnly,
 }
 
-/// What a refusal says is unsuited.
+/// The subject of a refusal, which is unsuited.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refuser {
     /// A method, by its title.
@@ -217,14 +218,14 @@ impl fmt::Display for Refusal {
 impl std::error::Error for Refusal {}
 
 impl Refusal {
-    /// The same with the term that is in the way.
+    /// Returns the refusal with the term that is the reason.
     pub(super) fn about(self, term: &Expr) -> Self {
         Self { quoted: Some(Box::new(term.clone().into())), ..self }
     }
 
     /// The refusal of a term that damps, or feeds, as it stands in the force.
     pub(super) fn damping(term: &Expr, refuser: Refuser) -> Self {
-        // What stands as a product with a sum in it may do both.
+        // A product with a sum in it may both feed and damp.
         let written_out = term.expand();
         let feeds = written_out
             .is_ok_and(|written| written.terms().len() == 1 && written.has_leading_minus());
@@ -252,7 +253,7 @@ impl Refusal {
         self.row().1
     }
 
-    /// What it says after the name of who refuses, and a way forward.
+    /// The words after the name of the refusing method, and a way forward.
     fn row(&self) -> (String, Option<Advice>) {
         let term = self.term().unwrap_or_default();
         let words = |words: &str| Advice::words(words);

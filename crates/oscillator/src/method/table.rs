@@ -23,9 +23,10 @@ pub struct Entry {
     pub method: Method,
     /// Derives its answer for an oscillator that swings about zero.
     pub solve: fn(&Oscillator, &Options) -> Result<Solution, Refusal>,
-    /// What a user may choose, beside the meaning of the amplitude and the small parameter.
+    /// Options that the method takes, beside the definition of the amplitude and the small
+    /// parameter.
     pub takes: &'static [Choice],
-    /// What it sees of the force.
+    /// The representation of the force that the method uses.
     pub sees: Sees,
     /// About an equilibrium without a closed form: the degree of the Taylor polynomial with rounded
     /// coefficients that stands for the force, zero for a polynomial force kept whole; `None` where
@@ -36,13 +37,14 @@ pub struct Entry {
     /// Whether its law knows the sign of the amplitude; one that does not is written for positive
     /// ones.
     pub signed: bool,
-    /// How its motion becomes numbers.
+    /// The way in which its motion is evaluated numerically.
     pub motion: Motion,
-    /// How it takes equations whose inertia depends on the position as they are, where it does.
+    /// Its treatment of equations with a position-dependent inertia; `None` if it has none of its
+    /// own.
     pub inertia: Option<inertia::Approach>,
 }
 
-/// How a motion becomes numbers.
+/// The way in which a motion is evaluated numerically.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
     /// By its formula.
@@ -68,7 +70,7 @@ const OF_THE_SHARED_INTEGRAL: Entry = Entry {
     inertia: None,
 };
 
-/// What a user may choose.
+/// An option of a method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Choice {
     /// An order: a power of the small parameter, a number of harmonics or of passes.
@@ -102,7 +104,7 @@ impl Choice {
     }
 }
 
-/// What a method sees of the force.
+/// The representation of the force that a method uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sees {
     /// Its derivatives at the equilibrium.

@@ -107,7 +107,7 @@ pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
             return None;
         }
         let amplitude = Expr::power(&size, &Expr::divide(&Expr::one(), &power).ok()?).ok()?;
-        // Where what comes first feeds the motion, what takes over drains it.
+        // If the leading term feeds the motion, the term that overtakes it drains it.
         let feeds = if is_sum { -other } else { lower.clone() };
         let (number, factors) = feeds.factors();
         let sign = Expr::number(number.signum());
@@ -141,7 +141,7 @@ fn steady_by_numbers(a: Symbol, rate: &Expr) -> Option<Vec<LeadingCycle>> {
     });
     std::iter::once(Expr::one()).chain(of_letters).find_map(|scale| {
         let scaled = rate.substitute(a, &(&scale * &Expr::from(a))).ok()?.expand().ok()?;
-        // What every term has in common with the first.
+        // Factors that every term has in common with the first.
         let (number, factors) = scaled.terms().first()?.factors();
         let (outside, _): (Vec<Expr>, Vec<Expr>) =
             factors.iter().cloned().partition(|factor| !factor.contains(a));

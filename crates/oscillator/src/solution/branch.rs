@@ -13,9 +13,9 @@
 //! no other root of F = sum_k b_k (u - 1)^k within 1/(2 gamma) of u = 1,   gamma = max_k |b_k/b_1|^(1/(k - 1))
 //! ```
 //!
-//! Where omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions
-//! pass, there is no branch from rest. The root is then followed at one amplitude from that of the
-//! first order, all beyond which is made small and let in again:
+//! If omega^2 is negative at small amplitudes, about an unstable equilibrium that the motions pass,
+//! there is no branch from rest. The root is then followed at one amplitude from that of the first
+//! order, by a homotopy in d that turns the higher orders on:
 //!
 //! ```text
 //! F(z, d) = c_n z^n + c_(n-1) z^(n-1) + d c_(n-2) z^(n-2) + d^2 c_(n-3) z^(n-3) + ... = 0,   d = 0 ... 1
@@ -172,8 +172,8 @@ impl Relation<'_> {
     /// An amplitude, not above the one asked for, at which the lowest terms alone decide, and the
     /// root there.
     fn start(&self, amplitude: Scaled) -> Option<(Scaled, Scaled)> {
-        /// What the other terms may add: of the isolation of the root by Rouche's theorem nothing
-        /// is lost.
+        /// Relative size of all other terms together, so small that the isolation of the root by
+        /// Rouche's theorem is kept.
         const SMALL: f64 = 1e-3;
         const HALVINGS: usize = 10_000;
         let exponent = |term: &Term| {
@@ -316,7 +316,7 @@ impl Relation<'_> {
         way <= SHARE * f64::min(0.5 / gamma, 1.0)
     }
 
-    /// How far a root moves, relatively, where every term is changed by `precision` of itself.
+    /// Relative change of a root if every term is changed by `precision` of itself.
     fn rounding(&self, amplitude: Scaled, z: Scaled, precision: f64) -> f64 {
         let values = self.values(amplitude, z.exponent);
         let (mut sizes, mut slope) = (0.0, 0.0);

@@ -38,7 +38,7 @@ impl Degrees {
         }
     }
 
-    /// What they add up to.
+    /// The sum of the degrees.
     pub fn sum(self) -> u32 {
         self.list().into_iter().fold(0, u32::saturating_add)
     }

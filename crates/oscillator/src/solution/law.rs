@@ -9,8 +9,8 @@ use crate::expr::Expr;
 use crate::symbol::Symbol;
 use crate::symbol::letters::FREQUENCY;
 
-/// What ties the frequency to the amplitude. Polynomials and expressions are in the parameters of
-/// the equation, the amplitude symbol and the symbols of the definitions of the solution.
+/// The law of frequency and amplitude. Polynomials and expressions are in the parameters of the
+/// equation, the amplitude symbol and the symbols of the definitions of the solution.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Law {
     /// omega^2 as a polynomial, and omega itself beside it where the method expands both.
@@ -59,7 +59,7 @@ pub struct ClosedForm {
 /// Algebraic equations that determine frequency and coefficients together, solved by numbers alone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct System {
-    /// What is solved for: `omega` and the coefficients of the motion.
+    /// The unknowns: `omega` and the coefficients of the motion.
     pub unknowns: Vec<Symbol>,
     /// Each is equal to zero.
     pub equations: Vec<Expr>,

@@ -39,7 +39,7 @@ pub enum Method {
     Exact,
 }
 
-/// What the order of an answer counts.
+/// The meaning of the order of an answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Counts {
     /// Powers of the small parameter.
@@ -127,7 +127,7 @@ impl Method {
         self.words().1
     }
 
-    /// What the order of its answers counts.
+    /// The meaning of the order of its answers.
     pub fn counts(self) -> Counts {
         self.words().2
     }

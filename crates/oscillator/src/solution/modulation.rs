@@ -35,17 +35,17 @@ pub struct Modulation {
     pub phase_rate: Expr,
     /// Parameters that are small together with the small parameter of the solution.
     pub small_with: Vec<Symbol>,
-    /// What is in resonance with what; `None` for a free motion.
+    /// The resonance of drive and motion; `None` for a free motion.
     pub resonance: Option<Resonance>,
-    /// Where a motion released at rest from `x = A` begins; `None` for a driven motion.
+    /// Initial amplitude and phase of a motion released from rest at `x = A`; `None` for a driven
+    /// motion.
     pub release: Option<Release>,
     /// The motion from a start in closed form, where there is one.
     pub transient: Option<Transient>,
     /// The amplitudes other than zero that stay, smallest first, each with its stability, where
     /// they can be written down.
     pub steady: Vec<LeadingCycle>,
-    /// Where the displacement of the solution is that on a limit cycle: the motion in the
-    /// amplitude.
+    /// The motion in the amplitude, if the displacement of the solution is that on a limit cycle.
     pub motion: Option<FourierSeries<Polynomials>>,
 }
 
@@ -173,7 +173,7 @@ impl Solution {
             small_with: modulation.small_with.clone(),
         });
         periodic.modulation = None;
-        // What tells where a motion began is nothing of the cycle.
+        // Definitions that contain the initial amplitude have no meaning on the cycle.
         let start = AmplitudeConvention::Initial.symbol();
         periodic.definitions.retain(|definition| !definition.meaning.contains(start));
         Some(periodic)

@@ -1,5 +1,4 @@
-//! What an answer says of itself beside its formulas: how it was cut, what was left out, where it
-//! holds.
+//! Notes on an answer beside its formulas: its truncation, the parts left out, its validity.
 
 use std::fmt;
 
@@ -36,14 +35,14 @@ pub enum Note {
     Misleading {
         /// The parameter.
         name: Symbol,
-        /// How that would be written.
+        /// The form to write instead.
         instead: String,
     },
     /// The slope of the force at half the amplitude.
     SlopeAtHalf,
     /// The part of the force that a motion of one term leaves out.
     EvenPartLeftOut(Expr),
-    /// How an expansion was cut.
+    /// The truncation of the expansion.
     Cut(Cut),
     /// The motion is left at its leading term.
     MotionAtLeadingOrder {
@@ -83,7 +82,7 @@ pub enum Note {
         /// For which amplitudes.
         range: BoundsHold,
     },
-    /// How far a quotient agrees with the series that it comes from.
+    /// The order through which a quotient agrees with its series.
     AgreesThrough {
         /// The degrees.
         degrees: Degrees,
@@ -105,8 +104,8 @@ pub enum Note {
     },
     /// The real zeros of the denominator of a quotient.
     Poles(Poles),
-    /// How the root of a quadratic equation goes from rest on, where its formula alone does not say
-    /// so.
+    /// The continuation from rest of the root of a quadratic equation, if the formula alone does
+    /// not determine it.
     Followed(FollowedRoot),
     /// A resummation has the motion of the series to its first correction.
     MotionOfSeries,
@@ -134,7 +133,7 @@ pub enum Note {
         /// Of several drives the ratio of the one in resonance to omega0; `None` where only sums
         /// and differences of them are.
         nearest: Option<(u32, u32)>,
-        /// What counts as small.
+        /// The small quantities.
         small: Vec<Expr>,
         /// As which power of the small parameter.
         power: usize,
@@ -146,18 +145,18 @@ pub enum Note {
         /// The least force.
         least: Expr,
     },
-    /// Where the steady amplitudes come from, where they are not written down.
+    /// The equation of the steady amplitudes, if they are not written down.
     SteadyAmplitudes {
         /// The square of the amplitude.
         square: Symbol,
-        /// What it is a root of.
+        /// The polynomial of which it is a root.
         polynomial: Polynomial,
         /// Why they are not written down.
         reason: &'static str,
     },
     /// Viscous damping of a motion in a force that is not linear.
     Action {
-        /// What stands before the velocity.
+        /// The coefficient of the velocity.
         rate: Expr,
         /// Whether it is the pendulum, whose action is known.
         pendulum: bool,
@@ -166,7 +165,7 @@ pub enum Note {
     HalfSwings {
         /// The potential energy at a turning point less that at the next.
         lost: Expr,
-        /// What stands before the sign of the velocity.
+        /// The coefficient of the sign of the velocity.
         size: Expr,
     },
     /// An average along the true motion without damping, whose shape is the same at every
@@ -247,12 +246,12 @@ pub enum Note {
     Stated(String),
 }
 
-/// How an expansion was cut.
+/// The truncation of an expansion.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cut {
     /// After a power of what is small.
     Truncated {
-        /// What is small, together.
+        /// The small parameters, counted together.
         small: Vec<Symbol>,
         /// The highest power kept.
         order: u32,
@@ -276,7 +275,7 @@ pub enum Cut {
     },
     /// A relation after so many passes of an iteration.
     Passes {
-        /// How many.
+        /// Number of passes.
         passes: u32,
         /// The linear frequency, where the root starts; `None` where rest is unstable, and it
         /// starts at the first order.
@@ -291,7 +290,7 @@ pub enum Cut {
     },
 }
 
-/// What a first step is exact for.
+/// The equations for which a first step is exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FirstStep {
     /// One term in a force.
@@ -302,12 +301,12 @@ pub enum FirstStep {
     Harmonic,
 }
 
-/// Where a motion of one term meets its equation.
+/// The instant at which a motion of one term satisfies its equation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Instant {
     /// At an eighth of the period.
     EighthOfPeriod,
-    /// Where the square of the cosine is three quarters.
+    /// The square of the cosine is three quarters.
     CosineSquared,
 }
 
@@ -344,16 +343,16 @@ pub enum Poles {
     },
 }
 
-/// How a root of a quadratic equation is followed from rest.
+/// The continuation of a root of a quadratic equation from rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FollowedRoot {
-    /// What the coefficients of the equation depend on.
+    /// The variable of the coefficients of the equation.
     pub variable: Expr,
-    /// What stands before the square root.
+    /// The symbol in front of the square root.
     pub sign: Symbol,
-    /// Where both roots cross, the nearest first.
+    /// Points at which both roots cross, the nearest first.
     pub crossings: Vec<f64>,
-    /// Where it ends, and why.
+    /// Points at which the root ends, and why.
     pub ends: Vec<(f64, RootEnd)>,
 }
 
@@ -366,7 +365,7 @@ pub enum RootEnd {
     Infinite,
 }
 
-/// How an exact law is given.
+/// The form of an exact law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExactBy {
     /// In closed form.
@@ -382,11 +381,11 @@ pub enum ExactBy {
 /// A corner of a force whose side at rest the sign of a letter decides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CornerSide {
-    /// What is taken to be positive.
+    /// The letter or expression that is taken to be positive.
     pub positive: Expr,
     /// The function with the corner: `max(0, d + x)`.
     pub corner: Expr,
-    /// What it is near rest.
+    /// The branch of the function near rest.
     pub taken: Expr,
 }
 
@@ -410,7 +409,7 @@ pub struct CrossWell {
     pub equilibrium: Expr,
     /// The amplitude that they exceed; `None` where it has no closed form in the letters.
     pub from: Option<Position>,
-    /// Where they end.
+    /// The end of the range of amplitudes.
     pub to: CrossWellEnd,
     /// Whether there are others farther out, over hilltops between other wells.
     pub others: bool,
@@ -418,7 +417,7 @@ pub struct CrossWell {
     pub positive: Vec<Symbol>,
 }
 
-/// Where the motions over several wells end.
+/// The end of the range of motions over several wells.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CrossWellEnd {
     /// Nowhere.
@@ -464,8 +463,8 @@ impl fmt::Display for CrossWell {
 }
 
 impl Note {
-    /// The same of motions that do not begin at rest: the root of a relation is then the one that
-    /// continues the first order.
+    /// Adapts the note to motions that do not begin at rest: the root of a relation is then the one
+    /// that continues the first order.
     pub(crate) fn take_root_of_first_order(&mut self) {
         if let Self::Cut(
             Cut::TruncatedRelation { linear_frequency, .. } | Cut::Passes { linear_frequency, .. },

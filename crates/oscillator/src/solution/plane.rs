@@ -240,7 +240,7 @@ impl Field {
                     // and z = e^(i theta) multiplies all.
                     let value = factor * number / 2.0_f64.powi(i + j);
                     let m = k + 1;
-                    // What i to its power makes of the number: real and imaginary part.
+                    // Real and imaginary part of i to its power times the number.
                     let (real, imaginary) = match (*j + i32::from(rate == 1)).rem_euclid(4) {
                         0 => (value, 0.0),
                         1 => (0.0, value),

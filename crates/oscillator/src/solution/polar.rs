@@ -100,7 +100,7 @@ impl PolarRates {
         }
     }
 
-    /// What vanishes at the amplitude of a steady motion, as a part of what it is made of.
+    /// A function that vanishes at the amplitude of a steady motion, over the size of its terms.
     fn excess(&self, amplitude: f64) -> f64 {
         let [determinant, cosine, sine] = self.waves(amplitude).solved();
         let (drive, rest) = (determinant * determinant, cosine * cosine + sine * sine);
@@ -165,7 +165,7 @@ impl PolarRates {
             true => [(rate + under.sqrt(), 0.0), (rate - under.sqrt(), 0.0)],
             false => [(rate, (-under).sqrt()), (rate, -(-under).sqrt())],
         };
-        // What feeds or drains at rest as well is no rest.
+        // A drive or damping that acts at rest leaves no rest.
         (rate.is_finite() && rate < 1e3).then_some(SteadyState {
             amplitude: 0.0,
             phase: 0.0,

@@ -14,8 +14,8 @@ use crate::exact::Polynomial;
 use crate::expr::Expr;
 use crate::symbol::Symbol;
 
-/// What is known of the steady motions of a driven oscillator. Everything is in the amplitude, the
-/// parameters and the definitions of the solution, the detuning among them.
+/// The steady motions of a driven oscillator. Everything is in the amplitude, the parameters and
+/// the definitions of the solution, the detuning among them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
     /// `x(t)` in `t`, the amplitude and the phase of the slow equations.
@@ -33,7 +33,7 @@ pub struct Response {
     /// The discriminant of the relation in the square of the amplitude: zero where two branches
     /// meet, which is where the amplitude jumps.
     pub jumps: Option<Polynomial>,
-    /// What stands for the relation and its branches where they are no polynomials.
+    /// The relation and its branches if they are not polynomials.
     pub closed: Option<ClosedRelation>,
     /// The slow equations in coordinates without a singular origin, where they are polynomials in
     /// them.
@@ -68,9 +68,8 @@ pub struct Plane {
     pub coordinates: [Symbol; 2],
     /// `u'` and `v'`.
     pub rates: [Polynomial; 2],
-    /// The same by parts, each by its orders: what drains, what turns, and each wave of the phase;
-    /// first what leads, then what comes one, two, ... orders later. Nothing where each part has
-    /// one order alone.
+    /// The rates by parts, each by its orders: damping, detuning, and each wave of the phase; first
+    /// the leading order, then the next ones. Empty if each part has one order alone.
     pub parts: Vec<Vec<[Polynomial; 2]>>,
 }
 
@@ -89,7 +88,7 @@ pub struct SteadyState {
 /// The steady motions of slow equations at numbers, largest amplitude first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SteadyMotions {
-    /// Those of the equation.
+    /// The steady motions of the equation.
     pub states: Vec<SteadyState>,
     /// Those that only the truncation of the slow equations makes.
     pub spurious: Vec<SteadyState>,
@@ -178,7 +177,7 @@ impl Solution {
 
 /// An angle from -pi to pi.
 pub(super) fn wrapped(angle: f64) -> f64 {
-    /// What rounding leaves of an angle that is zero.
+    /// Rounding error of an angle that is zero.
     const ROUNDING: f64 = 1e-14;
     let angle = angle.sin().atan2(angle.cos());
     if angle.abs() < ROUNDING { 0.0 } else { angle }

@@ -1,5 +1,5 @@
-//! What of a decay is exact, or nearly so, for a restoring force of any strength: the action under
-//! viscous damping, and the energy from one turning point to the next under dry friction.
+//! Laws of decay that are exact, or nearly so, for a restoring force of any strength: the action
+//! under viscous damping, and the energy from one turning point to the next under dry friction.
 //!
 //! References: V. I. Arnold, *Mathematical Methods of Classical Mechanics*, 2nd ed., Springer 1989,
 //! section 52 (averaging over the true motion); L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed.,
@@ -20,7 +20,7 @@ use crate::oscillator::{Oscillator, Parts};
 use crate::solution::Note;
 use crate::symbol::Symbol;
 
-/// How the only damping term drains.
+/// The only damping term of an equation.
 enum Drain {
     /// `rate * x'`.
     Viscous(Expr),
@@ -57,7 +57,7 @@ fn drain(oscillator: &Oscillator, parts: &Parts) -> Option<Drain> {
     (signs == 1).then_some(Drain::Dry(size))
 }
 
-/// What holds beside the slow equations, where the restoring force is not linear.
+/// Remarks that hold beside the slow equations if the restoring force is not linear.
 pub(super) fn notes(oscillator: &Oscillator, parts: &Parts) -> Vec<Note> {
     let x = oscillator.coordinate;
     let linear =

@@ -81,8 +81,8 @@ pub(super) fn solve(
     if !projected.as_ref().is_err_and(is_of_resonance) {
         return projected;
     }
-    // What the projections do not reach, an expansion of a polynomial may, of second order too
-    // where none is asked for.
+    // Drives that do not appear in the projections may appear in an expansion of a polynomial, also
+    // to second order if no order is asked for.
     for order in 1..=options.order.unwrap_or(HIGHEST) {
         let Ok(scaling) = averaged.scaling(order) else {
             break;
@@ -195,8 +195,8 @@ impl UnderDrive<'_> {
     }
 }
 
-/// What a drive adds to `2 omega0 a'` and to `2 omega0 a (theta' - omega0)`: the coefficients of
-/// cos(psi) and sin(psi).
+/// Contributions of a drive to `2 omega0 a'` and to `2 omega0 a (theta' - omega0)`: the
+/// coefficients of cos(psi) and sin(psi).
 struct DriveWaves {
     sine: [Expr; 2],
     cosine: [Expr; 2],
@@ -252,8 +252,8 @@ fn waves(
     Ok(DriveWaves { sine: both(sine)?, cosine: both(cosine)? })
 }
 
-/// What stands before a wave as a constant and whole powers of coordinate and velocity; `None`
-/// where it is something else.
+/// The factor of a wave as a constant and whole powers of coordinate and velocity; `None` if it has
+/// another form.
 fn powers(driven: &Driven, coordinate: Symbol) -> Option<(Expr, [u32; 2])> {
     let own = [coordinate, coordinate.derivative()];
     let (number, factors) = driven.factor.factors();
@@ -417,7 +417,7 @@ impl<'a> ResonantEquation<'a> {
         Ok(response)
     }
 
-    /// How the slow equations came about.
+    /// The derivation of the slow equations, line by line.
     fn derivation(
         &self,
         [amplitude_rate, phase_rate]: [&Expr; 2],

@@ -75,7 +75,7 @@ impl PurePower {
         (&self.exponent + Rational::one()).recip()
     }
 
-    /// What a damping term does to `r'`: the power of `r`, and what stands before it; `None` where
+    /// The contribution of a damping term to `r'`: the power of `r`, and its coefficient; `None` if
     /// the mean has no closed form.
     fn drain(&self, term: &Expr, coordinate: Symbol) -> Option<(Rational, Expr)> {
         let own = [coordinate, coordinate.derivative()];
@@ -383,7 +383,7 @@ fn spread(expression: &Expr) -> Result<Expr, ExprError> {
     Ok(product)
 }
 
-/// What is small: letters that are factors of the damping alone, or else all of it.
+/// The small letters: those that are factors of the damping alone, or else a name for all of it.
 fn small_in_words(
     oscillator: &Oscillator,
     parts: &Parts,

@@ -1,4 +1,4 @@
-//! What averaging takes to be small: everything beside the linear restoring force.
+//! The small terms in averaging: all terms but the linear restoring force.
 //!
 //! ```text
 //! x'' + 2 zeta x' + x + eps x^3 = 0       zeta -> delta zeta, eps -> delta eps; delta = 1
@@ -58,8 +58,8 @@ impl SmallTerms {
             series.get(1).cloned()
         });
         let slopes: Vec<Expr> = slopes.collect();
-        // Where a function alone restores, as in k*sin(x), the letter before it is not small: its
-        // vanishing leaves nothing.
+        // If a function alone restores, as in k*sin(x), its coefficient is not small: without it
+        // there is no restoring force.
         let function_restores =
             linear.is_empty() && !Expr::sum(slopes.iter().cloned()).expand()?.is_zero();
         let found = match asked {
@@ -102,7 +102,7 @@ impl SmallTerms {
         Ok(split)
     }
 
-    /// What marks the orders; one in the end.
+    /// The bookkeeping parameter, which is one in the end.
     pub(super) fn delta(&self) -> Symbol {
         self.delta
     }
@@ -151,7 +151,7 @@ impl SmallTerms {
     }
 }
 
-/// What stands before the coordinate, where that is all there is of it in a term.
+/// The coefficient of the coordinate in a term that is linear in it; `None` for any other term.
 fn coefficient_of_linear(term: &Expr, oscillator: &Oscillator) -> Option<Expr> {
     let quotient = Expr::divide(term, &Expr::from(oscillator.coordinate)).ok()?;
     let own = [oscillator.coordinate, oscillator.velocity(), Symbol::new("t")];

@@ -1,4 +1,4 @@
-//! What a derivation by multiple scales found of a free motion, as an answer.
+//! The answer of multiple scales for a free motion.
 
 use super::scaling::Scaling;
 use crate::derivation::Line;
@@ -10,7 +10,7 @@ use crate::solution::{
     AmplitudeConvention, Definition, Law, LimitCycle, Method, Modulation, Note, Solution,
 };
 
-/// What differs between a free motion and one on a limit cycle.
+/// The results in which a free motion and one on a limit cycle differ.
 pub(super) struct Found {
     pub(super) definitions: Vec<Definition>,
     pub(super) law: Law,

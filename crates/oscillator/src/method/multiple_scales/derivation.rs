@@ -1,4 +1,4 @@
-//! How an answer by multiple scales came about, order by order.
+//! The derivation of an answer by multiple scales, order by order.
 
 use num_traits::Zero as _;
 
@@ -16,7 +16,7 @@ use crate::series::FourierSeries;
 use crate::solution::Response;
 use crate::symbol::{Symbol, fresh_stem};
 
-/// What an order adds to the motion, in `theta`, with `B = a/2`.
+/// The contribution of an order to the motion, in `theta`, with `B = a/2`.
 pub(super) fn motion_of(wave: &Wave, order: usize, names: &Names) -> FourierSeries<Polynomials> {
     let length = wave.keys().copied().max().map_or(0, |m| m.max(0) as usize + 1);
     let (mut cosine, mut sine) =
@@ -34,7 +34,7 @@ pub(super) fn motion_of(wave: &Wave, order: usize, names: &Names) -> FourierSeri
     FourierSeries::from_parts(POLYNOMIALS, cosine, sine)
 }
 
-/// How the answer came about; `response` is what follows for a driven motion.
+/// The derivation of the answer; `response` is the frequency response of a driven motion.
 pub(super) fn derivation(
     expansion: &Expansion,
     scaling: &Scaling,
@@ -109,7 +109,7 @@ fn elimination(response: &Response) -> Option<Line> {
     Some(Line::equal([Formula::from(Expr::zero()), relation]).because(steady))
 }
 
-/// The same expansion in the words of averaging: what each order adds to the rates and to the
+/// The expansion in the words of averaging: the contribution of each order to the rates and to the
 /// motion.
 pub(super) fn averaged_lines(
     question: &Question,

@@ -14,9 +14,9 @@
 //! a' = P + P_c cos(psi) + P_s sin(psi),   a psi'/p = Q + Q_c cos(psi) + Q_s sin(psi)
 //! ```
 //!
-//! Where the motion is steady both vanish; the phase is eliminated by `cos^2 + sin^2 = 1`, which
-//! leaves the frequency-response equation. To first order it is `P^2 + Q^2 = S^2`, with `S` what
-//! the drive does.
+//! For a steady motion both vanish; the phase is eliminated by `cos^2 + sin^2 = 1`, which leaves
+//! the frequency-response equation. To first order it is `P^2 + Q^2 = S^2`, with `S` the
+//! contribution of the drive.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -69,7 +69,7 @@ pub(super) fn solve(
     let refused = |refusal: &Refusal| {
         matches!(refusal.reason, Reason::Oscillator(OscillatorError::NotPolynomial(_)))
     };
-    // What is no polynomial may be one for small motions.
+    // A force that is not a polynomial may be one for small motions.
     match options.small.is_none() && found.as_ref().is_err_and(refused) {
         true => in_amplitude().or(found),
         false => found,
@@ -89,7 +89,7 @@ fn undriven_oscillator(oscillator: &Oscillator, parts: &Parts) -> Result<Oscilla
     Ok(free)
 }
 
-/// The same with the small parameter that is asked for, or the likeliest.
+/// Expands the motion in the small parameter that is asked for, or in the likeliest.
 fn expanded(
     oscillator: &Oscillator,
     parts: &Parts,
@@ -136,7 +136,7 @@ fn expanded(
     if options.order.is_some() || !answer.as_ref().is_err_and(is_of_resonance) {
         return answer;
     }
-    // What one order says nothing about, a higher one may.
+    // A higher order may contain the resonance if one order does not.
     let highest = HIGHEST.saturating_mul(u32::try_from(scaling.small_order).unwrap_or(1));
     for order in scaling.order + 1..=highest {
         if let Some(found) = asked.answer_near(&scaling_of(Some(order))?) {
@@ -442,7 +442,8 @@ impl<'a> Question<'a> {
         driven.is_force(self.oscillator.coordinate) && p * driven.multiple != q
     }
 
-    /// What `Lambda` stands for: `F/(2 (omega0^2 - Omega^2))`, of the cosines and of the sines.
+    /// The definitions of `Lambda`, `F/(2 (omega0^2 - Omega^2))`, for the cosines and the sines of
+    /// drives far from resonance.
     fn forced_sizes(&self) -> Result<Vec<Definition>, Refusal> {
         let mut found = vec![];
         let symbols = self.lambda.iter().flat_map(|(multiple, symbols)| {
@@ -481,7 +482,7 @@ impl<'a> Question<'a> {
     }
 }
 
-/// What an expansion of a driven motion found.
+/// The result of the expansion of a driven motion.
 struct DrivenExpansion {
     expansion: Expansion,
     slow: Slow,
@@ -553,8 +554,8 @@ impl Question<'_> {
         Ok(motion.into_solution(self.oscillator))
     }
 
-    /// What counts as small beside the small parameters of the answer: the detuning, and drives
-    /// without such a parameter.
+    /// The quantities that are small beside the small parameters of the answer: the detuning, and
+    /// drives without such a parameter.
     fn counted_small(&self) -> Vec<Expr> {
         let mut small = vec![Expr::from(self.sigma)];
         for driven in self.drive.terms.iter().filter(|driven| driven.above == 0) {

@@ -30,7 +30,7 @@ const HIGHEST: [u32; 2] = [3, 6];
 /// The slow equations of a free motion and what follows from them.
 ///
 /// # Errors
-/// What stops an expansion, an order above those that there are, a limit cycle without a closed
+/// A force that cannot be expanded, an order above the highest, or a limit cycle without a closed
 /// form.
 pub(super) fn solve(
     oscillator: &Oscillator,
@@ -80,7 +80,7 @@ pub(super) fn solve(
     }
     found.definitions.extend(scaling.bookkeeping.clone());
     found.validity.extend(linear.root.clone().map(Note::Positive));
-    // Where the amplitude changes the motion has a start.
+    // If the amplitude changes in time, the motion has a start.
     if !found.modulation.is_conservative() {
         free.start(&mut found, &oscillator.names());
     }
@@ -183,8 +183,8 @@ impl Free<'_> {
         Ok(())
     }
 
-    /// Where a motion released at rest begins, to the order to which the slow equations tell it,
-    /// and its closed form from there.
+    /// Adds the initial amplitude and phase of a motion released from rest, to the order of the
+    /// slow equations, and the closed form from there.
     fn start(&self, found: &mut Found, names: &[Symbol]) {
         let order = (self.scaling.order as usize).saturating_sub(1);
         let rates = [&self.slow.amplitude, &self.slow.phase];

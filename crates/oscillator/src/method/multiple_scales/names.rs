@@ -1,5 +1,5 @@
-//! What a derivation by multiple scales introduces: the names of the complex amplitude, the slow
-//! phase, the orders.
+//! Symbols that a derivation by multiple scales introduces: the complex amplitude, the slow phase,
+//! the orders.
 
 use num_traits::Zero as _;
 
@@ -19,8 +19,7 @@ pub(super) struct Names {
     pub(super) amplitude: Symbol,
     /// The imaginary unit.
     pub(super) unit: Symbol,
-    /// What the orders of the motion are called before their numbers, and the rates of `B` on the
-    /// times.
+    /// The stems of the names of the orders of the motion, and of the rates of `B` on the times.
     pub(super) orders: [String; 2],
 }
 

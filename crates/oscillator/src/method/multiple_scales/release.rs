@@ -1,4 +1,5 @@
-//! Where a motion released at rest begins, in powers of what is small.
+//! The initial amplitude and phase of a motion released from rest, as series in the small
+//! parameter.
 //!
 //! ```text
 //! x(a, theta) = A,   x' = a' x_a + theta' x_theta = 0 at t = 0,   x = a cos(theta) + ...

@@ -1,4 +1,4 @@
-//! What counts as small, and in which power: the force as terms of an expansion.
+//! The small terms of a force and their orders: the force as terms of an expansion.
 //!
 //! In: an equation and the small parameter asked for. Out: a `Scaling`. A parameter whose vanishing
 //! leaves the linear oscillator marks the orders; several that have to vanish together count as
@@ -22,9 +22,9 @@ use crate::symbol::{Symbol, fresh};
 /// A force with its orders.
 pub(in crate::method) struct Scaling {
     pub(in crate::method) force: PerturbedForce,
-    /// What marks the orders; `None` where it is the amplitude.
+    /// The bookkeeping parameter; `None` if it is the amplitude.
     pub(in crate::method) marker: Option<Symbol>,
-    /// What stands for the marker in the answer, where the equation does not have it.
+    /// The value of the bookkeeping parameter in the answer, if the equation does not have it.
     pub(in crate::method) marks: Option<Rational>,
     /// The small parameter of the answer.
     pub(in crate::method) small: Symbol,
@@ -56,9 +56,9 @@ impl Scaling {
         result
     }
 
-    /// The same with the small parameter, or the number, in the coefficients and a marker that is
-    /// one: for a motion in which something is small without having it, such as the detuning. An
-    /// expansion in the amplitude stays as it is.
+    /// Returns the scaling with the small parameter, or the number, in the coefficients and a
+    /// bookkeeping parameter that is one: for a motion with a small quantity that does not contain
+    /// it, such as the detuning. An expansion in the amplitude stays as it is.
     pub(super) fn spelt_out(mut self, taken: &[Symbol]) -> Self {
         let (Some(marker), None) = (self.marker, &self.marks) else {
             return self;
@@ -83,7 +83,7 @@ impl Scaling {
         (self.order as usize) < self.small_order
     }
 
-    /// How the expansion is cut.
+    /// The note of the truncation.
     pub(super) fn cut_note(&self) -> Note {
         let together = self.small_with.iter().copied();
         let bookkeeping = self.bookkeeping.as_ref().map(|definition| definition.meaning.clone());
@@ -284,9 +284,8 @@ pub(in crate::method) fn has_linear_damping(oscillator: &Oscillator, parts: &Par
     linear_damping(&parts.damping, oscillator).is_ok_and(is_all)
 }
 
-/// What is linear at rest of the terms that damp in proportion to the velocity: of
-/// `4*nu*x'/(1 + x)^2` it is `4*nu*x'`. A steep function of the velocity, as for dry friction, is
-/// no small damping.
+/// The linear part at rest of the terms that damp in proportion to the velocity: `4*nu*x'` for
+/// `4*nu*x'/(1 + x)^2`. A steep function of the velocity, as for dry friction, is no small damping.
 fn linear_damping(damping: &Expr, oscillator: &Oscillator) -> Result<Expr, ExprError> {
     let velocity = Expr::from(oscillator.velocity());
     let mut linear = Vec::new();

@@ -31,9 +31,9 @@ use crate::symbol::Symbol;
 /// A complex number whose parts are polynomials in the real symbols, in `B` and in its conjugate.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Complex {
-    /// What stands without `i`.
+    /// Real part.
     pub real: Polynomial,
-    /// What stands with it.
+    /// Imaginary part.
     pub imaginary: Polynomial,
 }
 
@@ -66,7 +66,7 @@ pub(super) struct DrivenTerm {
     pub drive: Option<(i32, Quadrature)>,
 }
 
-/// What is expanded.
+/// The problem to be expanded.
 pub(super) struct Scaled {
     /// The terms of the force beside the linear one.
     pub terms: Vec<DrivenTerm>,
@@ -74,7 +74,7 @@ pub(super) struct Scaled {
     pub linear_frequency: Polynomial,
     /// `s`: the harmonic of the fast phase at which the motion swings freely.
     pub own: i32,
-    /// How much faster than `omega0/s` the fast phase turns, and at which order.
+    /// The order of the detuning and its size: the rate of the fast phase less `omega0/s`.
     pub detuning: Option<(usize, Polynomial)>,
     /// Motions that drives far from resonance force at leading order: their harmonics `r`, and
     /// `Lambda` of each.
@@ -89,7 +89,7 @@ pub(super) struct Expansion {
     pub displacement: Vec<Wave>,
     /// `D_k B`; the first entry, that of the fast time, is zero.
     pub rates: Vec<Complex>,
-    /// What stood at `e^(i s phi)` before `D_k B` took it away, by order.
+    /// The coefficient of `e^(i s phi)` that `D_k B` removes, by order.
     pub resonant: Vec<Complex>,
 }
 

@@ -30,7 +30,7 @@ impl Slow {
         Self::of_orders(expansion, question, |_| true)
     }
 
-    /// What some of the orders add.
+    /// The contribution of some of the orders.
     pub(super) fn of_orders(
         expansion: &Expansion,
         question: &Question,
@@ -103,7 +103,7 @@ impl Slow {
         })
     }
 
-    /// What does not turn with the phase: `P` or `Q`.
+    /// The constant part of the waves: `P` or `Q`.
     pub(super) fn still(waves: &PhaseWaves) -> Polynomial {
         waves.get(&0).map_or_else(Polynomial::zero, |waves| waves[0].clone())
     }
@@ -205,7 +205,7 @@ pub(super) fn response(
     })
 }
 
-/// What some of the orders add to `x(t)`, in `t`, the amplitude and the phase.
+/// The contribution of some of the orders to `x(t)`, in `t`, the amplitude and the phase.
 pub(super) fn motion(
     question: &Question,
     expansion: &Expansion,
@@ -289,14 +289,14 @@ fn plane(question: &Question, expansion: &Expansion, coordinates: [Symbol; 2]) -
     Plane { coordinates, rates: unmarked(&rates), parts: if several { parts } else { vec![] } }
 }
 
-/// What slow equations are made of, each part with an order of its own that leads.
+/// The parts of the slow equations, each with a leading order of its own.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum SlowPart {
     /// `a'` without the phase.
     Drains,
     /// `psi'` without the phase.
     Turns,
-    /// What turns so many times with the phase.
+    /// The harmonic of the phase with this number.
     Wave(u32),
 }
 

@@ -177,7 +177,7 @@ impl Factored {
         }
     }
 
-    /// What all of these numbers have in common with this one.
+    /// Greatest common divisor of this number and all of the others.
     pub fn common(&self, numbers: &[Integer]) -> Self {
         let numbers: Vec<&Integer> = numbers.iter().filter(|number| !number.is_zero()).collect();
         let mut common = Self::default();
@@ -324,7 +324,7 @@ fn remove(number: &mut Integer, prime: u64, most: u64) -> u64 {
     removed
 }
 
-/// How denominators grow with the order, beside a factor `c^n`.
+/// The growth of denominators with the order, beside a factor `c^n`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Growth {
     /// Not at all.

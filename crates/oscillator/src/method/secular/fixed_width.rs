@@ -24,7 +24,7 @@ pub(super) struct Order {
     pub frequency: ShortSeries,
 }
 
-/// What was found.
+/// The first orders of an expansion in integers of fixed width.
 #[derive(Default)]
 pub(super) struct Beginning {
     /// From order zero on; fewer than asked for where a number does not fit.
@@ -71,11 +71,11 @@ struct Recursion<'a> {
     /// A sine beside the terms.
     sine: Option<Sine>,
     variation: Option<Variation>,
-    /// How many orders are known with their amplitudes.
+    /// Number of orders whose amplitudes are known, too.
     complete: usize,
 }
 
-/// How everything changes with the amplitude of `y_0`, for limit cycles.
+/// Derivatives of all quantities by the amplitude of `y_0`, for limit cycles.
 struct Variation {
     tables: Vec<ShortSeries>,
     right_side: ShortSeries,
@@ -142,7 +142,7 @@ impl<'a> Recursion<'a> {
         ShortSeries::constant(harmonics, value, 1)
     }
 
-    /// What is complete.
+    /// Returns the orders that are complete.
     fn orders(mut self) -> Vec<Order> {
         let numbers = self.frequency_squared.into_iter().zip(self.frequency);
         let orders = self.tables.swap_remove(0).into_iter().zip(numbers).take(self.complete);

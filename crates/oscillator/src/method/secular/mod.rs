@@ -63,7 +63,7 @@ pub enum Amplitude {
     Determined,
 }
 
-/// Which series the frequency's corrections `W_i` multiply.
+/// The series that the corrections `W_i` of the frequency multiply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Detuning {
     /// `omega^2 = 1 + delta W_1 + ...` before `y''`: Lindstedt and Poincare.
@@ -76,12 +76,12 @@ pub enum Detuning {
 /// The choices that tell one method from another.
 #[derive(Clone, Copy, Debug)]
 pub struct Scheme {
-    /// What pins down the homogeneous solutions: `y(0) = 1` and `y'(0) = 0`, or the first harmonic
-    /// of `y` is `cos tau` exactly.
+    /// The condition that fixes the homogeneous solutions: `y(0) = 1` and `y'(0) = 0`, or the first
+    /// harmonic of `y` is `cos tau` exactly.
     pub normalisation: AmplitudeConvention,
     /// Free or determined.
     pub amplitude: Amplitude,
-    /// Where the frequency is expanded.
+    /// The term of the equation in which the frequency is expanded.
     pub detuning: Detuning,
 }
 
@@ -96,8 +96,8 @@ pub struct Expansion<R: Ring> {
     pub displacement: Vec<FourierSeries<R>>,
     /// `-r_n`'s resonant part at each order, from order one on: what the frequency had to remove.
     pub removed: Vec<FourierSeries<R>>,
-    /// How the amplitude of each `y_n` of a limit cycle was fixed, from order one on; empty where
-    /// it is free.
+    /// The condition that fixed the amplitude of each `y_n` of a limit cycle, from order one on;
+    /// empty if the amplitude is free.
     pub amplitudes: Vec<SecularSine<R>>,
 }
 
@@ -260,8 +260,8 @@ pub(crate) fn expand_numbers_supervised(
     supervision: Supervision,
 ) -> Result<Expansion<Integers>, SecularError> {
     bounded(force.iter().map(|term| (term.order, term.position + term.velocity)), highest)?;
-    // Where all terms stand at multiples of an order, as with an amplitude that enters squared, so
-    // does everything.
+    // If all terms have orders that are multiples of one number, as for an amplitude that enters
+    // squared, so has the solution.
     let step = force.iter().fold(0, |common, term| common.gcd(&term.order)).max(1);
     let compressed: Vec<ForceTerm<Integers>> =
         force.iter().map(|term| ForceTerm { order: term.order / step, ..term.clone() }).collect();
@@ -357,7 +357,7 @@ impl<R: Ring> Expansion<R> {
 }
 
 impl Expansion<Integers> {
-    /// The same with every order at so many times its place, up to `highest`.
+    /// Returns the expansion with order n moved to order `step * n`, up to `highest`.
     fn spread(self, step: usize, highest: usize) -> Self {
         let zero = || FourierSeries::zero(Integers);
         let from = |first: usize, series: Vec<FourierSeries<Integers>>| {
@@ -368,7 +368,7 @@ impl Expansion<Integers> {
             }
             spread
         };
-        // Where the amplitude is determined, the first order is damping, and nothing is spread.
+        // If the amplitude is determined, the first order is damping, and nothing is spread.
         Self {
             frequency_squared: from(0, self.frequency_squared),
             frequency: from(0, self.frequency),
@@ -453,7 +453,7 @@ struct OrderByOrder<'a, R: Ring> {
     scheme: Scheme,
     /// `1/J`, where it was given.
     inverse_slope: Option<FourierSeries<R>>,
-    /// How each series changes when the amplitude of `y_0` does.
+    /// Derivatives of the series by the amplitude of `y_0`.
     variations: Vec<FourierSeries<R>>,
     /// `y_n''` or `-y_n`: what the corrections of the frequency multiply.
     detuned: Vec<FourierSeries<R>>,

@@ -1,7 +1,7 @@
 //! The elimination of secular terms modulo eight primes at once, on values at points.
 //!
-//! The same recursion as in [the ring's own](super), with three changes that make it fast. Products
-//! of series are sums of products of values at [points](crate::series::waves), `sum_i u_i v_(n-i)`,
+//! The recursion of [the ring's own](super) with three changes that make it fast. Products of
+//! series are sums of products of values at [points](crate::series::waves), `sum_i u_i v_(n-i)`,
 //! instead of products of Fourier series. A term `y^p (omega y')` is the derivative of
 //! `y^(p+1)/(p+1)` and needs no values of the velocity. And everything is a
 //! [residue](crate::exact::residue), of eight runs side by side: modulo eight primes, or modulo one
@@ -27,12 +27,12 @@ use crate::interrupt::Interrupt;
 use crate::series::waves::{Wave, Waves};
 use crate::solution::AmplitudeConvention;
 
-/// What one prime sees: plain residues, order by order.
+/// The expansion modulo one prime: plain residues, order by order.
 pub(super) struct Image {
     pub modulus: Modulus,
     /// The coefficients of the harmonics of `y_n` from the order on that is wanted from this prime.
     displacement: Vec<u64>,
-    /// Where the first of them stands among those of all orders.
+    /// Index of the first of them among the coefficients of all orders.
     start: usize,
     /// `W_n`.
     pub frequency_squared: Vec<u64>,
@@ -61,7 +61,7 @@ pub(super) struct Recursion<'a, A> {
     tables: Tables<'a>,
     /// The coefficients of the harmonics of all orders.
     motion: Harmonics<'a>,
-    /// Those of the derivative of all terms with one velocity.
+    /// The coefficients of the derivative of all terms with one velocity.
     damped: Harmonics<'a>,
     frequency_squared: Vec<Lanes>,
     frequency: Vec<Lanes>,
@@ -73,12 +73,12 @@ pub(super) struct Recursion<'a, A> {
     change: Vec<Lanes>,
 }
 
-/// What there is of eight primes before anything is expanded.
+/// Constants of the recursion modulo eight primes.
 pub(super) struct Field<A> {
     pub residues: Residues<A>,
     waves: Waves,
     factors: Factors,
-    /// Those of the terms, each over the power whose derivative is meant.
+    /// The coefficients of the terms, each over the power whose derivative is meant.
     pub coefficients: Vec<Lanes>,
     sine: Option<SineFactors>,
 }
@@ -140,7 +140,7 @@ fn coefficient(moduli: &[Modulus], number: &Rational, power: i64) -> Option<Lane
     Some(lanes)
 }
 
-/// What the coefficients of the harmonics are multiplied by, one by one.
+/// Factors of the coefficients of the harmonics, one by one.
 struct Factors {
     /// `1/(1 - k^2)`, zero for the first harmonic.
     solution: Vec<Lanes>,
@@ -186,7 +186,7 @@ impl Factors {
     }
 }
 
-/// How everything changes with the amplitude of `y_0`, for limit cycles.
+/// Derivatives of all quantities by the amplitude of `y_0`, for limit cycles.
 struct Variation {
     /// Of each table, its values.
     tables: Vec<Vec<Lanes>>,
@@ -197,7 +197,7 @@ struct Variation {
     inverse_slope: Lanes,
 }
 
-/// What was expanded last becomes plain.
+/// Converts the last expansion from Montgomery's form to plain residues.
 struct Plain<'r, 'a, A>(&'r mut Recursion<'a, A>, &'r Residues<A>);
 
 impl<A: Arithmetic> NullaryFnOnce for Plain<'_, '_, A> {
@@ -230,7 +230,7 @@ impl<A: Arithmetic> NullaryFnOnce for Expand<'_, '_, A> {
 }
 
 impl<'a, A: Arithmetic> Recursion<'a, A> {
-    /// How much room all orders take.
+    /// Number of entries that all orders take.
     pub fn room(plan: &Plan) -> usize {
         let tables = Tables::room(plan.grid.size(), &Self::lengths(plan));
         tables
@@ -252,7 +252,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         lengths
     }
 
-    /// How many harmonics are kept of the motion, and of the terms with one velocity.
+    /// Numbers of harmonics of the motion, and of the terms with one velocity.
     fn harmonics(plan: &Plan) -> [usize; 2] {
         let has_damping = plan.of_terms.iter().any(|(_, derivative)| *derivative);
         [plan.most_harmonics(), if has_damping { plan.most_harmonics() } else { 0 }]
@@ -699,8 +699,8 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     }
 }
 
-/// What the frequency of later orders is multiplied by: `y_n`, with which its derivatives go, and
-/// that of the terms with one velocity.
+/// The factor of the frequency corrections of later orders: `y_n`, with which its derivatives go,
+/// and that of the terms with one velocity.
 #[derive(Clone, Copy)]
 enum Delayed {
     Motion,

@@ -1,5 +1,4 @@
-//! What an expansion by primes consists of, the same for every prime: products, symmetries and
-//! points.
+//! The plan of an expansion by primes, the same for every prime: products, symmetries and points.
 //!
 //! Half-wave symmetry (every `p + q` odd: odd harmonics alone) and that under reversal of time,
 //! where `y_n` consists of cosines (every `q` even) or of cosines for even `n` and of sines for odd
@@ -25,8 +24,8 @@ pub(super) struct Term {
     pub coefficient: Rational,
 }
 
-/// What is the same for every prime: the products, their symmetries and the points they are formed
-/// at.
+/// The part of an expansion that is the same for every prime: the products, their symmetries and
+/// the points at which they are formed.
 pub(super) struct Plan<'a> {
     pub terms: &'a [Term],
     pub scheme: Scheme,
@@ -36,18 +35,18 @@ pub(super) struct Plan<'a> {
     pub half_wave: bool,
     /// Sines at odd orders.
     alternating: bool,
-    /// How many harmonics an order brings.
+    /// Number of harmonics that each order adds.
     growth: usize,
     pub grid: Grid,
     /// The tables of values: `y`, `omega y'` where it is needed, and products of those before.
     pub tables: usize,
     pub products: Vec<Product>,
-    /// Which table belongs to each term, and whether its derivative is meant.
+    /// Index of the table of each term, and whether its derivative is meant.
     pub of_terms: Vec<(usize, bool)>,
     pub has_velocity: bool,
     /// Harmonics that the frequency of the last order does not depend on are left out.
     frequency_alone: bool,
-    /// Where the coefficients of each order start in a list of all, and where the last ends.
+    /// Start of the coefficients of each order in a list of all, and the end of the last.
     pub starts: Vec<usize>,
     /// A sine beside the terms, with its rate.
     pub sine: Option<(Sine, Rational)>,
@@ -154,7 +153,7 @@ impl<'a> Plan<'a> {
         to
     }
 
-    /// How many harmonics `y_order` has at most: `1, 3, ...` or `0, 1, 2, ...`.
+    /// Largest number of harmonics of `y_order`: `1, 3, ...` or `0, 1, 2, ...`.
     fn reach(&self, order: usize) -> usize {
         match self.half_wave {
             true => order * self.growth / 2 + 1,
@@ -162,9 +161,9 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// How many harmonics of `y_order` are computed. An order changes a harmonic by no more than it
-    /// reaches, so that what the first harmonic of the last order depends on is below what is left
-    /// to come.
+    /// Number of harmonics of `y_order` that are computed. If only the frequency is wanted, those
+    /// that can no longer reach the first harmonic of the last order are left out: each order
+    /// shifts a harmonic by no more than its own reach.
     pub fn harmonics(&self, order: usize) -> usize {
         match self.frequency_alone {
             true => self.reach(order).min(self.reach(self.last - order) + 1),
@@ -177,8 +176,9 @@ impl<'a> Plan<'a> {
         self.starts[order]..self.starts[order] + self.harmonics(order)
     }
 
-    /// How many points tell the harmonics apart: with `K` of them, a product's index `j` is taken
-    /// for `2K - 1 - j` (`2K - j` where all harmonics stand), which must be none that is computed.
+    /// Number of points that tell the harmonics apart: with `K` of them, a product's index `j` is
+    /// aliased to `2K - 1 - j` (`2K - j` if all harmonics stand), which must be none that is
+    /// computed.
     fn points(&self) -> usize {
         match self.frequency_alone {
             true => self.reach(self.last) / 2 + self.growth + 3,
@@ -203,7 +203,7 @@ impl<'a> Plan<'a> {
         usize::from(!self.half_wave)
     }
 
-    /// What `y_order` consists of.
+    /// The kind of series of `y_order`, cosines or sines.
     pub fn wave(&self, order: usize) -> Wave {
         match self.alternating && order % 2 == 1 {
             true => Wave::Sine,
@@ -211,7 +211,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// What a prime minus one has to be a multiple of.
+    /// The number of which a prime minus one has to be a multiple: the order of a root of unity.
     pub fn circle(&self) -> u64 {
         self.grid.circle() as u64
     }
@@ -223,9 +223,9 @@ impl<'a> Plan<'a> {
         if self.half_wave { highest / 2 } else { highest }
     }
 
-    /// The same for the frequency: what comes back to the first harmonic was no further away than
-    /// half of the orders reach, but for the initial value of a free motion, which is a sum over
-    /// all harmonics.
+    /// The largest prime factor of the divisors of the frequency: a contribution that returns to
+    /// the first harmonic was no further away than half of the orders reach, but for the initial
+    /// value of a free motion, which is a sum over all harmonics.
     pub fn largest_factor_of_frequency(&self, order: usize) -> u64 {
         let free = self.scheme.amplitude == Amplitude::Free;
         match free && self.scheme.normalisation == AmplitudeConvention::Initial {
@@ -234,7 +234,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// How far orders of the same symmetry are apart.
+    /// The distance of orders of the same symmetry.
     #[inline(always)]
     pub fn step(&self) -> usize {
         if self.alternating { 2 } else { 1 }
@@ -264,7 +264,7 @@ pub(super) struct Harmonics<'m> {
     entries: &'m mut [Lanes],
 }
 
-/// Where a row begins, and how many of its orders there are.
+/// Start of a row and the number of its orders.
 #[derive(Clone, Copy)]
 struct OrderRange {
     begin: usize,
@@ -272,7 +272,7 @@ struct OrderRange {
 }
 
 impl<'m> Harmonics<'m> {
-    /// How many entries so many harmonics have.
+    /// Number of entries of so many harmonics.
     pub fn room(plan: &Plan, count: usize) -> usize {
         let parities = 0..plan.step();
         parities

@@ -34,7 +34,7 @@ use crate::parallel::{each, threads};
 use crate::series::fourier::fraction as in_lowest_terms;
 use crate::series::waves::Wave;
 
-/// What is wanted of an expansion.
+/// The extent of an expansion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     /// Frequency and motion.
@@ -74,7 +74,8 @@ pub fn expand(
     by_widest(Expand { equation: &equation, plan: &plan, slope, orders, supervision })
 }
 
-/// Where the amplitude is determined, its condition has the same slope at every order.
+/// The derivative of the secular sine by the amplitude: if the amplitude is determined, its
+/// condition has the same slope at every order.
 fn slope(
     force: &[ForceTerm<Integers>],
     scheme: &Scheme,
@@ -94,7 +95,7 @@ const ALONE: usize = 40;
 /// The order to which long expansions are first derived to see how their denominators grow.
 const GUESSED: usize = 32;
 
-/// What is to be expanded.
+/// The equation to be expanded.
 struct SecularEquation {
     terms: Vec<Term>,
     /// The rate of a sine beside the terms.
@@ -179,7 +180,7 @@ struct Reconstruction<'a, A> {
     supervision: Supervision,
     primes: Vec<u64>,
     source: Box<dyn Iterator<Item = u64> + Send + Sync>,
-    /// What the first primes see, of all orders.
+    /// The expansions modulo the first primes, of all orders.
     first: Vec<Image>,
 }
 
@@ -513,16 +514,16 @@ impl Beginning {
     }
 }
 
-/// What the first orders show.
+/// Denominators and sizes of further orders, guessed from the first ones.
 #[derive(Default)]
 struct Guess {
     /// The common denominators of the first orders.
     known: Vec<Factored>,
-    /// How many binary digits the largest number of each of them has before the point.
+    /// Number of binary digits before the point of the largest number of each of them.
     sizes: Vec<f64>,
-    /// By how many it grows with each order, at most.
+    /// Largest growth of that number with each order.
     growth: f64,
-    /// By how many it shrinks, where it clearly does.
+    /// Decrease of that number with each order, if it clearly decreases.
     decay: f64,
 }
 
@@ -596,8 +597,8 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
         motion: &[Factored],
         frequency: &[Factored],
     ) -> Option<Vec<Order>> {
-        // What the guessed denominators had too much of in the order before they mostly have in the
-        // next as well.
+        // Factors that the guessed denominator had in excess at one order are mostly in excess at
+        // the next as well.
         let mut excess = Factored::default();
         let (mut of_motion, mut of_frequency) = (None, None);
         let mut lifted = Vec::with_capacity(orders.len());

@@ -17,7 +17,7 @@ use crate::exact::residue::sums::{Part, Product};
 use crate::exact::residue::{Arithmetic, Lanes, Residues};
 use crate::exact::{Integer, Rational};
 
-/// Where the tables of the sine stand.
+/// Indices of the tables of the sine.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sine {
     /// `V`.
@@ -45,7 +45,7 @@ impl Sine {
         }
     }
 
-    /// How many tables it takes.
+    /// Number of tables.
     pub const TABLES: usize = 5;
 }
 
@@ -61,7 +61,7 @@ pub(super) fn split(mut terms: Vec<Term>, highest: usize) -> (Option<Rational>, 
     (rate, terms)
 }
 
-/// Which term of the sine it is: `n` of `delta^n y^(2n+1)`.
+/// The index of a term in the series of the sine: `n` for `delta^n y^(2n+1)`.
 fn place(term: &Term) -> Option<usize> {
     let own = term.velocity == 0 && term.position as usize == 2 * term.order + 1;
     own.then_some(term.order)
@@ -86,7 +86,7 @@ fn rate(terms: &[Term], highest: usize) -> Option<Rational> {
     (!rate.is_zero()).then_some(rate)
 }
 
-/// What the recursion multiplies by, modulo eight primes.
+/// Factors of the recursion, modulo eight primes.
 pub(super) struct SineFactors {
     /// `n + 1/2`.
     scaled: Vec<Lanes>,

@@ -109,11 +109,11 @@ impl Work for Expand<'_> {
     }
 }
 
-/// What the symbols of the terms are.
+/// The symbols of the terms.
 struct Groups {
     /// Power of the small parameter and product of symbols.
     kinds: Vec<(usize, Monomial)>,
-    /// Which of them each term belongs to.
+    /// Index of the group of each term.
     of_terms: Vec<usize>,
 }
 
@@ -145,7 +145,7 @@ fn grouped(force: &[ForceTerm<Symbols>]) -> Option<(Vec<Term>, Groups)> {
 struct LowerSet {
     /// One list of exponents a point; that of the group whose value is one is zero.
     points: Vec<Vec<usize>>,
-    /// How many points belong to each order.
+    /// Number of points of each order.
     counts: Vec<usize>,
     /// For each group the places of all points along a line in its direction, from exponent zero
     /// on.
@@ -263,9 +263,9 @@ impl LowerSet {
     }
 }
 
-/// What one prime sees of all orders, or of the lower ones where it was stopped: for each the plain
-/// residues of the coefficients, point by point; of the frequency, of its square, and of the
-/// harmonics where they are wanted.
+/// The expansion modulo one prime, of all orders or of the lower ones if it was stopped: for each
+/// order the plain residues of the coefficients, point by point; of the frequency, of its square,
+/// and of the harmonics if they are wanted.
 struct Image {
     modulus: Modulus,
     orders: Vec<Vec<u64>>,
@@ -275,7 +275,7 @@ struct Image {
 struct Order {
     denominator: Integer,
     numerators: Vec<Integer>,
-    /// How many numbers there are at each point.
+    /// Number of coefficients at each point.
     numbers: usize,
 }
 
@@ -675,8 +675,7 @@ mod tests {
         assert_eq!(values, expected);
     }
 
-    /// What is there when the work is stopped, after any number of points, are the lower orders as
-    /// they are.
+    /// If the work is stopped after any number of points, the lower orders are available unchanged.
     #[test]
     fn the_first_points_are_enough_for_the_lower_orders() {
         let [a, b] = ["a", "b"].map(letter);

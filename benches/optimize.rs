@@ -5,10 +5,10 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use lindstedt::genetic::{generator, search};
-use lindstedt::optimize::{Question, Route, Watch, optimize};
+use lindstedt::optimize::{OptimizationProblem, Route, StudyObserver, optimize};
 
 fn benches(criterion: &mut Criterion) {
-    let question = Question::default();
+    let question = OptimizationProblem::default();
     let space = question.space().expect("a box");
     let middle = space.at(&[0.5; 4]);
     criterion.bench_function("optimize/one design", |bencher| {
@@ -32,8 +32,8 @@ fn benches(criterion: &mut Criterion) {
         });
     });
     slow.bench_function("a study of two runs", |bencher| {
-        let two = Question { runs: 2, ..question.clone() };
-        bencher.iter(|| optimize(two.clone(), vec![], &Watch::default()));
+        let two = OptimizationProblem { runs: 2, ..question.clone() };
+        bencher.iter(|| optimize(two.clone(), vec![], &StudyObserver::default()));
     });
 }
 

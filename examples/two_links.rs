@@ -7,7 +7,7 @@
 use std::fmt::Write;
 
 use lindstedt::expr::parse_expression;
-use lindstedt::system::{Event, Integrator, Options, System};
+use lindstedt::system::{Event, Integrator, System, SystemOptions};
 
 const EQUATIONS: [(&str, &str); 4] = [
     ("a", "p"),
@@ -31,8 +31,9 @@ pub fn report() -> Result<String, Box<dyn std::error::Error>> {
     let links = System::parse(&EQUATIONS, &[])?;
     let start = [1.5, -0.5, 0.0, 0.0];
     let upright = Event::record(parse_expression("a")?);
-    let path = links.solve(0.0, &start, END, &[upright], &Options::default())?;
-    let by_runge_kutta = Options { integrator: Integrator::RungeKutta, ..Options::default() };
+    let path = links.solve(0.0, &start, END, &[upright], &SystemOptions::default())?;
+    let by_runge_kutta =
+        SystemOptions { integrator: Integrator::RungeKutta, ..SystemOptions::default() };
     let check = links.solve(0.0, &start, END, &[], &by_runge_kutta)?;
 
     let mut out = String::from("Two links, released at rest\n\n     t          a          b\n");

@@ -21,9 +21,9 @@ pub struct Claim {
     /// What is claimed, in words.
     pub says: String,
     /// How it is computed.
-    pub question: Question,
+    pub question: ClaimComputation,
     /// What is printed: one entry, or the rows of a table.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<PrintedEntry>,
     /// What may be supposed: for each subject its alternatives, of which at most one is.
     pub suppositions: Vec<Vec<Supposition>>,
     /// A number that the publication does not print, to be solved for.
@@ -38,7 +38,7 @@ pub struct Claim {
 
 /// One thing that is printed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
+pub struct PrintedEntry {
     /// Values of this entry alone.
     pub values: BTreeMap<Symbol, Expr>,
     /// As it is printed.
@@ -113,9 +113,9 @@ impl Trend {
 
 /// How a claim is computed.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Question {
+pub struct ClaimComputation {
     /// What is computed.
-    pub quantity: Quantity,
+    pub quantity: ClaimQuantity,
     /// The equation of motion, for what is derived from one.
     pub equation: Option<Oscillator>,
     /// Method, order and the like.
@@ -134,7 +134,7 @@ pub struct Question {
 
 /// What is computed.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Quantity {
+pub enum ClaimQuantity {
     /// A number: a formula in values and in what the program computes, [`NAMES`](super::NAMES).
     Value(Expr),
     /// The coefficient of a term in a derived law.
@@ -250,7 +250,7 @@ fn decimal_text(value: &Expr) -> String {
     }
 }
 
-impl Question {
+impl ClaimComputation {
     /// The question with this supposed.
     pub(super) fn supposing(&self, suppositions: &[&Supposition]) -> Self {
         let mut question = self.clone();
@@ -274,7 +274,7 @@ impl Question {
     }
 }
 
-impl Quantity {
+impl ClaimQuantity {
     fn read_as(&mut self, other: &Expr) {
         match self {
             Self::Value(formula)

@@ -39,7 +39,10 @@ mod unknown;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-pub use claim::{Claim, Entry, Quantity, Question, Stated, Supposition, Trend, Unknown, Verdict};
+pub use claim::{
+    Claim, ClaimComputation, ClaimQuantity, PrintedEntry, Stated, Supposition, Trend, Unknown,
+    Verdict,
+};
 pub use printed::{Printed, Relation, Rounding};
 pub use quantity::{Computed, Lack, NAMES};
 pub use unknown::Demand;
@@ -228,7 +231,7 @@ fn judge(claim: Claim) -> Finding {
 }
 
 /// What a claim would need of its unknown, where that is more than it may be.
-fn outside_words(demand: &Demand, question: &Question, chosen: &[&Supposition]) -> String {
+fn outside_words(demand: &Demand, question: &ClaimComputation, chosen: &[&Supposition]) -> String {
     let [low, high] = demand.unknown.within.map(|end| significant(end, 3));
     let supposed = match words(question, chosen, None).join(" and ") {
         none if none.is_empty() => none,
@@ -263,7 +266,7 @@ fn attempt(claim: &Claim, chosen: &[&Supposition]) -> Tried {
 /// What is supposed in words, with the numbers of what follows from the values of the claim, and
 /// the value of an unknown.
 fn words(
-    question: &Question,
+    question: &ClaimComputation,
     chosen: &[&Supposition],
     unknown: Option<(Symbol, f64)>,
 ) -> Vec<String> {
@@ -290,7 +293,7 @@ fn words(
 /// Computes every entry and compares it with what is printed.
 fn compare(
     claim: &Claim,
-    question: &Question,
+    question: &ClaimComputation,
     evaluator: &Evaluator,
     chosen: &[&Supposition],
     unknown: Option<(Symbol, f64)>,
@@ -299,32 +302,32 @@ fn compare(
         claim.entries.iter().map(|entry| evaluator.compute(&entry.values, unknown)).collect();
     let numbers: Option<Vec<f64>> =
         computed.iter().map(|found| found.as_ref().ok()?.number()).collect();
-    let comes_out = |(entry, found): (&Entry, &Result<Computed, Lack>)| match (&entry.stated, found)
-    {
-        (Stated::Number(printed), Ok(Computed::Number(number))) => {
-            printed.is_reproduced_by(*number, question.rounding, question.tolerance)
-        }
-        (Stated::Number(printed), Ok(Computed::Exact(number))) => {
-            printed.is_reproduced_exactly_by(number, question.rounding, question.tolerance)
-        }
-        (Stated::Number(printed), Ok(Computed::Absent)) => printed.is_reproduced_exactly_by(
-            &Rational::default(),
-            question.rounding,
-            question.tolerance,
-        ),
-        (Stated::Formula(printed), Ok(Computed::Formula(formula))) => {
-            let printed = identity::with_definitions(printed, &question.values);
-            printed
-                .and_then(|printed| identity::difference(&printed, formula))
-                .is_ok_and(|rest| rest.is_none())
-        }
-        (Stated::Trend(trend), Ok(_)) => {
-            let same = question.tolerance.unwrap_or(SAME);
-            numbers.as_ref().is_some_and(|numbers| trend.holds(numbers, same))
-        }
-        (Stated::Words, Ok(Computed::Conflicts(conflicts))) => conflicts.is_empty(),
-        _ => false,
-    };
+    let comes_out =
+        |(entry, found): (&PrintedEntry, &Result<Computed, Lack>)| match (&entry.stated, found) {
+            (Stated::Number(printed), Ok(Computed::Number(number))) => {
+                printed.is_reproduced_by(*number, question.rounding, question.tolerance)
+            }
+            (Stated::Number(printed), Ok(Computed::Exact(number))) => {
+                printed.is_reproduced_exactly_by(number, question.rounding, question.tolerance)
+            }
+            (Stated::Number(printed), Ok(Computed::Absent)) => printed.is_reproduced_exactly_by(
+                &Rational::default(),
+                question.rounding,
+                question.tolerance,
+            ),
+            (Stated::Formula(printed), Ok(Computed::Formula(formula))) => {
+                let printed = identity::with_definitions(printed, &question.values);
+                printed
+                    .and_then(|printed| identity::difference(&printed, formula))
+                    .is_ok_and(|rest| rest.is_none())
+            }
+            (Stated::Trend(trend), Ok(_)) => {
+                let same = question.tolerance.unwrap_or(SAME);
+                numbers.as_ref().is_some_and(|numbers| trend.holds(numbers, same))
+            }
+            (Stated::Words, Ok(Computed::Conflicts(conflicts))) => conflicts.is_empty(),
+            _ => false,
+        };
     Tried {
         supposing: chosen.iter().map(|one| (*one).clone()).collect(),
         words: words(question, chosen, unknown),
@@ -439,7 +442,7 @@ fn against(claim: &Claim, tried: &Tried) -> Vec<String> {
 }
 
 /// A number beside the printed one.
-fn versus(entry: &Entry, printed: &Printed, number: f64) -> String {
+fn versus(entry: &PrintedEntry, printed: &Printed, number: f64) -> String {
     let read = entry.read_as.as_ref().map_or(String::new(), |text| format!(", read as {text}"));
     let computed = printed.alike(number, 6);
     let difference = match printed.relation {

@@ -8,14 +8,14 @@
 use std::cell::OnceCell;
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::claim::{Quantity, Question};
+use super::claim::{ClaimComputation, ClaimQuantity};
 use super::{identity, options};
 use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::{Monomial, Polynomial, Rational};
 use crate::expr::{CompiledFunction, Expr, ExprError, Node};
 use crate::impact::primary::{Primary, PrimaryCase, PrimarySettings, simulate_primary};
 use crate::impact::{
-    ContactSpeed, Form, Impact, Integrator, Model, Reading, Settings, Setup, Start, Swing,
+    ContactSpeed, Form, Impact, ImpactProblem, Integrator, Model, Reading, Settings, Setup, Start,
     ThreePhases, course, hertz, three_phases,
 };
 use crate::mechanics::Mechanism;
@@ -26,7 +26,7 @@ use crate::series::taylor::taylor;
 use crate::solution::Solution;
 use crate::symbol::Symbol;
 use crate::values::Values;
-use crate::verify::{DEFAULT_TOLERANCE, Extent, judge_to, needed_values};
+use crate::verify::{DEFAULT_TOLERANCE, VerificationScope, judge_to, needed_values};
 
 /// What the program computes by name, beside the values that a file gives: the name, what it needs,
 /// what it is.
@@ -120,13 +120,13 @@ pub enum Lack {
 
 /// Computes one question, for any entry and any value of an unknown.
 pub(super) struct Evaluator<'a> {
-    question: &'a Question,
+    question: &'a ClaimComputation,
     law: OnceCell<Result<(Oscillator, Solution), String>>,
     swing: OnceCell<Result<(Oscillator, Solution), String>>,
 }
 
 impl<'a> Evaluator<'a> {
-    pub(super) fn new(question: &'a Question) -> Self {
+    pub(super) fn new(question: &'a ClaimComputation) -> Self {
         Self { question, law: OnceCell::new(), swing: OnceCell::new() }
     }
 
@@ -140,7 +140,7 @@ impl<'a> Evaluator<'a> {
         let mut values = question.values.clone();
         values.extend(entry.iter().map(|(name, value)| (*name, value.clone())));
         match &question.quantity {
-            Quantity::Value(formula) | Quantity::Trend(formula) => {
+            ClaimQuantity::Value(formula) | ClaimQuantity::Trend(formula) => {
                 let mut scope = Scope {
                     evaluator: self,
                     known: unknown.into_iter().collect(),
@@ -150,36 +150,38 @@ impl<'a> Evaluator<'a> {
                 };
                 scope.formula(formula).map(Computed::Number)
             }
-            Quantity::Coefficient { squared, term } => {
+            ClaimQuantity::Coefficient { squared, term } => {
                 let law = self.polynomial(*squared)?;
                 let monomial = monomial(term)
                     .ok_or_else(|| Lack::Refused(format!("`{term}` is no product of powers")))?;
                 coefficient(&law, &monomial)
             }
-            Quantity::Law { squared } => {
+            ClaimQuantity::Law { squared } => {
                 Ok(Computed::Formula(Expr::from(&self.polynomial(*squared)?)))
             }
-            Quantity::Taylor { formula, degree } => {
+            ClaimQuantity::Taylor { formula, degree } => {
                 let about = [(Symbol::new("x"), Rational::default())];
                 let parts = taylor(formula, &about, *degree)
                     .map_err(|error| Lack::Refused(error.to_string()))?;
                 Ok(Computed::Formula(Expr::sum(parts)))
             }
-            Quantity::Identity(formula) => identity::with_definitions(formula, &values)
+            ClaimQuantity::Identity(formula) => identity::with_definitions(formula, &values)
                 .map(Computed::Formula)
                 .map_err(Lack::Refused),
-            Quantity::Motion { kinetic, potential, force } => {
+            ClaimQuantity::Motion { kinetic, potential, force } => {
                 motion([kinetic, potential, force], &values)
                     .map(Computed::Formula)
                     .map_err(Lack::Refused)
             }
-            Quantity::Coordinates(formula) => {
+            ClaimQuantity::Coordinates(formula) => {
                 let symbols = formula.symbols();
                 let accelerations = symbols.iter().filter(|symbol| symbol.primes() == 2);
                 Ok(Computed::Number(accelerations.count() as f64))
             }
-            Quantity::Settings(settings) => Ok(Computed::Conflicts(options::conflicts(settings))),
-            Quantity::Nothing => Err(Lack::Missing(BTreeSet::new())),
+            ClaimQuantity::Settings(settings) => {
+                Ok(Computed::Conflicts(options::conflicts(settings)))
+            }
+            ClaimQuantity::Nothing => Err(Lack::Missing(BTreeSet::new())),
         }
     }
 
@@ -424,7 +426,7 @@ impl Scope<'_, '_> {
         let (equation, solution) = self.evaluator.law()?;
         let numbers = self.all(&needed_values(solution))?;
         let at = exact(&numbers)?;
-        judge_to(equation, solution, &at, DEFAULT_TOLERANCE, Extent::Motion)
+        judge_to(equation, solution, &at, DEFAULT_TOLERANCE, VerificationScope::Motion)
             .map_err(|error| refused(&error))
     }
 
@@ -452,7 +454,7 @@ impl Scope<'_, '_> {
             let others = equation.parameters.iter().map(|name| number(name.name()));
             function.call(&std::iter::once(x).chain(others).collect::<Vec<f64>>())
         };
-        let swing = Swing {
+        let swing = ImpactProblem {
             amplitude: number("A"),
             barrier: number("xc"),
             stiffness: if hits { number("gamma") } else { hertz::DEFAULT_STIFFNESS },

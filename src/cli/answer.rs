@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use lindstedt::export::html::{self, Page};
+use lindstedt::export::html::{self, HtmlPage};
 use lindstedt::export::{latex, printable, text};
 use lindstedt::report::Document;
 use lindstedt::solution::Solution;
@@ -68,7 +68,7 @@ pub(super) fn drawn(picture: Option<Draw>) -> Result<String, Failure> {
 pub(super) fn page(
     picture: Option<Draw>,
     derivation: Option<(&Solution, bool)>,
-    write: impl FnOnce(&Page) -> String,
+    write: impl FnOnce(&HtmlPage) -> String,
 ) -> String {
     let drawn = picture.map(|draw| {
         draw().map_err(|failure| match failure {
@@ -81,7 +81,7 @@ pub(super) fn page(
     });
     let words: Vec<String> =
         std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
-    write(&Page {
+    write(&HtmlPage {
         title: &command(&what_is_asked(&words)),
         picture,
         derivation,

@@ -19,7 +19,7 @@ const PAPER: &str = include_str!("../../examples/audit/paper.toml");
 /// Claims of a publication from a file, each computed again, with a verdict
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-pub struct Arguments {
+pub struct AuditArguments {
     /// A TOML file of claims, or - for standard input
     pub file: PathBuf,
     #[command(flatten)]
@@ -45,7 +45,7 @@ struct Own {
     strict: bool,
 }
 
-impl Work for Arguments {
+impl Work for AuditArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -59,7 +59,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &AuditArguments) -> Result<Outcome, Failure> {
     let text = read(&arguments.file)?;
     let name = match is_standard(&arguments.file) {
         true => "standard input".into(),

@@ -10,7 +10,7 @@ use super::{Common, Failure, Format, Outcome, Work, json_text, whole};
 /// List the classical oscillators that `derive` knows by name
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-pub struct Arguments {
+pub struct CatalogArguments {
     /// One of them, with its source, its published law and what each method says to it; without it
     /// a line for each
     name: Option<String>,
@@ -18,7 +18,7 @@ pub struct Arguments {
     pub common: Common,
 }
 
-impl Work for Arguments {
+impl Work for CatalogArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -28,7 +28,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &CatalogArguments) -> Result<Outcome, Failure> {
     if arguments.common.plot.is_some() {
         return Err(Failure::Usage("--plot: the catalogue has no picture".to_owned()));
     }

@@ -17,7 +17,7 @@ use lindstedt::{
 use num_traits::Signed as _;
 
 use super::answer::{Answer, no_such};
-use super::derive::{self, Question, Solved};
+use super::derive::{self, EquationArguments, Solved};
 use super::files::width;
 use super::progress::{PROGRESS, with_progress};
 use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, read_at_most, tolerance};
@@ -26,9 +26,9 @@ use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, read_at_mos
 #[derive(Args)]
 #[command(mut_arg("plot", |plot| plot.hide(true)))]
 #[command(mut_arg("output", |output| output.help("Write the result to this file; if its name ends in .json, the certificate that `check` reads")))]
-pub struct Arguments {
+pub struct CertifyArguments {
     #[command(flatten)]
-    pub question: Question,
+    pub question: EquationArguments,
     /// Positive amplitudes, 1/10:3 say: how far from the first of them on the formula is proved to
     /// be within the tolerance, for every amplitude
     #[arg(long, value_name = "LOW:HIGH", value_parser = range)]
@@ -67,7 +67,7 @@ fn range(text: &str) -> Result<(Rational, Rational), String> {
     })
 }
 
-impl Work for Arguments {
+impl Work for CertifyArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -81,7 +81,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
     without_picture(&arguments.common)?;
     if arguments.range.is_some() && arguments.common.format() == Format::Json {
         return Err(Failure::Usage(
@@ -160,7 +160,7 @@ fn steady_formula(oscillator: &Oscillator, values: &Values) -> Option<Solution> 
 
 /// The proof of a motion that has an amplitude of its own.
 fn without_amplitude(
-    arguments: &Arguments,
+    arguments: &CertifyArguments,
     (solution, values): (&Solution, &Values),
     kind: &str,
     proved: impl FnOnce() -> Result<(DampedCertificate, Certified), NotCertified>,

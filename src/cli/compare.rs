@@ -17,7 +17,7 @@ use super::{Common, Failure, Format, Outcome, Work, files, json_text, tolerance}
 
 /// Every method of the field on one equation, in one table, judged against the true motion
 #[derive(Args)]
-pub struct Arguments {
+pub struct CompareArguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
     /// A value, exact (1.5, 3/2, pi/3): where the methods are compared; repeatable
@@ -34,7 +34,7 @@ pub struct Arguments {
     pub common: Common,
 }
 
-impl Work for Arguments {
+impl Work for CompareArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -48,7 +48,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &CompareArguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Compare)?;
     let oscillator = named(&oscillator(&formula, arguments.about.as_deref())?)?;

@@ -10,9 +10,9 @@ use lindstedt::Values;
 use lindstedt::catalog::nearest;
 use lindstedt::export::{code, html, json, latex, text};
 use lindstedt::expr::{Expr, Letters, parse_expression};
-use lindstedt::method::table::{Choice, Entry, that_take};
+use lindstedt::method::table::{Choice, MethodEntry, that_take};
 use lindstedt::method::{self, Options, Reason, Refusal};
-use lindstedt::problem::{Formula, Order, Problem, ProblemError, Reader};
+use lindstedt::problem::{FormulaProblem, Order, Problem, ProblemError, Reader};
 use lindstedt::report;
 use lindstedt::solution::{
     AmplitudeConvention, Counts, Degrees, Method, Modulation, Note, Solution,
@@ -27,7 +27,7 @@ use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, tolerance, 
 
 /// An equation, and how it is to be answered.
 #[derive(Args)]
-pub struct Question {
+pub struct EquationArguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
     /// How to derive: lindstedt-poincare, homotopy-perturbation, homotopy-analysis,
@@ -78,9 +78,9 @@ pub struct Question {
 
 /// Derive the frequency law and the motion of an oscillator, to an order
 #[derive(Args)]
-pub struct Arguments {
+pub struct DeriveArguments {
     #[command(flatten)]
-    pub question: Question,
+    pub question: EquationArguments,
     /// Print the derivation, order by order, before the result; in JSON as `derivation`, in a
     /// program as a comment
     #[arg(long)]
@@ -143,7 +143,7 @@ pub(super) struct Solved {
 
 /// The answer to a question, with the oscillator and the values that are left once those that the
 /// equation needs stand in it.
-pub(super) fn solved(arguments: &Question) -> Result<Solved, Failure> {
+pub(super) fn solved(arguments: &EquationArguments) -> Result<Solved, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Derive)?;
     let oscillator = named(&oscillator(&formula, arguments.about.as_deref())?)?;
@@ -214,7 +214,10 @@ fn unjudged(error: &VerificationError) -> Failure {
 }
 
 /// Refuses what asks for the motion where it is left out.
-pub(super) fn with_motion(question: &Question, of_motion: &[(&str, bool)]) -> Result<(), Failure> {
+pub(super) fn with_motion(
+    question: &EquationArguments,
+    of_motion: &[(&str, bool)],
+) -> Result<(), Failure> {
     match of_motion.iter().find(|(_, given)| question.omega_only && *given) {
         Some((what, _)) => Err(Failure::Usage(format!(
             "{what} asks for the motion, which --omega-only leaves out"
@@ -223,7 +226,7 @@ pub(super) fn with_motion(question: &Question, of_motion: &[(&str, bool)]) -> Re
     }
 }
 
-impl Work for Arguments {
+impl Work for DeriveArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -237,7 +240,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &DeriveArguments) -> Result<Outcome, Failure> {
     let of_motion = [
         ("--steps", arguments.steps),
         ("--plot", arguments.common.plot.is_some()),
@@ -370,12 +373,15 @@ pub(super) fn refused(oscillator: &Oscillator, refusal: &Refusal) -> Failure {
 }
 
 /// What a problem says to this command.
-pub(super) fn formula(problem: &Problem, reader: Reader) -> Result<Formula<'_>, Failure> {
+pub(super) fn formula(problem: &Problem, reader: Reader) -> Result<FormulaProblem<'_>, Failure> {
     problem.formula(reader).map_err(|error| Failure::refused(&error, error.help()))
 }
 
 /// The oscillator of an equation, about the equilibrium asked for.
-pub(super) fn oscillator(formula: &Formula, about: Option<&str>) -> Result<Oscillator, Failure> {
+pub(super) fn oscillator(
+    formula: &FormulaProblem,
+    about: Option<&str>,
+) -> Result<Oscillator, Failure> {
     let oscillator = Oscillator::parse(formula.equation)
         .map_err(|error| Failure::advised(&error, error.help()))?;
     let Some(about) = about.or(formula.about) else {
@@ -495,8 +501,8 @@ fn with_known_equilibrium(
 }
 
 fn options(
-    arguments: &Question,
-    formula: &Formula,
+    arguments: &EquationArguments,
+    formula: &FormulaProblem,
     oscillator: &Oscillator,
 ) -> Result<Options, Failure> {
     let usage = |message: String| Err(Failure::Usage(message));
@@ -528,7 +534,7 @@ fn options(
             chosen.name()
         ))
     };
-    let entry = Entry::of(chosen);
+    let entry = MethodEntry::of(chosen);
     if arguments.taylor.is_some() && !entry.takes(Choice::Taylor) {
         return without("--taylor", &that_take(Choice::Taylor));
     }

@@ -21,7 +21,7 @@ use super::{Common, Failure, Format, Outcome, Work, json_text, tolerance};
 /// The three phases of a pendulum that hits an elastic barrier, in closed form, checked by
 /// Runge-Kutta
 #[derive(Args, Default)]
-pub struct Arguments {
+pub struct ImpactArguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input;
     /// without it the paper's swing
     pub problem: Option<String>,
@@ -61,7 +61,7 @@ pub struct Arguments {
     pub common: Common,
 }
 
-impl Work for Arguments {
+impl Work for ImpactArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -75,7 +75,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &ImpactArguments) -> Result<Outcome, Failure> {
     let problem = asked(arguments)?;
     let tolerance = tolerance(&arguments.common);
     let setup = Setup::try_from(&problem)?;
@@ -197,7 +197,7 @@ fn every_method(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
 }
 
 /// The problem of the file with what the command line says, which wins.
-fn asked(arguments: &Arguments) -> Result<Problem, Failure> {
+fn asked(arguments: &ImpactArguments) -> Result<Problem, Failure> {
     let mut asked = match &arguments.problem {
         None => Problem::default(),
         Some(text) => problem(text)?,

@@ -19,7 +19,7 @@ use super::{Common, Failure, Format, Outcome, Work, json_text};
 /// and modes
 #[derive(Args)]
 #[command(mut_arg("tolerance", super::no_verdict))]
-pub struct Arguments {
+pub struct LagrangeArguments {
     /// A TOML file with [lagrangian], or - for standard input; without it the paper's pendulum, its
     /// equations (1) to (8) beside what follows
     pub file: Option<PathBuf>,
@@ -30,7 +30,7 @@ pub struct Arguments {
     pub common: Common,
 }
 
-impl Work for Arguments {
+impl Work for LagrangeArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -44,7 +44,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &LagrangeArguments) -> Result<Outcome, Failure> {
     let common = &arguments.common;
     if common.tolerance.is_some() {
         return Err(Failure::Usage(

@@ -56,24 +56,28 @@ paper always); 4 stopped before the end: what is printed is partial and says so.
 /// The commands, in the order of `--help`. A new one is a file with its arguments, documented by
 /// their line in `--help`, and their [`Work`], and a row here.
 static COMMANDS: [Command; 16] = [
-    Command::of::<derive::Arguments>("derive").writing(Formats::Programs).waiting(derive::patience),
-    Command::of::<compare::Arguments>("compare").writing(Formats::Pictures),
-    Command::of::<impact::Arguments>("impact").writing(Formats::Pictures),
-    Command::of::<simulate::Arguments>("simulate").waiting(a_minute),
-    Command::of::<response::Arguments>("response").waiting(a_minute),
-    Command::of::<friction::Arguments>("friction"),
-    Command::of::<lagrange::Arguments>("lagrange").writing(Formats::Words),
-    Command::of::<materials::Arguments>("materials").waiting(a_minute),
-    Command::of::<optimize::Arguments>("optimize").waiting(a_minute),
-    Command::of::<stability::Arguments>("stability"),
-    Command::of::<audit::Arguments>("audit").writing(Formats::Words).judged(),
+    Command::of::<derive::DeriveArguments>("derive")
+        .writing(Formats::Programs)
+        .waiting(derive::patience),
+    Command::of::<compare::CompareArguments>("compare").writing(Formats::Pictures),
+    Command::of::<impact::ImpactArguments>("impact").writing(Formats::Pictures),
+    Command::of::<simulate::SimulateArguments>("simulate").waiting(a_minute),
+    Command::of::<response::ResponseArguments>("response").waiting(a_minute),
+    Command::of::<friction::FrictionArguments>("friction"),
+    Command::of::<lagrange::LagrangeArguments>("lagrange").writing(Formats::Words),
+    Command::of::<materials::MaterialsArguments>("materials").waiting(a_minute),
+    Command::of::<optimize::OptimizeArguments>("optimize").waiting(a_minute),
+    Command::of::<stability::StabilityArguments>("stability"),
+    Command::of::<audit::AuditArguments>("audit").writing(Formats::Words).judged(),
     Command::of::<audit::PaperArguments>("paper").writing(Formats::Words).judged(),
-    Command::of::<certify::Arguments>("certify").writing(Formats::Words).waiting(derive::patience),
+    Command::of::<certify::CertifyArguments>("certify")
+        .writing(Formats::Words)
+        .waiting(derive::patience),
     Command::of::<certify::CheckArguments>("check")
         .writing(Formats::Words)
         .limited(certify::LONGEST_CHECK),
-    Command::of::<catalog::Arguments>("catalog").writing(Formats::Words),
-    Command::of::<schema::Arguments>("schema").writing(Formats::One),
+    Command::of::<catalog::CatalogArguments>("catalog").writing(Formats::Words),
+    Command::of::<schema::SchemaArguments>("schema").writing(Formats::One),
 ];
 
 /// The command that runs where none is named.

@@ -14,10 +14,10 @@ use lindstedt::verify::Verdict;
 use super::answer::{Answer, Draw, no_such};
 use super::files::width;
 use super::progress::{self, MOTIONS};
-use super::simulate::{Arguments, check_format, check_samples, check_varied};
+use super::simulate::{SimulateArguments, check_format, check_samples, check_varied};
 use super::{Failure, Format, Outcome, STOP, json_text};
 
-pub(super) fn run(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failure> {
+pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     check_format(&asked.common)?;
     match asked.sweep.as_slice() {
         [] => one(problem, asked),
@@ -25,7 +25,7 @@ pub(super) fn run(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failu
     }
 }
 
-fn one(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failure> {
+fn one(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     let (common, file) = (&asked.common, problem.primary_case(&[]));
     let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
     let settings = PrimarySettings { interrupt: Interrupt::by(&STOP), ..file.settings };
@@ -56,7 +56,7 @@ fn one(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failure> {
     })
 }
 
-fn many(problem: &Problem, asked: &Arguments, axes: &[Axis]) -> Result<Outcome, Failure> {
+fn many(problem: &Problem, asked: &SimulateArguments, axes: &[Axis]) -> Result<Outcome, Failure> {
     let common = &asked.common;
     check_sweep(asked)?;
     let parameters: Vec<PrimaryParameter> = axes
@@ -107,7 +107,7 @@ fn many(problem: &Problem, asked: &Arguments, axes: &[Axis]) -> Result<Outcome, 
 }
 
 /// Refuses what a sweep leaves no place for.
-fn check_sweep(asked: &Arguments) -> Result<(), Failure> {
+fn check_sweep(asked: &SimulateArguments) -> Result<(), Failure> {
     if !asked.sample.is_empty() {
         return Err(Failure::Usage(
             "a sweep reports one line a motion: leave out --sample".to_owned(),

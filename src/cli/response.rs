@@ -6,7 +6,7 @@ use clap::Args;
 use lindstedt::export::{self, json};
 use lindstedt::expr::parse_expression;
 use lindstedt::problem::{Order, Reader};
-use lindstedt::response::{MOST_HARMONICS, Question, ResponseError, respond};
+use lindstedt::response::{MOST_HARMONICS, ResponseError, ResponseRequest, respond};
 use lindstedt::solution::{Method, Solution};
 use lindstedt::{Interrupt, Options, Oscillator, Progress, Symbol, report, solve};
 
@@ -19,7 +19,7 @@ use super::{Common, Failure, Format, Outcome, STOP, Work, files, json_text, tole
 /// Steady states of a driven or self-excited oscillator: every branch with its stability, folds,
 /// period doublings, backbone
 #[derive(Args)]
-pub struct Arguments {
+pub struct ResponseArguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
     /// The parameter that varies, and from where to where: Omega=0.5:1.5
@@ -44,7 +44,7 @@ pub struct Arguments {
     pub common: Common,
 }
 
-impl Work for Arguments {
+impl Work for ResponseArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -58,7 +58,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Response)?;
     let oscillator = Oscillator::parse(formula.equation)
@@ -80,7 +80,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         )));
     };
     let (parameter, range) = range(vary)?;
-    let mut question = Question {
+    let mut question = ResponseRequest {
         oscillator,
         values: exact_values(&arguments.at, problem.values_of_motion())?.unwrap_or_default(),
         parameter,
@@ -148,7 +148,7 @@ fn method(name: Option<&str>) -> Result<Method, Failure> {
 
 /// The slow equations of the primary resonance.
 fn slow_equations(
-    question: &Question,
+    question: &ResponseRequest,
     method: Method,
     order: Option<u32>,
 ) -> Result<Solution, Failure> {

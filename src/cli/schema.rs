@@ -4,22 +4,22 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
-use lindstedt::export::json::Kind;
+use lindstedt::export::json::DocumentKind;
 
 use super::{Common, Failure, Outcome, Work, whole};
 
 /// Print the JSON Schema of a kind of document: every key with its meaning and unit
 #[derive(Args)]
-pub struct Arguments {
+pub struct SchemaArguments {
     /// The kind of document, the middle of what stands under its `schema`
-    #[arg(value_parser = PossibleValuesParser::new(Kind::ALL.map(Kind::name)).try_map(|name| Kind::from_name(&name).ok_or("no kind")))]
-    kind: Kind,
+    #[arg(value_parser = PossibleValuesParser::new(DocumentKind::ALL.map(DocumentKind::name)).try_map(|name| DocumentKind::from_name(&name).ok_or("no kind")))]
+    kind: DocumentKind,
     /// Write the schema to this file instead of standard output; - for standard output
     #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
 }
 
-impl Work for Arguments {
+impl Work for SchemaArguments {
     /// The place of the schema, which has no other format and no verdict.
     fn common(&self) -> Common {
         Common { output: self.output.clone(), ..Common::default() }
@@ -30,7 +30,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &SchemaArguments) -> Result<Outcome, Failure> {
     Ok(Outcome {
         result: whole(arguments.kind.json_schema().to_owned()),
         picture: None,

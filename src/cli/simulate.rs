@@ -26,7 +26,7 @@ use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, whole};
 /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any
 /// equation or mechanism
 #[derive(Args)]
-pub struct Arguments {
+pub struct SimulateArguments {
     /// A TOML file, - for standard input, an equation in quotes or a name of the catalogue; without
     /// it the paper's pendulum and barrier
     pub problem: Option<String>,
@@ -98,7 +98,7 @@ fn axis(text: &str) -> Result<Axis, String> {
 /// Without `--tolerance`: the energy that may go astray, relative to the largest.
 const ENERGY_TOLERANCE: f64 = 1e-6;
 
-impl Work for Arguments {
+impl Work for SimulateArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -112,7 +112,7 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     let problem = match &arguments.problem {
         None => Problem::default(),
         Some(text) => problem(text)?,
@@ -159,7 +159,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 /// A main mass that carries the pendulum.
-fn main_mass(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
+fn main_mass(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
     let foreign = [
         ("--chain", arguments.chain),
         ("--integrator", arguments.integrator.is_some()),
@@ -176,7 +176,7 @@ fn main_mass(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failur
 }
 
 /// An equation or a mechanism of one's own.
-fn own(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
+fn own(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
     let foreign = [
         ("--chain", arguments.chain),
         ("--jobs", arguments.jobs.is_some()),
@@ -229,7 +229,7 @@ fn refused(error: ProblemError) -> Failure {
     Failure::refused(&error, help)
 }
 
-fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
+fn one(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
     let asked = Simulate::try_from(problem).map_err(refused)?;
     let (model, start) = asked.case.motion().map_err(|error| refused(error.into()))?;
     let settings = settings(arguments, &asked);
@@ -293,7 +293,7 @@ fn one(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
 
 /// The settings of the file. A chain goes on to rest, unless the file says how long or nothing
 /// damps the swing.
-fn settings(arguments: &Arguments, asked: &Simulate) -> Settings {
+fn settings(arguments: &SimulateArguments, asked: &Simulate) -> Settings {
     let settings = Settings { interrupt: Interrupt::by(&STOP), ..asked.settings };
     let damped = asked.case.motion().is_ok_and(|(model, _)| model.zeta > 0.0 || model.alpha > 0.0);
     match arguments.chain && !asked.duration_given && (damped || !arguments.sweep.is_empty()) {
@@ -339,7 +339,7 @@ fn verdict(motion: &Simulation, judge: Option<&Simulation>, tolerance: Option<f6
 
 /// The motions of a sweep, the last parameter varying fastest, and how to follow them.
 fn motions(
-    arguments: &Arguments,
+    arguments: &SimulateArguments,
     problem: &Problem,
 ) -> Result<(Vec<(Model, Start)>, Settings), Failure> {
     let axes = arguments.sweep.as_slice();
@@ -388,7 +388,7 @@ fn add_baseline(
     Ok(())
 }
 
-fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
+fn many(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
     check_sweep(arguments)?;
     let (motions, settings) = motions(arguments, problem)?;
     let total = motions.len();
@@ -448,7 +448,7 @@ fn many(arguments: &Arguments, problem: &Problem) -> Result<Outcome, Failure> {
 }
 
 /// What a sweep leaves no place for.
-fn check_sweep(arguments: &Arguments) -> Result<(), Failure> {
+fn check_sweep(arguments: &SimulateArguments) -> Result<(), Failure> {
     if arguments.sweep.len() > 2 && arguments.common.draws() {
         return Err(Failure::Usage(
             "--plot draws curves over one parameter or a map over two, but more are swept: leave out --plot, or draw a map \

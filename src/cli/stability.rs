@@ -4,7 +4,9 @@ use std::path::Path;
 
 use clap::Args;
 use lindstedt::export::{json, stability};
-use lindstedt::hill::{self, Chart, HillError, JudgedCurve, Options, TransitionCurves, TruthError};
+use lindstedt::hill::{
+    self, Chart, HillError, HillOptions, JudgedCurve, TransitionCurves, TruthError,
+};
 use lindstedt::problem::{Order, Reader};
 use lindstedt::report::{self, StabilityReport};
 use lindstedt::verify::Verdict;
@@ -19,7 +21,7 @@ use super::{Common, Failure, Format, Outcome, Work, json_text, tolerance};
 /// Transition curves of a linear equation with periodic coefficients, such as Mathieu's: where rest
 /// is stable
 #[derive(Args)]
-pub struct Arguments {
+pub struct StabilityArguments {
     /// An equation in quotes, a TOML file, a name of the catalogue, or - for standard input
     pub problem: String,
     /// Highest power of the small parameters, all together, that is kept; 6 without it
@@ -46,7 +48,7 @@ pub struct Arguments {
 /// Points of a curve of a chart.
 const STEPS: u32 = 60;
 
-impl Work for Arguments {
+impl Work for StabilityArguments {
     fn common(&self) -> Common {
         self.common.clone()
     }
@@ -60,11 +62,11 @@ impl Work for Arguments {
     }
 }
 
-fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+fn run(arguments: &StabilityArguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
     let formula = formula(&problem, Reader::Stability)?;
     let oscillator = oscillator(&formula, None)?;
-    let usual = Options::default();
+    let usual = HillOptions::default();
     let order = match formula.order {
         None => None,
         Some(Order::Power(order)) => Some(order),
@@ -75,7 +77,7 @@ fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             ));
         }
     };
-    let options = Options {
+    let options = HillOptions {
         order: arguments.order.or(order).unwrap_or(usual.order),
         tongues: arguments.tongues.map_or(usual.tongues, |tongues| tongues as usize),
         small: match arguments.small.is_empty() {

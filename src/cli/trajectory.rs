@@ -5,9 +5,10 @@ use lindstedt::expr::{Expr, parse_expression};
 use lindstedt::impact::sweep::{grid_size, grid_values};
 use lindstedt::problem::Problem;
 use lindstedt::report::{self, MotionSweep, TRUSTED, TrajectoryReport};
-use lindstedt::system::{End, Integrator, SystemError};
+use lindstedt::system::{Integrator, PathEnd, SystemError};
 use lindstedt::trajectory::{
-    Course, DISPLACEMENT, Section, SweptMotion, Trajectory, TrajectoryError, in_words, sweep,
+    DISPLACEMENT, PoincareSection, SweptMotion, Trajectory, TrajectoryError, TrajectoryRequest,
+    in_words, sweep,
 };
 use lindstedt::verify::Verdict;
 use lindstedt::{Interrupt, Symbol};
@@ -16,10 +17,10 @@ use super::answer::{Answer, no_such};
 use super::derive::exact_values;
 use super::files::width;
 use super::progress::{self, MOTIONS};
-use super::simulate::{Arguments, Method, check_format, check_samples};
+use super::simulate::{Method, SimulateArguments, check_format, check_samples};
 use super::{Failure, Format, Outcome, STOP, json_text};
 
-pub(super) fn run(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failure> {
+pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     let common = &asked.common;
     check_format(common)?;
     let course = course(problem, asked)?;
@@ -84,10 +85,10 @@ pub(super) fn run(problem: &Problem, asked: &Arguments) -> Result<Outcome, Failu
 ///
 /// # Errors
 /// Where the series come to an end that Runge-Kutta passes: there is nothing to compare it with.
-fn by_both(course: &Course) -> Result<[Trajectory; 2], Failure> {
+fn by_both(course: &TrajectoryRequest) -> Result<[Trajectory; 2], Failure> {
     let by = |integrator: Integrator| course.clone().follow_by(integrator);
     let end = match by(Integrator::Taylor) {
-        Ok(motion) if motion.reason() != End::Singular => {
+        Ok(motion) if motion.reason() != PathEnd::Singular => {
             return Ok([motion, by(Integrator::RungeKutta).map_err(refused)?]);
         }
         Err(error @ TrajectoryError::System(SystemError::Start(_))) => Err(error),
@@ -130,7 +131,7 @@ fn refused(error: TrajectoryError) -> Failure {
 }
 
 /// The course of the file with the start, the values and the duration of the command line.
-fn course(problem: &Problem, asked: &Arguments) -> Result<Course, Failure> {
+fn course(problem: &Problem, asked: &SimulateArguments) -> Result<TrajectoryRequest, Failure> {
     let mut course = problem.course().map_err(|error| Failure::refused(&error, error.help()))?;
     course.section = section(&course, asked)?;
     let needed = course.parameters();
@@ -187,7 +188,10 @@ fn course(problem: &Problem, asked: &Arguments) -> Result<Course, Failure> {
 }
 
 /// The section asked for.
-fn section(course: &Course, asked: &Arguments) -> Result<Option<Section>, Failure> {
+fn section(
+    course: &TrajectoryRequest,
+    asked: &SimulateArguments,
+) -> Result<Option<PoincareSection>, Failure> {
     let read = |option: &str, text: &str| {
         parse_expression(text)
             .map_err(|error| Failure::Usage(format!("--{option} {text}: {error}")))
@@ -202,10 +206,10 @@ fn section(course: &Course, asked: &Arguments) -> Result<Option<Section>, Failur
             period if moves(&period) => Err(Failure::Usage(format!(
                 "--every {text}: a period does not depend on the motion; for where something grows through zero: --section"
             ))),
-            period => Ok(Some(Section::Every(period))),
+            period => Ok(Some(PoincareSection::Every(period))),
         },
         (None, Some(text)) => match read("section", text)? {
-            expression if moves(&expression) => Ok(Some(Section::Rising(expression))),
+            expression if moves(&expression) => Ok(Some(PoincareSection::Rising(expression))),
             _ => Err(Failure::Usage(format!(
                 "--section {text}: never grows through zero, for it does not depend on the motion; for equal times: --every"
             ))),
@@ -215,7 +219,7 @@ fn section(course: &Course, asked: &Arguments) -> Result<Option<Section>, Failur
 }
 
 /// Many motions.
-fn many(course: &Course, asked: &Arguments) -> Result<Outcome, Failure> {
+fn many(course: &TrajectoryRequest, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     let common = &asked.common;
     if asked.integrator.is_some() || !asked.sample.is_empty() || common.tolerance.is_some() {
         return Err(Failure::Usage(
@@ -277,7 +281,7 @@ fn many(course: &Course, asked: &Arguments) -> Result<Outcome, Failure> {
 /// What is missing of so many motions, where anything is.
 fn stopped_early(motions: &[SweptMotion], all: usize) -> Option<String> {
     let kept = "stopped early, what there is is kept";
-    let interrupted = motions.iter().filter(|motion| motion.reason == End::Interrupted).count();
+    let interrupted = motions.iter().filter(|motion| motion.reason == PathEnd::Interrupted).count();
     if motions.len() < all || interrupted > 0 {
         let cut = match interrupted {
             0 => String::new(),
@@ -285,7 +289,7 @@ fn stopped_early(motions: &[SweptMotion], all: usize) -> Option<String> {
         };
         return Some(format!("warning: {kept}: {} of {all} motions{cut}", motions.len()));
     }
-    let number = motions.iter().position(|motion| motion.reason != End::Reached)?;
+    let number = motions.iter().position(|motion| motion.reason != PathEnd::Reached)?;
     Some(format!("warning: motion {} {kept}: {}", number + 1, in_words(motions[number].reason)))
 }
 

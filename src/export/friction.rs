@@ -7,7 +7,7 @@
 use std::fmt::Write as _;
 
 use super::figure::{CurveStyle, FigureError, Guide, Points, curve, figure, panel};
-use crate::audit::paper::Table;
+use crate::audit::paper::FrictionTable;
 use crate::decimal::decimal;
 use crate::impact::friction::FrictionStudy;
 use crate::impact::{Simulation, friction::arctangent};
@@ -28,7 +28,7 @@ pub fn csv(study: &FrictionStudy) -> String {
         "# units: speed rad*omega, sign 1, arctangent 1, error %, printed_value 1, printed_error %\n\
          speed,sign,arctangent,error,printed_value,printed_error\n",
     );
-    for row in Table::of(study).rows {
+    for row in FrictionTable::of(study).rows {
         let laws = row.laws;
         let [value, error] =
             row.printed.map_or([""; 2], |entries| entries.map(|entry| entry.printed));

@@ -11,7 +11,7 @@ mod words;
 use math::Typesetter;
 use words::{definitions, escaped, list, verdict};
 
-use super::latex::{self, Setting, Table};
+use super::latex::{self, LatexTable, Setting};
 use super::{steps, text};
 use crate::decimal::significant;
 use crate::report::{Block, Document, MethodRow};
@@ -20,7 +20,7 @@ use crate::verify::comparison::Refused;
 
 /// What a page has beside its document.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Page<'a> {
+pub struct HtmlPage<'a> {
     /// What a browser shows as its title.
     pub title: &'a str,
     /// A picture as SVG, or why there is none.
@@ -44,7 +44,7 @@ pub struct Page<'a> {
 /// assert!(page.starts_with("<!doctype html>") && page.contains("<math"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn document(document: &Document, page: &Page) -> String {
+pub fn document(document: &Document, page: &HtmlPage) -> String {
     let typesetter = Typesetter::default();
     let mut body =
         Body { typesetter: &typesetter, text: String::new(), rows: Vec::new(), titled: false };
@@ -68,7 +68,7 @@ pub fn document(document: &Document, page: &Page) -> String {
 }
 
 /// The heading of a page that has no equation as its own.
-fn heading(page: &Page) -> String {
+fn heading(page: &HtmlPage) -> String {
     match page.title {
         "" => String::new(),
         title => format!("<h1>{}</h1>\n", escaped(title)),
@@ -83,12 +83,12 @@ fn heading(page: &Page) -> String {
 /// let page = html::lines("a < b\n", &Page::default());
 /// assert!(page.contains("<pre>a &lt; b\n</pre>"));
 /// ```
-pub fn lines(text: &str, page: &Page) -> String {
+pub fn lines(text: &str, page: &HtmlPage) -> String {
     whole(&format!("{}<pre>{}</pre>\n", heading(page), escaped(text)), page)
 }
 
 /// The page around its body.
-fn whole(body: &str, page: &Page) -> String {
+fn whole(body: &str, page: &HtmlPage) -> String {
     let picture = match page.picture {
         Some(Ok(picture)) => format!("<figure>\n{}\n</figure>\n", scaled(picture)),
         Some(Err(reason)) => format!("<p class=\"soft\">No picture: {}</p>\n", escaped(reason)),
@@ -260,7 +260,7 @@ impl Body<'_> {
         self.text.push_str(html);
     }
 
-    fn table(&mut self, table: &Table) {
+    fn table(&mut self, table: &LatexTable) {
         let is_number = |cell: &String| {
             let first = cell.trim_start_matches('$').chars().next();
             first.is_none_or(|first| first.is_ascii_digit() || "+-<".contains(first))
@@ -306,7 +306,7 @@ fn aside<'a>(block: &Block<'a>) -> Option<&'a str> {
 }
 
 /// Every method with its numbers and its formula.
-fn methods(rows: &[MethodRow], tolerance: f64) -> Table {
+fn methods(rows: &[MethodRow], tolerance: f64) -> LatexTable {
     let cells = text::comparison::cells(rows, tolerance);
     let formulas =
         std::iter::once("formula".to_owned()).chain(rows.iter().map(latex::comparison::with_hbar));
@@ -317,7 +317,7 @@ fn methods(rows: &[MethodRow], tolerance: f64) -> Table {
         .map(|(cells, formula)| cells.map(plain).into_iter().chain([formula]).collect())
         .collect();
     let head = lines.remove(0);
-    Table { places: "lrrrlrl".to_owned(), head, rows: lines, framed: true }
+    LatexTable { places: "lrrrlrl".to_owned(), head, rows: lines, framed: true }
 }
 
 /// Methods that do not apply, those for the same reason together.

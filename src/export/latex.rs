@@ -12,7 +12,7 @@ mod impact;
 mod table;
 
 pub use expression::{expression, inside, symbol};
-pub(super) use table::Table;
+pub(super) use table::LatexTable;
 
 pub use super::steps::latex as steps;
 use num_traits::Zero;
@@ -129,7 +129,7 @@ pub fn comparison(comparison: &Comparison) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn document(document: &Document) -> String {
-    let mut page = Page::default();
+    let mut page = LatexPage::default();
     for block in document.sections.iter().flatten() {
         page.add(block);
     }
@@ -170,7 +170,7 @@ fn in_one_line(verdicts: &[(Reading, Verdict)]) -> String {
 
 /// What has been written, and what waits for the end or for the next table.
 #[derive(Default)]
-struct Page {
+struct LatexPage {
     text: String,
     comments: Vec<(Rank, String)>,
     questions: Vec<String>,
@@ -183,7 +183,7 @@ pub(super) enum Setting {
     /// Rows of `align*`.
     Equations(Vec<String>),
     /// A table.
-    Table(Table),
+    Table(LatexTable),
     /// Words.
     Words,
 }
@@ -246,7 +246,7 @@ pub(super) fn setting(block: &Block) -> Setting {
     }
 }
 
-impl Page {
+impl LatexPage {
     fn add(&mut self, block: &Block) {
         match (setting(block), block) {
             (Setting::Table(table), _) => {

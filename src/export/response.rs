@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 
 use super::csv::cell;
 use super::figure::{CurveStyle, FigureError, Panel, Points, curve, figure, panel};
-use crate::response::Response;
-use crate::response::{Point, bifurcation::BifurcationKind};
+use crate::response::ResponseDiagram;
+use crate::response::{SteadyMotion, bifurcation::BifurcationKind};
 
 /// Every point of every branch, the bifurcations, the backbone and the simulations, a row each; a
 /// first line of comment says what the columns are.
@@ -19,7 +19,7 @@ use crate::response::{Point, bifurcation::BifurcationKind};
 /// assert!(table.lines().nth(2).is_some_and(|row| row.starts_with("branch,1,0.5,")));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn csv(response: &Response) -> String {
+pub fn csv(response: &ResponseDiagram) -> String {
     // Nothing gives a self-excited motion a phase, and nothing but itself its frequency.
     let (own, meaning) = match response.self_excited {
         true => ("frequency", "; frequency: theta/t"),
@@ -118,11 +118,12 @@ impl Height {
 
 /// The pieces of a branch in the parameter and the height that are stable, or that are not;
 /// neighbouring pieces share a point.
-fn pieces(height: Height, points: &[Point], stable: bool) -> Vec<Points> {
+fn pieces(height: Height, points: &[SteadyMotion], stable: bool) -> Vec<Points> {
     let mut pieces: Vec<Points> = Vec::new();
     let mut open = false;
-    let place =
-        |point: &Point| (point.parameter, height.of(point.amplitude, point.peak, point.frequency));
+    let place = |point: &SteadyMotion| {
+        (point.parameter, height.of(point.amplitude, point.peak, point.frequency))
+    };
     for pair in points.windows(2) {
         let [from, to] = pair else { continue };
         if (to.stable == Some(true)) != stable {
@@ -150,7 +151,7 @@ const MARKS: [(BifurcationKind, &str, CurveStyle); 6] = [
 
 /// The curves of a panel, with what they are called.
 fn curves<'a>(
-    response: &Response,
+    response: &ResponseDiagram,
     height: Height,
     slow_title: &'a str,
 ) -> Vec<(&'a str, Points, CurveStyle)> {
@@ -202,7 +203,7 @@ fn curves<'a>(
 /// assert!(lindstedt::export::response::picture(&respond(&question)?)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn picture(response: &Response) -> Result<String, FigureError> {
+pub fn picture(response: &ResponseDiagram) -> Result<String, FigureError> {
     let asked = &response.question;
     let heights: &[Height] = match (response.self_excited, asked.periods) {
         (true, _) => &[Height::Amplitude, Height::Frequency],

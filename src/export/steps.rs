@@ -6,7 +6,9 @@ use std::fmt::Write as _;
 use num_traits::Zero;
 
 use super::latex::{self, symbol};
-use crate::derivation::{AmplitudeCondition, Condition, Formula, Line, NOTATION, Step};
+use crate::derivation::{
+    AmplitudeCondition, Condition, DerivationFormula, DerivationLine, NOTATION, Step,
+};
 use crate::exact::{Polynomial, Polynomials};
 use crate::expr::Expr;
 use crate::series::FourierSeries;
@@ -285,7 +287,7 @@ fn condition_as_latex(condition: Condition, y: &str, phase: &str) -> String {
 }
 
 /// A line of a derivation as rows of `align*`: its words above its equation.
-pub(super) fn line_as_latex(line: &Line) -> Vec<String> {
+pub(super) fn line_as_latex(line: &DerivationLine) -> Vec<String> {
     let mut rows = Vec::new();
     if !line.words.is_empty() {
         let colon = if line.equal.is_empty() { "" } else { ":" };
@@ -298,25 +300,25 @@ pub(super) fn line_as_latex(line: &Line) -> Vec<String> {
     rows
 }
 
-fn formula_as_latex(formula: &Formula) -> String {
+fn formula_as_latex(formula: &DerivationFormula) -> String {
     match formula {
-        Formula::Expression(expression) => latex::expression(expression),
-        Formula::Waves { series, phase } => terms::sum(terms::waves(
+        DerivationFormula::Expression(expression) => latex::expression(expression),
+        DerivationFormula::Waves { series, phase } => terms::sum(terms::waves(
             series,
             |coefficient| latex::expression(&Expr::from(coefficient)),
             &latex::NOTATION,
             *phase,
         )),
-        Formula::Oscillator { of, square } => {
+        DerivationFormula::Oscillator { of, square } => {
             let linear = latex::expression(&(square * &Expr::from(*of)));
             format!("{}'' + {linear}", symbol(*of))
         }
-        Formula::AtZero { of, derivatives } => {
+        DerivationFormula::AtZero { of, derivatives } => {
             format!("{}{}(0)", symbol(*of), "'".repeat(*derivatives))
         }
-        Formula::Integral { factor, from, to, integrand, variable } => {
+        DerivationFormula::Integral { factor, from, to, integrand, variable } => {
             let inside = match integrand.as_ref() {
-                Formula::Expression(sum) if sum.terms().len() > 1 => {
+                DerivationFormula::Expression(sum) if sum.terms().len() > 1 => {
                     format!("\\left({}\\right)", latex::inside(sum))
                 }
                 other => formula_as_latex(other),
@@ -329,15 +331,15 @@ fn formula_as_latex(formula: &Formula) -> String {
                 symbol(*variable)
             )
         }
-        Formula::OverRoot(numerator, inside) => format!(
+        DerivationFormula::OverRoot(numerator, inside) => format!(
             "\\frac{{{}}}{{\\sqrt{{{}}}}}",
             latex::expression(numerator),
             match inside.as_ref() {
-                Formula::Expression(inside) => latex::inside(inside),
+                DerivationFormula::Expression(inside) => latex::inside(inside),
                 inside => formula_as_latex(inside),
             }
         ),
-        Formula::Slope { factor, of, by } => format!(
+        DerivationFormula::Slope { factor, of, by } => format!(
             "{}\\frac{{\\mathrm{{d}}{}}}{{\\mathrm{{d}}{}}}",
             before(factor),
             symbol(*of),

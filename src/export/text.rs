@@ -70,7 +70,7 @@ pub fn comparison(comparison: &Comparison, width: usize) -> String {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn document(document: &Document, width: usize) -> String {
-    let page = Page { width, longest_title: comparison::longest_title(document) };
+    let page = TextLayout { width, longest_title: comparison::longest_title(document) };
     let sections = document.sections.iter();
     let sections: Vec<String> = sections
         .map(|blocks| blocks.iter().map(|block| page.block(block, blocks)).collect())
@@ -79,13 +79,13 @@ pub fn document(document: &Document, width: usize) -> String {
 }
 
 /// What the blocks of a document have in common.
-struct Page {
+struct TextLayout {
     width: usize,
     /// The longest name of a method, beside which words stand.
     longest_title: usize,
 }
 
-impl Page {
+impl TextLayout {
     /// The lines of a block; `section` is where it stands.
     fn block(&self, block: &Block, section: &[Block]) -> String {
         match block {

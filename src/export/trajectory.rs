@@ -8,7 +8,7 @@ use crate::report::section_in_words;
 use crate::report::{MotionSweep, TrajectoryReport};
 use crate::symbol::Symbol;
 use crate::trajectory::in_words;
-use crate::trajectory::{Crossing, Section, SweptMotion, Trajectory};
+use crate::trajectory::{Crossing, PoincareSection, SweptMotion, Trajectory};
 
 /// The points of a table or a curve where no samples are asked for.
 const POINTS: u32 = 2000;
@@ -100,7 +100,7 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
 }
 
 /// The states on a section: each coordinate with its velocity.
-fn on_section(motion: &Trajectory, section: &Section) -> Result<String, FigureError> {
+fn on_section(motion: &Trajectory, section: &PoincareSection) -> Result<String, FigureError> {
     let course = &motion.course;
     let count = course.coordinates.len();
     let names: Vec<[String; 2]> =

@@ -10,7 +10,7 @@
 //! gravity are all given.
 
 use super::{Problem, ProblemError, refused};
-use crate::impact::hertz::Design;
+use crate::impact::hertz::StiffnessDesign;
 use crate::impact::{Elastic, Modulus, Units};
 
 /// The keys of units, by their own names: those of the pendulum, the radius, those of the moduli,
@@ -27,10 +27,10 @@ impl Problem {
     /// # Errors
     /// A quantity given twice, or one by its own name that is not positive; half an equivalent
     /// modulus.
-    pub(super) fn design(&self) -> Result<Design, ProblemError> {
-        let usual = Design::from(self.design);
+    pub(super) fn design(&self) -> Result<StiffnessDesign, ProblemError> {
+        let usual = StiffnessDesign::from(self.design);
         let (pendulum, sphere) = (&self.pendulum, &self.sphere);
-        Ok(Design {
+        Ok(StiffnessDesign {
             mass: self.one_of(["[pendulum] mass", "[design] mass"], pendulum.mass, usual.mass)?,
             radius: self.one_of(
                 ["[sphere] radius", "[design] radius"],
@@ -193,7 +193,7 @@ impl Problem {
     /// The units of a motion, by the rule of [`Problem::units`]: by the design where gamma follows
     /// from it, or something that damps is given in SI units; otherwise where mass, length and
     /// gravity are given. What says nothing is no mistake here.
-    pub(super) fn simulation_units(&self, design: &Design) -> Option<Units> {
+    pub(super) fn simulation_units(&self, design: &StiffnessDesign) -> Option<Units> {
         let given = |name: &str| {
             let keys = [format!("[pendulum] {name}"), format!("[design] {name}")];
             keys.iter().any(|key| self.gives(key))
@@ -237,7 +237,7 @@ pub(super) fn needs<T>(key: &str, missing: &str) -> Result<T, ProblemError> {
 mod tests {
     use super::*;
 
-    fn design(text: &str) -> Result<Design, ProblemError> {
+    fn design(text: &str) -> Result<StiffnessDesign, ProblemError> {
         text.parse::<Problem>().unwrap().design()
     }
 
@@ -247,7 +247,7 @@ mod tests {
             "[design]\nmass = 0.02\nradius = 0.01\nlength = 0.25\nmodulus = 2e9\ngravity = 1.6";
         let new = "[pendulum]\nmass = 0.02\nlength = 0.25\ngravity = 1.6\n[sphere]\nradius = 0.01\n[barrier]\nmodulus = 2e9";
         assert_eq!(design(old), design(new));
-        assert_eq!(design(""), Ok(Design::default()));
+        assert_eq!(design(""), Ok(StiffnessDesign::default()));
     }
 
     #[test]

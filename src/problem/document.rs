@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
 
-use crate::impact::hertz::Design;
+use crate::impact::hertz::StiffnessDesign;
 use crate::impact::{ContactDamping, DEFAULT_AMPLITUDE, DEFAULT_BARRIER};
 use crate::solution::Degrees;
 
@@ -491,7 +491,7 @@ impl Default for Pendulum {
     }
 }
 
-impl From<DesignSection> for Design {
+impl From<DesignSection> for StiffnessDesign {
     fn from(section: DesignSection) -> Self {
         let DesignSection { mass, radius, length, modulus, gravity } = section;
         Self { mass, radius, length, modulus, gravity }
@@ -500,7 +500,7 @@ impl From<DesignSection> for Design {
 
 impl Default for DesignSection {
     fn default() -> Self {
-        let Design { mass, radius, length, modulus, gravity } = Design::default();
+        let StiffnessDesign { mass, radius, length, modulus, gravity } = StiffnessDesign::default();
         Self { mass, radius, length, modulus, gravity }
     }
 }

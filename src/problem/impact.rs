@@ -3,7 +3,7 @@
 use super::{Barrier, BarrierSide, Order, Problem, ProblemError, Reader, refused};
 use crate::expr::{Expr, parse_expression};
 use crate::impact::contact::ContactLaw;
-use crate::impact::hertz::{Design, NotPositive};
+use crate::impact::hertz::{NotPositive, StiffnessDesign};
 use crate::impact::{
     CollisionError, ContactDamping, ContactLoss, ContactScales, Rule, Setup, Side, SpeedUnit,
     UnknownRule,
@@ -61,7 +61,7 @@ impl TryFrom<&Problem> for Setup {
         }
         let swing = swing(problem)?;
         let force = force(problem)?;
-        let given = Numbers::of(problem, swing.as_ref(), force.is_some())?;
+        let given = ImpactValues::of(problem, swing.as_ref(), force.is_some())?;
         let side = match problem.pendulum.side {
             Some(BarrierSide::Left) => Side::Left,
             Some(BarrierSide::Right) | None => Side::Right,
@@ -123,14 +123,14 @@ impl TryFrom<&Problem> for Setup {
 
 /// The numbers of an impact that stand among the values, by the letters of the printed equation,
 /// and the other values.
-struct Numbers {
+struct ImpactValues {
     amplitude: Option<f64>,
     barrier: Option<f64>,
     stiffness: Option<f64>,
     others: Values,
 }
 
-impl Numbers {
+impl ImpactValues {
     /// What the values of a problem say; what they leave out stands under its key.
     ///
     /// # Errors
@@ -330,7 +330,7 @@ fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, Proble
     if of_restitution && contact.at_speed.is_none() {
         return Ok(Some(ContactLoss::Restitution(value)));
     }
-    let Design { mass, length, gravity, .. } = problem.design()?;
+    let StiffnessDesign { mass, length, gravity, .. } = problem.design()?;
     let needed: &[(&'static str, f64)] = match key {
         "lambda" => &[("length", length), ("gravity", gravity)],
         "damping" => &[("mass", mass), ("length", length), ("gravity", gravity)],

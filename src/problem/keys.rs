@@ -91,10 +91,10 @@ fn readers(section: &str, key: &str) -> &'static [Reader] {
 }
 
 type Keys = &'static [&'static str];
-type Section = (&'static str, fn() -> Keys);
+type KeySection = (&'static str, fn() -> Keys);
 
 /// The sections, each with its keys, in the order in which unread ones are named.
-const SECTIONS: [Section; 15] = [
+const SECTIONS: [KeySection; 15] = [
     ("", || {
         &[
             "equation",
@@ -142,13 +142,13 @@ pub fn keys() -> impl Iterator<Item = (String, &'static [Reader])> {
 fn keys_of<'de, T: Deserialize<'de>>() -> Keys {
     let mut keys: Keys = &[];
     // Its type asks for them by name, and is told nothing.
-    let _ = T::deserialize(Names(&mut keys));
+    let _ = T::deserialize(CollectNames(&mut keys));
     keys
 }
 
-struct Names<'a>(&'a mut Keys);
+struct CollectNames<'a>(&'a mut Keys);
 
-impl<'de> Deserializer<'de> for Names<'_> {
+impl<'de> Deserializer<'de> for CollectNames<'_> {
     type Error = serde::de::value::Error;
 
     fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Self::Error> {

@@ -154,7 +154,7 @@ impl Problem {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::hertz::Design;
+    use crate::impact::hertz::StiffnessDesign;
 
     fn asked(text: &str) -> Result<MaterialQuestion, ProblemError> {
         text.parse::<Problem>().unwrap().materials(false)
@@ -173,7 +173,7 @@ mod tests {
     fn a_material_has_the_modulus_of_its_bodies() {
         let moduli = |text: &str| {
             let asked = asked(text).unwrap();
-            assert_eq!(asked.case.design, Design::default());
+            assert_eq!(asked.case.design, StiffnessDesign::default());
             asked.materials[3..].iter().map(|material| material.modulus.value()).collect::<Vec<_>>()
         };
         let cork = "[[material]]\nname = \"cork\"\nmodulus = 2e7\n";

@@ -31,7 +31,7 @@ mod trajectory;
 use std::str::FromStr;
 
 use crate::impact::contact::UnknownContactLaw;
-use crate::impact::hertz::{Design, NotPositive};
+use crate::impact::hertz::{NotPositive, StiffnessDesign};
 use crate::impact::{CaseError, CollisionError, DampingError, Parameter, SpeedUnit, UnknownRule};
 use crate::mechanics::MechanicsError;
 use crate::optimize::OptimizeError;
@@ -44,7 +44,7 @@ pub use document::{
     GeneticSection, LagrangianSection, LimitsSection, MaterialSection, NoBarrier, Objectives,
     Order, Pendulum, PrimarySection, Problem, Range, Run, SphereSection,
 };
-pub use formula::Formula;
+pub use formula::FormulaProblem;
 pub use keys::{Reader, keys};
 pub(crate) use mistakes::{at_place, in_words};
 pub use primary::PrimaryProblem;
@@ -179,9 +179,9 @@ impl Problem {
     }
 
     /// Where the stiffness of the contact comes from, with this design.
-    fn stiffness_source(&self, design: &Design) -> &'static str {
+    fn stiffness_source(&self, design: &StiffnessDesign) -> &'static str {
         if self.contact.gamma.is_none() {
-            return match *design == Design::default() {
+            return match *design == StiffnessDesign::default() {
                 true => {
                     "equation (8) with the paper's Table 5 and l = L; the paper prints no gamma"
                 }

@@ -8,9 +8,11 @@
 use super::primary::at_rest;
 use super::simulate::refuse_two_forms;
 use super::{Objectives, Problem, ProblemError, Reader, refused};
-use crate::genetic::{Coding, Crossover, Mutation, Options, Penalty, StallTest};
+use crate::genetic::{Coding, Crossover, GeneticOptions, Mutation, Penalty, StallTest};
 use crate::impact::{ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Parameter, default_lambda};
-use crate::optimize::{DEFAULT_BOX, Limit, Objective, OptimizeError, Question, Variable};
+use crate::optimize::{
+    DEFAULT_BOX, Limit, Objective, OptimizationProblem, OptimizeError, Variable,
+};
 use crate::spelling::nearest;
 
 /// The keys that fix a variable: in `[design]`, or by its own name.
@@ -60,12 +62,15 @@ impl Problem {
     /// assert_eq!((asked.variables[1].lower, asked.case.design.mass), (0.1, 0.05));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn optimize(&self) -> Result<Question, ProblemError> {
+    pub fn optimize(&self) -> Result<OptimizationProblem, ProblemError> {
         self.check_keys(Reader::Optimize)?;
         let gives = |parameter| self.gives_parameter(parameter);
         refuse_two_forms(gives)?;
         self.check_pairs(gives)?;
-        let mut question = Question { case: self.for_design().case()?, ..Question::default() };
+        let mut question = OptimizationProblem {
+            case: self.for_design().case()?,
+            ..OptimizationProblem::default()
+        };
         let case = &mut question.case;
         if case.left.is_none() && case.right.is_none() {
             return refused(
@@ -95,7 +100,7 @@ impl Problem {
     }
 
     /// What varies.
-    fn boundaries(&self, question: &mut Question) -> Result<(), ProblemError> {
+    fn boundaries(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let limits = &self.limits;
         self.check_materials()?;
         self.own_materials(&mut question.materials)?;
@@ -137,7 +142,7 @@ impl Problem {
     }
 
     /// What must be kept.
-    fn kept(&self, question: &mut Question) -> Result<(), ProblemError> {
+    fn kept(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let limits = &self.limits;
         let of = [
             (Objective::RestTime, limits.max_rest_time),
@@ -185,7 +190,7 @@ impl Problem {
     }
 
     /// What carries the pendulum, where its rest counts.
-    fn carried(&self, question: &mut Question) -> Result<(), ProblemError> {
+    fn carried(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let limited = question.limits.iter().map(|limit| limit.objective);
         let counts =
             question.objectives.iter().copied().chain(limited).any(Objective::is_of_main_mass);
@@ -222,7 +227,7 @@ impl Problem {
     }
 
     /// How it is searched.
-    fn search_options(&self, question: &mut Question) -> Result<(), ProblemError> {
+    fn search_options(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let section = &self.genetic;
         let names = match &section.objective {
             None => vec![Objective::RestTime.name().to_owned()],
@@ -269,7 +274,7 @@ impl Problem {
     }
 
     /// How designs are written as genes, crossed and changed.
-    fn operators(&self, options: &mut Options) -> Result<(), ProblemError> {
+    fn operators(&self, options: &mut GeneticOptions) -> Result<(), ProblemError> {
         let section = &self.genetic;
         let bits = section.bits.unwrap_or(DEFAULT_BITS);
         let coding = [("real", Coding::Real), ("bits", Coding::Bits(bits))];
@@ -310,7 +315,7 @@ impl Problem {
     }
 
     /// What a design pays that breaks a constraint.
-    fn penalty(&self, question: &mut Question) -> Result<(), ProblemError> {
+    fn penalty(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let section = &self.genetic;
         let constrained =
             question.density.is_some() || question.elastic || !question.limits.is_empty();
@@ -392,14 +397,14 @@ const ONE_OBJECTIVE: [&str; 14] = [
 mod tests {
     use super::*;
 
-    fn asked(text: &str) -> Result<Question, ProblemError> {
+    fn asked(text: &str) -> Result<OptimizationProblem, ProblemError> {
         text.parse::<Problem>().unwrap().optimize()
     }
 
     #[test]
     fn an_empty_file_is_the_papers_study() {
-        let (of_file, of_library) = (asked("").unwrap(), Question::default());
-        assert_eq!(Question { settings: of_library.settings, ..of_file }, of_library);
+        let (of_file, of_library) = (asked("").unwrap(), OptimizationProblem::default());
+        assert_eq!(OptimizationProblem { settings: of_library.settings, ..of_file }, of_library);
     }
 
     #[test]

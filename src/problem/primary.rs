@@ -3,7 +3,7 @@
 use super::document::{Pendulum, PrimarySection};
 use super::simulate::without;
 use super::{Problem, ProblemError, refused};
-use crate::impact::hertz::Design;
+use crate::impact::hertz::StiffnessDesign;
 use crate::impact::primary::{MainMass, Primary, PrimaryCase, PrimaryParameter, PrimarySettings};
 use crate::impact::{Parameter, Start, Units};
 
@@ -133,7 +133,7 @@ impl Problem {
 }
 
 /// The units of a design.
-fn in_si(design: &Design) -> Units {
+fn in_si(design: &StiffnessDesign) -> Units {
     Units {
         mass: design.mass,
         length: design.length,

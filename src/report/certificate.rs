@@ -8,14 +8,14 @@ use super::driven::slow_equations;
 use super::solution::law_blocks;
 use super::{Block, Document};
 use crate::certificate::{
-    Beyond, Certificate, Certified, DampedCertificate, Enclosure, Errors, JudgedFormula, Range,
-    Validity, coordinate,
+    Beyond, Certificate, Certified, DampedCertificate, Enclosure, Errors, JudgedFormula,
+    SizeBounds, Validity, coordinate,
 };
 use crate::decimal::{
     as_typed, exact_decimal, neighbours, not_above_typed, plain_decimal, plain_fraction,
     rounded_fraction, rounded_up, significant_fraction,
 };
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::bound::Bound;
 use crate::exact::rational::{from_f64, to_f64};
 use crate::exact::{Integer, Rational};
@@ -229,7 +229,7 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
         ],
         None => {
             let left = certificate.left_side();
-            vec![vec![Block::Line(Cow::Owned(Line::equation(left, Expr::zero())))]]
+            vec![vec![Block::Line(Cow::Owned(DerivationLine::equation(left, Expr::zero())))]]
         }
     };
     sections.retain(|blocks| !blocks.is_empty());
@@ -521,13 +521,13 @@ pub(super) fn percent(tolerance: f64) -> String {
 }
 
 /// A number with its two ends, each rounded outwards, in one where they agree.
-fn between(range: Range, unit: &str) -> String {
+fn between(range: SizeBounds, unit: &str) -> String {
     let ends = [range.lower, range.upper].map(from_f64);
     between_exactly(ends, unit)
 }
 
 /// A ratio with its two ends in percent, likewise.
-fn between_percent(range: Range) -> String {
+fn between_percent(range: SizeBounds) -> String {
     let percent = |end: f64| Some(from_f64(end)? * Integer::from(100));
     between_exactly([range.lower, range.upper].map(percent), " %")
 }
@@ -557,7 +557,7 @@ fn between_exactly([lower, upper]: [Option<Rational>; 2], unit: &str) -> String 
 }
 
 /// A ratio in percent with six digits where both ends have the same, else as [`between`] says it.
-pub(super) fn rounded_percent(range: Range) -> String {
+pub(super) fn rounded_percent(range: SizeBounds) -> String {
     let percent = |end: f64| Some(rounded_fraction(&(from_f64(end)? * Integer::from(100)), 6));
     match [range.lower, range.upper].map(percent) {
         [Some(lower), Some(upper)] if lower == upper && !upper.is_zero() => {

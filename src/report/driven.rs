@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use super::{Block, Document, size_in_percent};
 use crate::decimal::{decimal, significant};
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::Polynomial;
 use crate::expr::Expr;
 use crate::solution::{Modulation, Response, Solution};
@@ -44,13 +44,20 @@ pub(super) fn driven<'a>(
     Document { sections }
 }
 
-fn equation<'a>(left: impl Into<Formula>, right: impl Into<Formula>) -> Block<'a> {
-    Block::Line(Cow::Owned(Line::equation(left, right)))
+fn equation<'a>(
+    left: impl Into<DerivationFormula>,
+    right: impl Into<DerivationFormula>,
+) -> Block<'a> {
+    Block::Line(Cow::Owned(DerivationLine::equation(left, right)))
 }
 
 /// Words before an equation.
-fn said<'a>(words: &str, left: impl Into<Formula>, right: impl Into<Formula>) -> Block<'a> {
-    Block::Line(Cow::Owned(Line::equation(left, right).because(words)))
+fn said<'a>(
+    words: &str,
+    left: impl Into<DerivationFormula>,
+    right: impl Into<DerivationFormula>,
+) -> Block<'a> {
+    Block::Line(Cow::Owned(DerivationLine::equation(left, right).because(words)))
 }
 
 /// The motion as a function of time.

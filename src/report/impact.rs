@@ -8,8 +8,8 @@ use crate::decimal::{decimal, significant};
 use crate::impact::contact::ContactLaw;
 use crate::impact::contact::power_law::duration_factor;
 use crate::impact::{
-    Attempt, Column, ContactLoss, DerivedContact, Flight, Form, Impact, Letters, Modulus, Quantity,
-    Reading, Setup, SiImpact, Side, YieldCheck,
+    Attempt, ContactLoss, DerivedContact, Flight, Form, Impact, ImpactQuantity, JudgedPhases,
+    Letters, Modulus, Reading, Setup, SiImpact, Side, YieldCheck,
 };
 use crate::solution::law::Shown;
 use crate::solution::{AmplitudeConvention, Solution};
@@ -152,7 +152,7 @@ fn omega<'a>(frequency: f64, symbol: &str, amplitude: f64) -> Block<'a> {
 }
 
 /// A reading by the paper's way.
-fn papers<'a>(impact: &Impact, column: &'a Column) -> Vec<Block<'a>> {
+fn papers<'a>(impact: &Impact, column: &'a JudgedPhases) -> Vec<Block<'a>> {
     let setup = &impact.setup;
     let words = match column.reading {
         Reading::Paper => {
@@ -186,7 +186,7 @@ fn energy_speed(impact: &Impact) -> String {
     }
 }
 
-fn phases<'a>(impact: &Impact, column: &'a Column) -> impl Iterator<Item = Block<'a>> {
+fn phases<'a>(impact: &Impact, column: &'a JudgedPhases) -> impl Iterator<Item = Block<'a>> {
     let (letters, release, is_lossy) =
         (impact.letters, release(impact), impact.setup.loss.is_some());
     column.phases.phases.iter().map(move |phase| Block::Phase {
@@ -200,7 +200,7 @@ fn phases<'a>(impact: &Impact, column: &'a Column) -> impl Iterator<Item = Block
 }
 
 /// The derived reading: its law, how it was chosen, its phases.
-fn derived<'a>(impact: &Impact, column: &'a Column, flight: &'a Flight) -> Vec<Block<'a>> {
+fn derived<'a>(impact: &Impact, column: &'a JudgedPhases, flight: &'a Flight) -> Vec<Block<'a>> {
     let solution = &flight.solution;
     let mut blocks = vec![Block::Reading {
         reading: column.reading,
@@ -413,7 +413,7 @@ fn in_si_units<'a>(impact: &Impact, si: &SiImpact, tolerance: f64) -> Vec<Block<
         "In SI units: m L^2 x'' + m g L sin(x) {sign} k L (L ({inside}))^(3/2){damped} H({inside}) = 0"
     ))];
     blocks.extend(formulas(impact, si));
-    let mut rows: Vec<(Quantity, &str)> =
+    let mut rows: Vec<(ImpactQuantity, &str)> =
         si.rows().into_iter().map(|(row, unit)| (row.clone(), unit)).collect();
     let over_the_printed = paper::over_contact_time(si);
     rows.push((over_the_printed.clone(), ""));
@@ -510,7 +510,7 @@ fn formulas<'a>(impact: &Impact, si: &SiImpact) -> Vec<Block<'a>> {
 }
 
 /// How the contact time that the paper prints stands beside every reading.
-fn printed(impact: &Impact, over_the_printed: &Quantity, tolerance: f64) -> String {
+fn printed(impact: &Impact, over_the_printed: &ImpactQuantity, tolerance: f64) -> String {
     let readings = impact.columns.iter().map(|column| column.reading.name());
     let each: Vec<(&str, f64)> = std::iter::once(("Runge-Kutta", over_the_printed.runge_kutta))
         .chain(readings.zip(over_the_printed.closed_forms.iter().copied()))

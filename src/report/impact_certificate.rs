@@ -2,7 +2,7 @@
 
 use super::certificate::{enclosed, percent, rounded_percent};
 use super::{Block, Document};
-use crate::certificate::{ImpactEnclosure, Range};
+use crate::certificate::{ImpactEnclosure, SizeBounds};
 use crate::decimal::{exact_decimal, not_above_typed};
 use crate::exact::Rational;
 use crate::impact::{Impact, Reading};
@@ -24,7 +24,7 @@ pub struct ImpactCertificateReport<'a> {
 impl ImpactCertificateReport<'_> {
     /// The names of the numbers, and the relative errors of Runge-Kutta and of each closed form
     /// from both sides.
-    fn errors(&self) -> Vec<(&'static str, Vec<Range>)> {
+    fn errors(&self) -> Vec<(&'static str, Vec<SizeBounds>)> {
         let proved = self.enclosure.in_order();
         let quantities = self.impact.quantities().into_iter().zip(proved);
         let errors = quantities.map(|(quantity, (name, truth))| {
@@ -82,7 +82,7 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
     let head = ["", "Runge-Kutta"]
         .into_iter()
         .chain(report.impact.columns.iter().map(|column| column.reading.name()));
-    let row = |(name, ranges): &(&'static str, Vec<Range>)| {
+    let row = |(name, ranges): &(&'static str, Vec<SizeBounds>)| {
         let cells = ranges.iter().copied().map(rounded_percent);
         std::iter::once((*name).to_owned()).chain(cells).collect()
     };

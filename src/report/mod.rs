@@ -50,15 +50,15 @@ pub use trajectory::{Doubt, MotionSweep, TRUSTED, TrajectoryReport, motion_sweep
 use std::borrow::Cow;
 
 use crate::decimal::{decimal, significant};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::expr::{Equation, Expr};
 use crate::impact::contact::ContactRow;
-use crate::impact::{FittedLine, ImpactRow, Letters, Phase, Quantity, Reading, Rule};
+use crate::impact::{FittedLine, ImpactQuantity, ImpactRow, Letters, MotionPhase, Reading, Rule};
 use crate::solution::law::Shown;
 use crate::solution::{Definition, Solution, Sum};
 use crate::symbol::Symbol;
 use crate::values::Values;
-use crate::verify::comparison::{Refused, Row};
+use crate::verify::comparison::{ComparisonRow, Refused};
 use crate::verify::{Verdict, Verification};
 
 /// Sections of blocks, in the order in which they are read.
@@ -108,7 +108,7 @@ pub enum Block<'a> {
         right: &'a Expr,
     },
     /// A line of a derivation.
-    Line(Cow<'a, Line>),
+    Line(Cow<'a, DerivationLine>),
     /// The amplitude of a limit cycle.
     CycleAmplitude {
         /// Its symbol.
@@ -203,7 +203,7 @@ pub enum Block<'a> {
     /// A phase of an impact.
     Phase {
         /// The phase.
-        phase: &'a Phase,
+        phase: &'a MotionPhase,
         /// The letters of the equation.
         letters: Letters,
         /// The release, in words.
@@ -214,7 +214,7 @@ pub enum Block<'a> {
         /// The columns.
         columns: Vec<Reading>,
         /// A row each.
-        rows: Vec<Quantity>,
+        rows: Vec<ImpactQuantity>,
         /// The largest deviation of each column over the amplitude, in real time.
         deviations: Vec<f64>,
         /// The largest deviation of each column in approach, contact and return, each on its own
@@ -260,7 +260,7 @@ pub enum Block<'a> {
         /// The columns.
         columns: Vec<Reading>,
         /// A row each, with its unit as it is typed.
-        rows: Vec<(Quantity, &'static str)>,
+        rows: Vec<(ImpactQuantity, &'static str)>,
     },
 }
 
@@ -334,7 +334,7 @@ pub(crate) fn are_names(rows: &[Vec<String>]) -> bool {
 #[derive(Clone, Debug)]
 pub struct MethodRow<'a> {
     /// The method, its answer and its numbers.
-    pub row: &'a Row,
+    pub row: &'a ComparisonRow,
     /// The method and its order.
     pub title: String,
     /// Its law.

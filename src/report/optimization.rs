@@ -9,9 +9,11 @@ pub use sentences::optimization_sentences;
 use super::materials::{chosen, in_words, percent};
 use super::{Block, Document, Heading, cell};
 use crate::decimal::{decimal, significant};
-use crate::genetic::{Coding, Crossover, Mutation, Options, Penalty, StallTest};
+use crate::genetic::{Coding, Crossover, GeneticOptions, Mutation, Penalty, StallTest};
 use crate::impact::{Model, Parameter, REST_FRACTION};
-use crate::optimize::{Design, Finalist, Objective, Question, Sensitivity, Spread, Study};
+use crate::optimize::{
+    EvaluatedDesign, Finalist, Objective, OptimizationProblem, Sensitivity, Spread, Study,
+};
 
 /// Rows of a front that are listed; JSON and tables of comma-separated values have all.
 const LISTED: usize = 24;
@@ -69,14 +71,14 @@ fn name_of(study: &Study, index: usize) -> &'static str {
 }
 
 /// What a design has for a variable.
-fn value_of(study: &Study, design: &Design, index: usize) -> String {
+fn value_of(study: &Study, design: &EvaluatedDesign, index: usize) -> String {
     match study.question.variables.get(index) {
         Some(variable) => cell(design.case.get(variable.parameter)),
         None => material_of(study, design),
     }
 }
 
-fn material_of(study: &Study, design: &Design) -> String {
+fn material_of(study: &Study, design: &EvaluatedDesign) -> String {
     let material = design.material.and_then(|number| study.question.materials.get(number));
     material.map_or("-".to_owned(), |material| material.name.clone())
 }
@@ -148,7 +150,7 @@ fn closed_forms_off(study: &Study) -> f64 {
 }
 
 /// The equation of the best design, and its numbers.
-fn equation<'a>(question: &Question, best: &Finalist) -> Vec<Block<'a>> {
+fn equation<'a>(question: &OptimizationProblem, best: &Finalist) -> Vec<Block<'a>> {
     let Model { zeta, alpha, ref left, ref right, .. } = best.design.model;
     let viscous = if zeta == 0.0 { "" } else { " + 2*zeta*x'" };
     let dry = if alpha == 0.0 { "" } else { " + alpha*sgn(x')" };
@@ -182,7 +184,7 @@ fn equation<'a>(question: &Question, best: &Finalist) -> Vec<Block<'a>> {
 }
 
 /// The parameters that the search leaves alone.
-fn held_fixed<'a>(question: &Question) -> Vec<Block<'a>> {
+fn held_fixed<'a>(question: &OptimizationProblem) -> Vec<Block<'a>> {
     let mut blocks = vec![];
     let default = ", by default: the paper prints none";
     let said = |parameter| {
@@ -241,7 +243,7 @@ fn held_fixed<'a>(question: &Question) -> Vec<Block<'a>> {
 /// How it was searched.
 fn options(study: &Study) -> Vec<String> {
     let question = &study.question;
-    let Options {
+    let GeneticOptions {
         population,
         elite,
         crossover_fraction,
@@ -331,7 +333,7 @@ fn options(study: &Study) -> Vec<String> {
 }
 
 /// The numbers of a design beside each other.
-fn quantities(study: &Study, design: &Design) -> Vec<(Heading, String)> {
+fn quantities(study: &Study, design: &EvaluatedDesign) -> Vec<(Heading, String)> {
     let mut rows: Vec<(Heading, String)> = [
         Objective::RestTime,
         Objective::DimensionlessRestTime,
@@ -552,7 +554,7 @@ fn front(study: &Study) -> Vec<Block<'_>> {
     names.extend(variables);
     let materials = !question.materials.is_empty();
     names.extend(materials.then_some(Heading::from("material")));
-    let row = |values: Vec<String>, design: &Design| {
+    let row = |values: Vec<String>, design: &EvaluatedDesign| {
         let numbers =
             question.variables.iter().map(|variable| cell(design.case.get(variable.parameter)));
         let material = materials.then(|| material_of(study, design));

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 
 use super::{Block, Document, percent};
 use crate::decimal::{decimal, significant};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::expr::Expr;
 use crate::hill::{JudgedCurve, TransitionCurve, TransitionCurves};
 use crate::values::Values;
@@ -85,7 +85,7 @@ fn of_number(curves: &TransitionCurves, tongue: usize) -> String {
 fn equation<'a>(curves: &TransitionCurves, curve: &TransitionCurve) -> Block<'a> {
     let left = Expr::from(&curves.unknown.given());
     match (&curve.under_root, curve.expression()) {
-        (Some(_), Ok(right)) => Block::Line(Cow::Owned(Line::equation(left, right))),
+        (Some(_), Ok(right)) => Block::Line(Cow::Owned(DerivationLine::equation(left, right))),
         _ => Block::Law { left, right: curves.ordered(&curve.middle) },
     }
 }

@@ -4,12 +4,12 @@ use std::borrow::Cow;
 
 use super::{Block, Document, Heading};
 use crate::decimal::{decimal, significant};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::expr::Expr;
 use crate::symbol::Symbol;
-use crate::system::{End, Integrator};
+use crate::system::{Integrator, PathEnd};
 use crate::trajectory::{
-    Course, Crossing, DISPLACEMENT, Section, SweptMotion, Trajectory, in_words,
+    Crossing, DISPLACEMENT, PoincareSection, SweptMotion, Trajectory, TrajectoryRequest, in_words,
 };
 
 /// The most times of rest that are listed.
@@ -111,7 +111,7 @@ pub fn trajectory<'a>(report: &TrajectoryReport<'a>) -> Document<'a> {
     let motion = report.motion;
     let course = &motion.course;
     let equation =
-        |left: &Expr| Block::Line(Cow::Owned(Line::equation(left.clone(), Expr::zero())));
+        |left: &Expr| Block::Line(Cow::Owned(DerivationLine::equation(left.clone(), Expr::zero())));
     let mut sections = vec![course.equations.iter().map(equation).collect::<Vec<_>>()];
     let values = course.values.iter().map(|(name, value)| Block::Value {
         name: *name,
@@ -142,7 +142,7 @@ fn states<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
 }
 
 /// The first states on the section.
-fn on_section<'a>(motion: &Trajectory, section: &Section) -> Vec<Block<'a>> {
+fn on_section<'a>(motion: &Trajectory, section: &PoincareSection) -> Vec<Block<'a>> {
     let crossings = motion.crossings();
     let count = crossings.len();
     let mut words = format!(
@@ -179,10 +179,12 @@ fn on_section<'a>(motion: &Trajectory, section: &Section) -> Vec<Block<'a>> {
 }
 
 /// Where a motion is looked at, in words.
-pub(crate) fn section_in_words(section: &Section) -> String {
+pub(crate) fn section_in_words(section: &PoincareSection) -> String {
     match section {
-        Section::Every(period) => format!("Section every {period}"),
-        Section::Rising(expression) => format!("Section where {expression} grows through zero"),
+        PoincareSection::Every(period) => format!("Section every {period}"),
+        PoincareSection::Rising(expression) => {
+            format!("Section where {expression} grows through zero")
+        }
     }
 }
 
@@ -191,7 +193,7 @@ pub(crate) fn section_in_words(section: &Section) -> String {
 pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
     let course = sweep.course;
     let equation =
-        |left: &Expr| Block::Line(Cow::Owned(Line::equation(left.clone(), Expr::zero())));
+        |left: &Expr| Block::Line(Cow::Owned(DerivationLine::equation(left.clone(), Expr::zero())));
     let mut head: Vec<&str> = sweep.names.iter().map(|name| name.name()).collect();
     let extremes = course
         .coordinates
@@ -215,7 +217,7 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
     }
     let mut last = vec![Block::Note(words)];
     last.extend(course.section.as_ref().map(|section| Block::Note(section_in_words(section))));
-    let ended = sweep.motions.iter().filter(|motion| motion.reason != End::Reached).count();
+    let ended = sweep.motions.iter().filter(|motion| motion.reason != PathEnd::Reached).count();
     if ended > 0 {
         last.push(Block::Note(format!("{ended} of them end early")));
     }
@@ -232,7 +234,7 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct MotionSweep<'a> {
     /// What they have in common.
-    pub course: &'a Course,
+    pub course: &'a TrajectoryRequest,
     /// What is varied.
     pub names: &'a [Symbol],
     /// The motions, the last name varying fastest.

@@ -2,7 +2,7 @@
 //! whole numbers of another crate.
 
 use lindstedt::certificate::{
-    Beyond, Certificate, CheckError, JudgedFormula, NotCertified, NotProved, Range, certify,
+    Beyond, Certificate, CheckError, JudgedFormula, NotCertified, NotProved, SizeBounds, certify,
     certify_motion, check, validity,
 };
 use lindstedt::exact::{Bound, Integer, Rational, from_f64, ratio, to_f64};
@@ -621,7 +621,7 @@ fn every_printed_bound_is_rounded_outwards() {
         let range = |mantissa: f64| {
             let lower = mantissa * size;
             let upper = lower * (1.0 + 10.0_f64.powi(width));
-            Range { lower, upper }
+            SizeBounds { lower, upper }
         };
         proved.frequency.middle = from_f64(mantissas[0] * size).expect("finite");
         proved.frequency.radius = Bound::exactly(mantissas[1] * size * 10.0_f64.powi(width));

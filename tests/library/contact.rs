@@ -7,19 +7,19 @@ use lindstedt::Oscillator;
 use lindstedt::expr::parse_expression;
 use lindstedt::impact::Rule;
 use lindstedt::impact::contact::ContactLaw;
-use lindstedt::impact::hertz::{self, Design, elastic_force};
+use lindstedt::impact::hertz::{self, StiffnessDesign, elastic_force};
 use lindstedt::impact::{self, Reading, Setup, Side};
 use lindstedt::impact::{ContactLoss, DerivedContact, Integrator, Model, Settings, Start};
-use lindstedt::impact::{ContactSpeed, Form, Swing, ThreePhases, three_phases};
+use lindstedt::impact::{ContactSpeed, Form, ImpactProblem, ThreePhases, three_phases};
 use lindstedt::impact::{TrueImpact, deviation, true_impact};
-use lindstedt::numeric::ode::Options;
+use lindstedt::numeric::ode::IntegrationOptions;
 use lindstedt::verify::Verdict;
 use proptest::prelude::*;
 
 const SINE: fn(f64) -> f64 = f64::sin;
 
-fn swing(amplitude: f64, barrier: f64, stiffness: f64) -> Swing<'static> {
-    Swing {
+fn swing(amplitude: f64, barrier: f64, stiffness: f64) -> ImpactProblem<'static> {
+    ImpactProblem {
         amplitude,
         barrier,
         stiffness,
@@ -36,12 +36,16 @@ fn paper(stiffness: f64, column: ContactSpeed) -> ThreePhases {
 }
 
 fn truth(stiffness: f64) -> TrueImpact {
-    true_impact(&swing(1.5, 0.323, stiffness).collision(), &Options::with_tolerance(1e-12)).unwrap()
+    true_impact(
+        &swing(1.5, 0.323, stiffness).collision(),
+        &IntegrationOptions::with_tolerance(1e-12),
+    )
+    .unwrap()
 }
 
 #[test]
 fn table_5_leads_to_the_depth_and_duration_of_a_hertz_contact() {
-    let stiffness = Design::default().stiffness().unwrap();
+    let stiffness = StiffnessDesign::default().stiffness().unwrap();
     assert!((stiffness / 3.0407e7 - 1.0).abs() < 2e-5);
     for (column, depth, duration) in [
         (ContactSpeed::Paper, 1.32079e-3, 3.13035e-3),
@@ -106,7 +110,7 @@ fn the_printed_contact_duration_needs_an_absurd_stiffness() {
 
 #[test]
 fn the_errors_of_the_paper_have_the_sizes_known() {
-    let stiffness = Design::default().stiffness().unwrap();
+    let stiffness = StiffnessDesign::default().stiffness().unwrap();
     let (closed, truth) = (paper(stiffness, ContactSpeed::Paper), truth(stiffness));
     let percent = |value: f64, reference: f64| 100.0 * (value / reference - 1.0);
     assert!((percent(closed.speed, truth.touch.v) + 6.26).abs() < 0.005);
@@ -119,8 +123,10 @@ fn the_errors_of_the_paper_have_the_sizes_known() {
 fn an_exact_frequency_does_not_make_the_cosine_exact() {
     // The true omega at 1.5 rad instead of the law: the wave form alone remains, and the verdict
     // sees it.
-    let exact =
-        Swing { frequency_squared: 0.860_608_346_679_613_f64.powi(2), ..swing(1.5, 0.323, 1e6) };
+    let exact = ImpactProblem {
+        frequency_squared: 0.860_608_346_679_613_f64.powi(2),
+        ..swing(1.5, 0.323, 1e6)
+    };
     let truth = truth(1e6);
     let found = deviation(&three_phases(&exact, ContactSpeed::Energy).unwrap(), &truth);
     let of_law = deviation(&paper(1e6, ContactSpeed::Energy), &truth);
@@ -133,8 +139,10 @@ fn small_swings_are_described_well() {
     // A^2, until only the straight line in the contact is left.
     let relative = |amplitude: f64| {
         let barrier = 0.2 * amplitude;
-        let options =
-            Options { absolute_tolerance: 1e-13 * amplitude, ..Options::with_tolerance(1e-12) };
+        let options = IntegrationOptions {
+            absolute_tolerance: 1e-13 * amplitude,
+            ..IntegrationOptions::with_tolerance(1e-12)
+        };
         let truth = true_impact(&swing(amplitude, barrier, 1e10).collision(), &options).unwrap();
         deviation(
             &three_phases(&swing(amplitude, barrier, 1e10), ContactSpeed::Energy).unwrap(),
@@ -261,7 +269,7 @@ proptest! {
     fn the_contact_ends_where_it_began(
         amplitude in 0.2..2.7_f64, part in -0.95..0.95_f64, power in 2.0..12.0_f64, rule in 0..6_usize
     ) {
-        let case = Swing { rule: Rule::ALL[rule], ..swing(amplitude, part * amplitude, 10.0_f64.powf(power)) };
+        let case = ImpactProblem { rule: Rule::ALL[rule], ..swing(amplitude, part * amplitude, 10.0_f64.powf(power)) };
         let motion = three_phases(&case, ContactSpeed::Energy).unwrap();
         let contact = &motion.phases[1];
         let (x, v) = contact.form.at(contact.end - contact.start);

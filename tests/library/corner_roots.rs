@@ -6,17 +6,18 @@ use std::collections::BTreeMap;
 
 use lindstedt::mechanics::Mechanism;
 use lindstedt::system::Integrator;
-use lindstedt::trajectory::{Course, Trajectory};
+use lindstedt::trajectory::{Trajectory, TrajectoryRequest};
 use lindstedt::{Oscillator, Symbol};
 
-fn follow(equation: &str, start: f64, until: f64) -> Course {
-    let mut course = Course::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
+fn follow(equation: &str, start: f64, until: f64) -> TrajectoryRequest {
+    let mut course =
+        TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
     course.begin("x".into(), start).expect("a state");
     course.duration = until;
     course
 }
 
-fn by_both_routes(course: &Course) -> [Trajectory; 2] {
+fn by_both_routes(course: &TrajectoryRequest) -> [Trajectory; 2] {
     [course.clone().follow(), course.clone().follow_by(Integrator::RungeKutta)].map(|motion| {
         let motion = motion.expect("a motion");
         assert!(motion.is_complete(), "{}: {:?}", motion.end(), motion.reason());
@@ -87,7 +88,8 @@ fn a_potential_without_a_step_is_followed() {
         let potential = format!("q^2/2 + 2/5*k*{contact}");
         let mechanism = Mechanism::parse(&["q"], "q'^2/2", &potential).expect("a mechanism");
         let equations = mechanism.equations().expect("equations");
-        let mut course = Course::of_mechanism(&mechanism, &equations).expect("accelerations");
+        let mut course =
+            TrajectoryRequest::of_mechanism(&mechanism, &equations).expect("accelerations");
         course.begin("q".into(), -1.0).expect("a state");
         course.duration = 20.0;
         course.values = BTreeMap::from([(Symbol::new("k"), 1e4), (Symbol::new("d"), 0.5)]);
@@ -122,7 +124,7 @@ fn bodies(
     forces: &[(&str, &str)],
     start: &[(&str, f64)],
     until: f64,
-) -> Course {
+) -> TrajectoryRequest {
     let mut mechanism = Mechanism::parse(coordinates, kinetic, potential).expect("a mechanism");
     mechanism.dissipation = dissipation.parse().expect("a dissipation");
     for (coordinate, force) in forces {
@@ -130,7 +132,8 @@ fn bodies(
         mechanism.forces.insert(Symbol::new(coordinate), force);
     }
     let equations = mechanism.equations().expect("equations");
-    let mut course = Course::of_mechanism(&mechanism, &equations).expect("accelerations");
+    let mut course =
+        TrajectoryRequest::of_mechanism(&mechanism, &equations).expect("accelerations");
     for (name, value) in start {
         course.begin(Symbol::new(name), *value).expect("a state");
     }
@@ -167,7 +170,7 @@ fn in_fixed_steps<const N: usize>(
     state
 }
 
-fn end_of(course: Course) -> Vec<f64> {
+fn end_of(course: TrajectoryRequest) -> Vec<f64> {
     let motion = course.follow().expect("a motion");
     assert!(motion.is_complete(), "{}: {:?}", motion.end(), motion.reason());
     let balance = motion.balance.as_ref().expect("an energy");

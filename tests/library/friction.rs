@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-use lindstedt::audit::paper::{SPEEDS, Table};
+use lindstedt::audit::paper::{FrictionTable, SPEEDS};
 use lindstedt::export::{friction, text};
 use lindstedt::impact::friction::{DEFAULT_ALPHA, FrictionSetup, FrictionStudy, study, work_share};
 use lindstedt::impact::{Friction, Integrator, Model, Settings, Start, simulate};
@@ -28,7 +28,7 @@ fn the_page_says_what_is_computed() {
 
 #[test]
 fn one_pi_makes_every_printed_digit() {
-    let table = Table::of(&with(DEFAULT_ALPHA));
+    let table = FrictionTable::of(&with(DEFAULT_ALPHA));
     let best = table.best();
     let found = (best.name, best.rounded, best.either, table.entries());
     assert_eq!(found, ("3.14", 21, 22, 22));

@@ -298,7 +298,7 @@ fn exact_frequency(
 ) -> Result<f64, lindstedt::numeric::period::PeriodError> {
     let force = lindstedt::expr::CompiledFunction::new(&oscillator.force, &["x".into()]).unwrap();
     let force = |x: f64| force.call(&[x]);
-    let force = lindstedt::numeric::period::Force::smooth(&force);
+    let force = lindstedt::numeric::period::PiecewiseForce::smooth(&force);
     Ok(std::f64::consts::TAU
         / lindstedt::numeric::period::conservative_period(&force, 0.0, amplitude)?)
 }

@@ -6,12 +6,12 @@ use std::collections::BTreeMap;
 use lindstedt::audit::paper;
 use lindstedt::expr::{CompiledFunction, Expr, parse_expression};
 use lindstedt::mechanics::{
-    Dimension, Drive, Groups, MechanicsError, Mechanism, MechanismQuestion, Modes, Place,
-    equilibria, study,
+    Dimension, DriveAtRest, Groups, MechanicsError, Mechanism, MechanismQuestion, Modes,
+    RestPosition, equilibria, study,
 };
 use lindstedt::problem::Problem;
 use lindstedt::system::Integrator;
-use lindstedt::trajectory::Course;
+use lindstedt::trajectory::TrajectoryRequest;
 use lindstedt::{Oscillator, Symbol};
 
 fn expression(text: &str) -> Expr {
@@ -198,7 +198,7 @@ fn places_of_rest_are_exact() {
     assert_eq!(places("double-pendulum").len(), 4);
     assert_eq!(places("spring-pendulum").len(), 2);
     assert_eq!(places("rotating-pendulum").len(), 4);
-    assert_eq!(places("cart-pendulum")[0].places[0], Place::Anywhere);
+    assert_eq!(places("cart-pendulum")[0].places[0], RestPosition::Anywhere);
     assert!(places("bead-on-a-hoop").is_empty());
     assert_eq!(places("driven-masses").len(), 1);
 }
@@ -351,7 +351,7 @@ fn a_rest_without_a_linear_force_is_not_called_free() {
     let quartic = ("x", "m*x'^2/2", "k3*x^4/4");
     for values in [&[][..], &[("m", 1.0), ("k3", 2.0)]] {
         let (drive, text) = printed(quartic.0, quartic.1, quartic.2, values);
-        assert_eq!(drive, [Drive::Absent]);
+        assert_eq!(drive, [DriveAtRest::Absent]);
         assert!(!text.contains("freely") && text.contains("no linear force"), "{text}");
     }
     let (_, text) = printed("x", "m*x'^2/2", "0", &[("m", 1.0)]);
@@ -359,19 +359,19 @@ fn a_rest_without_a_linear_force_is_not_called_free() {
     // Held by what swings in time alone.
     let (drive, text) =
         printed("x", "m*x'^2/2", "k*cos(W*t)*x^2/2", &[("m", 1.0), ("k", 1.0), ("W", 2.0)]);
-    assert_eq!(drive, [Drive::Acts]);
+    assert_eq!(drive, [DriveAtRest::Acts]);
     assert!(text.contains("freely where nothing that is left out acts"), "{text}");
     // Kapitza's pendulum rests upright and hanging; pushed sideways it does not.
     let upwards = "m*L^2*phi'^2/2 - m*L*a*W*sin(W*t)*sin(phi)*phi'";
     let (drive, text) = printed("phi", upwards, "-m*g*L*cos(phi)", &[]);
-    assert_eq!(drive, [Drive::Vanishes; 2]);
+    assert_eq!(drive, [DriveAtRest::Vanishes; 2]);
     assert!(
         text.contains("at rest there with the terms in t, too") && !text.contains("no such rest"),
         "{text}"
     );
     let sideways = "m*L^2*phi'^2/2 - m*L*a*W*sin(W*t)*cos(phi)*phi'";
     let (drive, text) = printed("phi", sideways, "-m*g*L*cos(phi)", &[]);
-    assert_eq!(drive, [Drive::Acts; 2]);
+    assert_eq!(drive, [DriveAtRest::Acts; 2]);
     assert!(text.contains("no such rest"), "{text}");
 }
 
@@ -466,7 +466,7 @@ fn a_derived_equation_is_handed_on() {
         Oscillator::parse(&equation).expect("an oscillator").force.to_string(),
         "g*sin(x)/L"
     );
-    let course = Course::of_equation(&Oscillator::parse(&equation).unwrap());
+    let course = TrajectoryRequest::of_equation(&Oscillator::parse(&equation).unwrap());
     assert_eq!(course.parameters(), vec![Symbol::new("L"), Symbol::new("g")]);
 }
 
@@ -483,7 +483,8 @@ fn a_driven_motion_sticks_and_lets_go() {
         let settings = Settings { duration: 80.0, ..Settings::default() };
         let truth = simulate(&model, Start { x: 0.6, velocity: 0.0 }, Route::Taylor, &settings)
             .expect("a motion");
-        let mut course = Course::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
+        let mut course =
+            TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
         course.values = [("alpha", alpha), ("beta", beta), ("eta", eta)]
             .map(|(name, value)| (Symbol::new(name), value))
             .into();
@@ -510,13 +511,13 @@ fn mechanism(
     forces: &[(&str, &str)],
     start: &[(&str, f64)],
     duration: f64,
-) -> Course {
+) -> TrajectoryRequest {
     let mut mechanism = Mechanism::parse(&["x", "y"], kinetic, potential).expect("a mechanism");
     mechanism.dissipation = expression(dissipation);
     mechanism.forces =
         forces.iter().map(|(name, force)| (Symbol::new(name), expression(force))).collect();
     let equations = mechanism.equations().expect("equations");
-    let mut course = Course::of_mechanism(&mechanism, &equations).expect("a course");
+    let mut course = TrajectoryRequest::of_mechanism(&mechanism, &equations).expect("a course");
     for (name, value) in start {
         course.begin(Symbol::new(name), *value).expect("a state");
     }
@@ -524,7 +525,7 @@ fn mechanism(
     course
 }
 
-fn followed(course: Course) -> lindstedt::trajectory::Trajectory {
+fn followed(course: TrajectoryRequest) -> lindstedt::trajectory::Trajectory {
     let motion = course.follow().expect("a motion");
     assert!(motion.is_complete(), "{:?} at {}", motion.reason(), motion.end());
     let residual = motion.balance.as_ref().expect("a balance").residual;
@@ -573,7 +574,7 @@ fn friction_holds_one_of_several_coordinates() {
     );
     // On a belt it is carried until the spring is too strong, and then swings about where friction
     // alone would hold it: it comes back to the speed of the belt once a period, and touches it.
-    let mut course = Course::of_equation(
+    let mut course = TrajectoryRequest::of_equation(
         &Oscillator::parse("x'' + x + alpha*sgn(x' - 1/2) = 0").expect("an equation"),
     );
     course.begin("x'".into(), 0.5).expect("a state");
@@ -727,7 +728,7 @@ fn balls_that_touch_to_rounding_cost_no_steps() {
         let mechanism = Mechanism::parse(&["x", "y", "z"], "(x'^2 + y'^2 + z'^2)/2", contacts)
             .expect("a mechanism");
         let equations = mechanism.equations().expect("equations");
-        let mut course = Course::of_mechanism(&mechanism, &equations).expect("a course");
+        let mut course = TrajectoryRequest::of_mechanism(&mechanism, &equations).expect("a course");
         for (name, value) in ["x", "y", "z"].into_iter().zip(start) {
             course.begin(Symbol::new(name), value).expect("a state");
         }
@@ -758,7 +759,8 @@ fn balls_that_touch_to_rounding_cost_no_steps() {
 #[test]
 fn corners_of_mechanisms() {
     let follow = |equation: &str, start: f64, until: f64| {
-        let mut course = Course::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
+        let mut course =
+            TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect("an oscillator"));
         course.begin("x".into(), start).expect("a state");
         course.duration = until;
         course.follow().expect("a motion")
@@ -797,7 +799,7 @@ fn corners_of_mechanisms() {
     // Duffing's spring rests at zero.
     let duffing =
         Mechanism::parse(&["x"], "m*x'^2/2", "k*x^2/2 + b*x^4/4").unwrap().equations().unwrap();
-    assert_eq!(equilibria(&duffing).unwrap()[0].places, [Place::At(Expr::zero())]);
+    assert_eq!(equilibria(&duffing).unwrap()[0].places, [RestPosition::At(Expr::zero())]);
 }
 
 /// A mechanism that changes with the time other than by sines and cosines has no modes; what a

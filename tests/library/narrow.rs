@@ -3,15 +3,16 @@
 
 use std::f64::consts::PI;
 
-use lindstedt::system::{End, Integrator};
-use lindstedt::trajectory::{Course, Trajectory};
+use lindstedt::system::{Integrator, PathEnd};
+use lindstedt::trajectory::{Trajectory, TrajectoryRequest};
 use lindstedt::{Oscillator, Symbol};
 
 /// By power series, and by Runge-Kutta where two are wanted.
 fn followed(equation: &str, start: [f64; 2], duration: f64, count: usize) -> Vec<Trajectory> {
     let integrators = [Integrator::Taylor, Integrator::RungeKutta].into_iter().take(count);
     let motion = |integrator: Integrator| {
-        let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
+        let mut course =
+            TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect(equation));
         course.begin(Symbol::new("x"), start[0]).expect("a state");
         course.begin(Symbol::new("x'"), start[1]).expect("a state");
         course.duration = duration;
@@ -21,7 +22,7 @@ fn followed(equation: &str, start: [f64; 2], duration: f64, count: usize) -> Vec
             course.tolerance = 1e-12;
         }
         let motion = course.follow_by(integrator).expect(equation);
-        assert_eq!(motion.reason(), End::Reached, "{equation} {integrator:?}");
+        assert_eq!(motion.reason(), PathEnd::Reached, "{equation} {integrator:?}");
         motion
     };
     integrators.map(motion).collect()

@@ -11,7 +11,7 @@ use lindstedt::impact::primary::{
 };
 use lindstedt::impact::{Friction, Integrator, Model, Settings, Start, simulate};
 use lindstedt::problem::Problem;
-use lindstedt::system::{Event, Integrator as Route, Options, Path, System};
+use lindstedt::system::{Event, Integrator as Route, Path, System, SystemOptions};
 
 fn settings(duration: f64) -> PrimarySettings {
     PrimarySettings { duration, ..PrimarySettings::default() }
@@ -207,7 +207,11 @@ fn by_hand(primary: Primary, model: Model, place: f64, start: [f64; 4], until: f
     .into();
     let states = ["x", "v", "y", "u"].map(Symbol::new);
     let system = System::new(&states, "t".into(), &right, &numbers).expect("a system");
-    let options = Options { integrator: Route::RungeKutta, tolerance: 1e-12, ..Options::default() };
+    let options = SystemOptions {
+        integrator: Route::RungeKutta,
+        tolerance: 1e-12,
+        ..SystemOptions::default()
+    };
     let passages = [Event::record(read("x - c"))];
     system.solve(0.0, &start, until, &passages, &options).expect("a path")
 }

@@ -2,13 +2,14 @@
 
 use std::f64::consts::PI;
 
-use lindstedt::system::{End, Integrator};
-use lindstedt::trajectory::{Course, Trajectory};
+use lindstedt::system::{Integrator, PathEnd};
+use lindstedt::trajectory::{Trajectory, TrajectoryRequest};
 use lindstedt::{Oscillator, Symbol};
 
 fn followed(equation: &str, start: f64, duration: f64) -> [Trajectory; 2] {
     [Integrator::Taylor, Integrator::RungeKutta].map(|integrator| {
-        let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
+        let mut course =
+            TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect(equation));
         course.begin(Symbol::new("x"), start).expect("a state");
         course.duration = duration;
         // Runge-Kutta sees the rounding of a steep argument.
@@ -17,7 +18,7 @@ fn followed(equation: &str, start: f64, duration: f64) -> [Trajectory; 2] {
         }
         course.energy = None;
         let motion = course.follow_by(integrator).expect(equation);
-        assert_eq!(motion.reason(), End::Reached, "{equation}");
+        assert_eq!(motion.reason(), PathEnd::Reached, "{equation}");
         motion
     })
 }
@@ -60,7 +61,8 @@ fn the_work_of_a_steep_pulse_closes_the_account() {
         "x'' + x*(1 + 1e3*exp(-((t - 5)*1e4)^2)) = 0",
     ] {
         for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
-            let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
+            let mut course =
+                TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect(equation));
             course.begin(Symbol::new("x"), 0.3).expect("a state");
             course.duration = 30.0;
             if integrator == Integrator::RungeKutta {
@@ -146,7 +148,7 @@ fn what_ends_at_the_edge_of_what_friction_holds_is_held() {
         let start = 0.3 + 0.6 * f64::from(half_periods);
         let rests_at = if half_periods % 2 == 0 { 0.3 } else { -0.3 };
         for with_energy in [true, false] {
-            let mut course = Course::of_equation(&equation);
+            let mut course = TrajectoryRequest::of_equation(&equation);
             course.begin(Symbol::new("x"), start).expect("a state");
             course.duration = 60.0;
             if !with_energy {

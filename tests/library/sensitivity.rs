@@ -3,10 +3,10 @@
 
 use lindstedt::Oscillator;
 use lindstedt::system::Integrator;
-use lindstedt::trajectory::{Course, Trajectory};
+use lindstedt::trajectory::{Trajectory, TrajectoryRequest};
 
-fn course(equation: &str, start: f64, duration: f64) -> Course {
-    let mut course = Course::of_equation(&Oscillator::parse(equation).expect(equation));
+fn course(equation: &str, start: f64, duration: f64) -> TrajectoryRequest {
+    let mut course = TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect(equation));
     course.begin("x".into(), start).expect("a state");
     course.duration = duration;
     course

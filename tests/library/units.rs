@@ -5,7 +5,7 @@ use std::process::Command;
 
 use lindstedt::audit::paper;
 use lindstedt::impact::{Parameter, Reading, Setup, SiImpact, solve};
-use lindstedt::numeric::ode::{Event, Options, State, integrate};
+use lindstedt::numeric::ode::{Event, IntegrationOptions, State, integrate};
 use lindstedt::problem::Problem;
 use serde_json::Value;
 
@@ -30,7 +30,7 @@ fn followed(pendulum: &Pendulum) -> [f64; 6] {
     let (inertia, weight) = (mass * length * length, mass * gravity * length);
     let force = |x: f64| stiffness * (length * (x - barrier)).max(0.0).powf(1.5);
     let acceleration = |_: f64, x: f64, _: f64| -(weight * x.sin() + force(x) * length) / inertia;
-    let options = Options::with_tolerance(1e-12);
+    let options = IntegrationOptions::with_tolerance(1e-12);
     let from = |t, x, v| State { t, x, v };
     let seconds = (length / gravity).sqrt();
     let touch = Event::stop(|_, x, _| x - barrier);

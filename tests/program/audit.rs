@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 use std::process::{Command, Output};
 
 use lindstedt::audit::{
-    Audit, Claims, Computed, Finding, NAMES, Printed, Quantity, Relation, Rounding, Stated, Trend,
-    Verdict, audit,
+    Audit, ClaimQuantity, Claims, Computed, Finding, NAMES, Printed, Relation, Rounding, Stated,
+    Trend, Verdict, audit,
 };
 
 const PAPER: &str = include_str!("../../examples/audit/paper.toml");
@@ -373,7 +373,7 @@ fn a_formula_is_compared_for_every_value_of_its_symbols() {
             "[[claim]]\nid = \"one\"\nquantity = \"identity\"\nformula = \"m*X'^2/2\"\nvalues = {{ X = \"L*sin(x)\" }}\nprinted = \"{printed}\""
         );
         let found = audit(claims(&text)).findings.swap_remove(0);
-        assert!(matches!(found.claim.question.quantity, Quantity::Identity(_)));
+        assert!(matches!(found.claim.question.quantity, ClaimQuantity::Identity(_)));
         (found.verdict, found.evidence.join("; "))
     };
     assert_eq!(of("m*L^2*x'^2*cos(x)^2/2").0, Verdict::Reproduced);

@@ -39,7 +39,7 @@ use crate::symbol::Symbol;
 pub use taylor::LANES;
 
 use narrow::Argument;
-use taylor::{Expansion, Run, Step};
+use taylor::{SystemSeries, TaylorRun, TaylorStep};
 
 /// Equations ready to be followed.
 ///
@@ -130,7 +130,7 @@ pub enum Integrator {
 
 /// How closely and how long to follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options {
+pub struct SystemOptions {
     /// By which integrator.
     pub integrator: Integrator,
     /// Error of a step, relative to the size of each state on it; Runge-Kutta keeps no less than
@@ -142,7 +142,7 @@ pub struct Options {
     pub interrupt: Interrupt,
 }
 
-impl Default for Options {
+impl Default for SystemOptions {
     /// Taylor series to rounding accuracy, 100 000 steps.
     fn default() -> Self {
         Self {
@@ -217,7 +217,7 @@ pub struct Occurrence {
 
 /// Why a path ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum End {
+pub enum PathEnd {
     /// At the time asked for.
     Reached,
     /// At this event.
@@ -253,10 +253,10 @@ fn within_range(mut states: impl Iterator<Item = f64>) -> bool {
 
 /// Why a run ends in these states where its rates have no value, or no next step is possible,
 /// behind a step from one time to another.
-fn without_value(mut states: impl Iterator<Item = f64>, step: [f64; 2]) -> End {
+fn without_value(mut states: impl Iterator<Item = f64>, step: [f64; 2]) -> PathEnd {
     match states.any(|state| state.abs() > LARGE) && !is_vanishing(step) {
-        true => End::Overflow,
-        false => End::Singular,
+        true => PathEnd::Overflow,
+        false => PathEnd::Singular,
     }
 }
 
@@ -280,17 +280,17 @@ fn end_of_range(length: f64, mut is_within: impl FnMut(f64) -> bool) -> Option<f
 /// The states from the start to the end.
 #[derive(Clone, Debug)]
 pub struct Path {
-    motion: Motion,
+    motion: PathRepresentation,
     end: f64,
-    reason: End,
+    reason: PathEnd,
     occurrences: Vec<Occurrence>,
 }
 
 /// What the states are read from.
 #[derive(Clone, Debug)]
-enum Motion {
-    Taylor { steps: Vec<Step>, start: f64 },
-    RungeKutta(runge_kutta::Motion),
+enum PathRepresentation {
+    Taylor { steps: Vec<TaylorStep>, start: f64 },
+    RungeKutta(runge_kutta::ScaledTrajectory),
 }
 
 impl Path {
@@ -300,7 +300,7 @@ impl Path {
     }
 
     /// Why it ends there.
-    pub fn reason(&self) -> End {
+    pub fn reason(&self) -> PathEnd {
         self.reason
     }
 
@@ -312,8 +312,8 @@ impl Path {
     /// The number of steps.
     pub fn step_count(&self) -> usize {
         match &self.motion {
-            Motion::Taylor { steps, .. } => steps.len(),
-            Motion::RungeKutta(motion) => motion.step_count(),
+            PathRepresentation::Taylor { steps, .. } => steps.len(),
+            PathRepresentation::RungeKutta(motion) => motion.step_count(),
         }
     }
 
@@ -323,8 +323,8 @@ impl Path {
             return None;
         }
         match &self.motion {
-            Motion::Taylor { steps, start } => taylor::at(steps, time - start),
-            Motion::RungeKutta(motion) => motion.at(time),
+            PathRepresentation::Taylor { steps, start } => taylor::at(steps, time - start),
+            PathRepresentation::RungeKutta(motion) => motion.at(time),
         }
     }
 }
@@ -333,9 +333,11 @@ impl Path {
     /// One state, by its number, at a time; `None` outside the path.
     pub fn state_at(&self, time: f64, state: usize) -> Option<f64> {
         match &self.motion {
-            Motion::Taylor { .. } if time.is_nan() || time > self.end => None,
-            Motion::Taylor { steps, start } => taylor::state_at(steps, time - start, state),
-            Motion::RungeKutta(_) => self.at(time)?.get(state).copied(),
+            PathRepresentation::Taylor { .. } if time.is_nan() || time > self.end => None,
+            PathRepresentation::Taylor { steps, start } => {
+                taylor::state_at(steps, time - start, state)
+            }
+            PathRepresentation::RungeKutta(_) => self.at(time)?.get(state).copied(),
         }
     }
 
@@ -344,7 +346,7 @@ impl Path {
     /// many calls of [`Path::at`] and has the same values.
     pub fn sample(&self, times: &[f64], kept: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         match &self.motion {
-            Motion::Taylor { steps, start } => {
+            PathRepresentation::Taylor { steps, start } => {
                 let before = times.partition_point(|time| *time - start < 0.0);
                 let own = &times[before..];
                 let own = &own[..own.partition_point(|time| *time <= self.end)];
@@ -352,7 +354,7 @@ impl Path {
                 let since_start: Vec<f64> = own.iter().map(|time| time - start).collect();
                 taylor::sample(steps, &since_start, columns);
             }
-            Motion::RungeKutta(_) => {
+            PathRepresentation::RungeKutta(_) => {
                 for time in times {
                     let Some(states) = self.at(*time) else {
                         continue;
@@ -384,9 +386,9 @@ impl Path {
 pub struct Solver {
     system: System,
     events: Vec<Event>,
-    options: Options,
+    options: SystemOptions,
     /// Runge-Kutta has no use for it.
-    expansion: Option<Result<Expansion, RecurrenceError>>,
+    expansion: Option<Result<SystemSeries, RecurrenceError>>,
 }
 
 impl Solver {
@@ -422,7 +424,7 @@ impl Solver {
         match &self.expansion {
             Some(expansion) => {
                 let expansion = expansion.clone()?;
-                let run = Run::new(system, [start, end], values, events, options, expansion);
+                let run = TaylorRun::new(system, [start, end], values, events, options, expansion);
                 taylor::follow(run)
             }
             None => runge_kutta::follow(system, [start, end], values, events, options),
@@ -438,15 +440,15 @@ pub fn solve_together(
     start: f64,
     end: f64,
 ) -> Vec<Result<Path, SystemError>> {
-    let mut runs: Vec<Run> = Vec::new();
+    let mut runs: Vec<TaylorRun> = Vec::new();
     let mut alone = Vec::new();
     for (solver, values) in motions {
         let Solver { system, events, options, expansion } = *solver;
-        let is_like = |own: &Expansion| runs.first().is_none_or(|run| run.is_like(own));
+        let is_like = |own: &SystemSeries| runs.first().is_none_or(|run| run.is_like(own));
         match expansion {
             Some(Ok(own)) if is_like(own) && system.check(start, values, end, options).is_ok() => {
                 let times = [start, end];
-                runs.push(Run::new(system, times, values, events, options, own.clone()));
+                runs.push(TaylorRun::new(system, times, values, events, options, own.clone()));
                 alone.push(None);
             }
             _ => alone.push(Some(solver.solve(start, values, end))),
@@ -537,13 +539,20 @@ impl System {
         values: &[f64],
         end: f64,
         events: &[Event],
-        options: &Options,
+        options: &SystemOptions,
     ) -> Result<Path, SystemError> {
         self.check(start, values, end, options)?;
         match options.integrator {
             Integrator::Taylor => {
                 let expansion = taylor::expansion(self, events, options.tolerance)?;
-                taylor::follow(Run::new(self, [start, end], values, events, options, expansion))
+                taylor::follow(TaylorRun::new(
+                    self,
+                    [start, end],
+                    values,
+                    events,
+                    options,
+                    expansion,
+                ))
             }
             Integrator::RungeKutta => {
                 runge_kutta::follow(self, [start, end], values, events, options)
@@ -552,7 +561,7 @@ impl System {
     }
 
     /// This system ready to be followed many times with these events.
-    pub fn solver(self, events: &[Event], options: &Options) -> Solver {
+    pub fn solver(self, events: &[Event], options: &SystemOptions) -> Solver {
         // A tolerance out of range has no order; the runs refuse it.
         let has_order = TOLERANCES.contains(&options.tolerance);
         let expansion = match options.integrator {
@@ -570,7 +579,7 @@ impl System {
         start: f64,
         values: &[f64],
         end: f64,
-        options: &Options,
+        options: &SystemOptions,
     ) -> Result<(), SystemError> {
         let size = self.state.len();
         if values.len() != size {

@@ -67,16 +67,16 @@ pub struct AmplitudeCondition {
 
 /// One line of a derivation: words, an equation, or an equation with the reason for it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct DerivationLine {
     /// The step in words; may be empty.
     pub words: String,
     /// Formulas that are equal, from left to right; may be empty.
-    pub equal: Vec<Formula>,
+    pub equal: Vec<DerivationFormula>,
 }
 
 /// A part of a line: an expression, or a formula that the grammar of expressions cannot write.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Formula {
+pub enum DerivationFormula {
     /// An expression.
     Expression(Expr),
     /// A motion or a force along it.
@@ -126,19 +126,22 @@ pub enum Formula {
     },
 }
 
-impl Line {
+impl DerivationLine {
     /// Words alone.
     pub fn words(words: impl Into<String>) -> Self {
         Self { words: words.into(), equal: vec![] }
     }
 
     /// Formulas that are equal.
-    pub fn equal(formulas: impl IntoIterator<Item = Formula>) -> Self {
+    pub fn equal(formulas: impl IntoIterator<Item = DerivationFormula>) -> Self {
         Self { words: String::new(), equal: formulas.into_iter().collect() }
     }
 
     /// An equation between two expressions.
-    pub fn equation(left: impl Into<Formula>, right: impl Into<Formula>) -> Self {
+    pub fn equation(
+        left: impl Into<DerivationFormula>,
+        right: impl Into<DerivationFormula>,
+    ) -> Self {
         Self::equal([left.into(), right.into()])
     }
 
@@ -157,7 +160,7 @@ impl Line {
     pub(crate) fn with_phase(mut self, name: Symbol) -> Self {
         self.words = self.words.replace('θ', name.name());
         for formula in &mut self.equal {
-            if let Formula::Waves { phase, .. } = formula {
+            if let DerivationFormula::Waves { phase, .. } = formula {
                 *phase = name;
             }
         }
@@ -171,11 +174,11 @@ impl Line {
 
     /// The names in its formulas.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
-        self.equal.iter().flat_map(Formula::symbols).collect()
+        self.equal.iter().flat_map(DerivationFormula::symbols).collect()
     }
 }
 
-impl Formula {
+impl DerivationFormula {
     fn with_numbers(&self, change: &dyn Fn(&Rational) -> Rational) -> Self {
         let changed = |expression: &Expr| {
             expression.with_numbers(change).unwrap_or_else(|_| expression.clone())
@@ -229,38 +232,38 @@ impl Formula {
     }
 }
 
-impl From<Expr> for Formula {
+impl From<Expr> for DerivationFormula {
     fn from(expression: Expr) -> Self {
         Self::Expression(expression)
     }
 }
 
-impl From<&Expr> for Formula {
+impl From<&Expr> for DerivationFormula {
     fn from(expression: &Expr) -> Self {
         Self::Expression(expression.clone())
     }
 }
 
-impl From<&str> for Formula {
+impl From<&str> for DerivationFormula {
     /// A name.
     fn from(name: &str) -> Self {
         Self::Expression(Expr::symbol(name))
     }
 }
 
-impl From<Symbol> for Formula {
+impl From<Symbol> for DerivationFormula {
     fn from(name: Symbol) -> Self {
         Self::Expression(Expr::from(name))
     }
 }
 
-impl From<&Polynomial> for Formula {
+impl From<&Polynomial> for DerivationFormula {
     fn from(polynomial: &Polynomial) -> Self {
         FourierSeries::constant(POLYNOMIALS, polynomial.clone()).into()
     }
 }
 
-impl From<FourierSeries<Polynomials>> for Formula {
+impl From<FourierSeries<Polynomials>> for DerivationFormula {
     fn from(series: FourierSeries<Polynomials>) -> Self {
         Self::Waves { series, phase: Symbol::new("theta") }
     }
@@ -276,7 +279,7 @@ pub const NOTATION: Notation = Notation {
     brackets: ["(", ")"],
 };
 
-impl fmt::Display for Line {
+impl fmt::Display for DerivationLine {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(&self.words)?;
         if !self.words.is_empty() && !self.equal.is_empty() {
@@ -290,7 +293,7 @@ impl fmt::Display for Line {
     }
 }
 
-impl fmt::Display for Formula {
+impl fmt::Display for DerivationFormula {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Expression(expression) => write!(formatter, "{expression}"),

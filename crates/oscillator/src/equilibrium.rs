@@ -41,7 +41,7 @@ use crate::series::taylor::taylor;
 use crate::solution::Definition;
 use crate::solution::note::{CornerSide, CrossWell};
 use crate::symbol::{Symbol, fresh};
-use force::{Force, Pull};
+use force::{PositionForce, Pull};
 use search::Zero as SignChange;
 use shift::{moved, value_at};
 
@@ -132,7 +132,7 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
         return about(oscillator, &still, asked, degree);
     }
     let at_zero = value_at(&still, position, &Expr::zero());
-    let force = Force::new(&still, position);
+    let force = PositionForce::new(&still, position);
     let pull = match &at_zero {
         Err(_) if !force.vanishes_towards_zero() => force.pull_without_bound(),
         _ => None,
@@ -275,7 +275,7 @@ fn about(
 ) -> Result<Centred, OscillatorError> {
     /// Relative error of a typed number that still means the equilibrium.
     const ROUNDING: f64 = 1e-3;
-    let force = Force::new(still, oscillator.coordinate);
+    let force = PositionForce::new(still, oscillator.coordinate);
     let none_there = || OscillatorError::NoSuchEquilibrium {
         coordinate: oscillator.coordinate,
         asked: asked.clone(),
@@ -286,7 +286,7 @@ fn about(
         return found.ok_or_else(none_there);
     }
     if let Some(form) = force.stable_form_of(asked) {
-        return seen_from(oscillator, &Place::Exact(form), degree);
+        return seen_from(oscillator, &EquilibriumPosition::Exact(form), degree);
     }
     let Ok(near) = asked.evaluate(&BTreeMap::new()) else {
         return Err(none_there());
@@ -303,7 +303,7 @@ fn about(
         return seen_from(oscillator, &force.exact_or_rounded(found.position), degree);
     }
     // About a place known by its number alone no force is odd.
-    if let Some(Place::Exact(hilltop)) =
+    if let Some(EquilibriumPosition::Exact(hilltop)) =
         nearest(false).map(|found| force.exact_or_rounded(found.position))
     {
         let found = about_zero_of_force(oscillator, still, &hilltop, degree)?;
@@ -321,7 +321,7 @@ fn about_zero_of_force(
     degree: Option<u32>,
 ) -> Result<Option<Centred>, OscillatorError> {
     let there = moved(still, oscillator.coordinate, place)?;
-    let there = Force::new(&there, oscillator.coordinate);
+    let there = PositionForce::new(&there, oscillator.coordinate);
     let stable = there.is_stable_at_zero();
     // Without a drive, which has been taken out of the force, and without what velocities add.
     let conservative =
@@ -333,13 +333,16 @@ fn about_zero_of_force(
     if !stable && cross_well.is_none() {
         return Ok(None);
     }
-    Ok(Some(Centred { cross_well, ..seen_from(oscillator, &Place::Exact(place.clone()), degree)? }))
+    Ok(Some(Centred {
+        cross_well,
+        ..seen_from(oscillator, &EquilibriumPosition::Exact(place.clone()), degree)?
+    }))
 }
 
 /// The refusal of an equilibrium that was asked for because it is no stable one.
 pub fn no_bottom(oscillator: &Oscillator) -> OscillatorError {
     let asked = oscillator.about.clone().unwrap_or_else(Expr::zero);
-    let stable = Force::new(&oscillator.force, oscillator.coordinate).stable_equilibria();
+    let stable = PositionForce::new(&oscillator.force, oscillator.coordinate).stable_equilibria();
     OscillatorError::NoSuchEquilibrium { coordinate: oscillator.coordinate, asked, stable }
 }
 
@@ -350,7 +353,7 @@ pub(crate) fn stable_elsewhere(oscillator: &Oscillator) -> Option<OscillatorErro
     if still.contains(Symbol::new("t")) {
         return None;
     }
-    let force = Force::new(&still, oscillator.coordinate);
+    let force = PositionForce::new(&still, oscillator.coordinate);
     let found = force.stable_equilibria();
     (!force.is_numerical() && !found.positions.is_empty())
         .then(|| force.unstable(oscillator.of_position_alone()))
@@ -358,7 +361,7 @@ pub(crate) fn stable_elsewhere(oscillator: &Oscillator) -> Option<OscillatorErro
 
 /// The position of an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
-enum Place {
+enum EquilibriumPosition {
     /// In closed form.
     Exact(Expr),
     /// By its number alone.
@@ -380,13 +383,13 @@ fn rests_beside_corners(
 /// The equation in the deviation from a place.
 fn seen_from(
     oscillator: &Oscillator,
-    place: &Place,
+    place: &EquilibriumPosition,
     degree: Option<u32>,
 ) -> Result<Centred, OscillatorError> {
     let coordinate = oscillator.coordinate;
     let position = match place {
-        Place::Exact(position) => position.clone(),
-        Place::Rounded(value) => Expr::number(rounded_to(*value, 17)),
+        EquilibriumPosition::Exact(position) => position.clone(),
+        EquilibriumPosition::Rounded(value) => Expr::number(rounded_to(*value, 17)),
     };
     let number = position.evaluate(&BTreeMap::new()).ok();
     let mut centred = Centred {
@@ -394,8 +397,8 @@ fn seen_from(
         written: position.clone(),
         ..Centred::at_origin(oscillator)
     };
-    let simple =
-        matches!(place, Place::Exact(_)) && position.to_polynomial(&mut |_| None)?.is_some();
+    let simple = matches!(place, EquilibriumPosition::Exact(_))
+        && position.to_polynomial(&mut |_| None)?.is_some();
     if simple {
         centred.oscillator.force = moved(&oscillator.force, coordinate, &position)?;
         return Ok(centred);

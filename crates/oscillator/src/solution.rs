@@ -32,14 +32,16 @@ pub use branch::Branch;
 pub use convergence::Convergence;
 pub use degrees::Degrees;
 use law::Shown;
-pub use law::{ClosedForm, Law, Root, System};
+pub use law::{AlgebraicSystem, ClosedForm, Law, Root};
 pub use method::{Counts, Method};
 pub use modulation::Modulation;
 pub use note::Note;
 pub use response::Response;
 pub use sum::Sum;
 
-pub use crate::derivation::{AmplitudeCondition, Condition, Formula, Line, Step};
+pub use crate::derivation::{
+    AmplitudeCondition, Condition, DerivationFormula, DerivationLine, Step,
+};
 
 use crate::decimal::{rounded_fraction, significant_fraction};
 use crate::exact::polynomial::Monomial;
@@ -231,7 +233,7 @@ pub struct Solution {
     /// The derivation, order by order, of an expansion.
     pub steps: Vec<Step>,
     /// Lines in front of the orders, or the derivation of any other method.
-    pub derivation: Vec<Line>,
+    pub derivation: Vec<DerivationLine>,
 }
 
 impl Solution {
@@ -606,13 +608,13 @@ impl Solution {
             for (symbol, size) in &sizes {
                 coefficient = coefficient.product(size.power(monomial.exponent(*symbol)));
             }
-            branch::Term {
+            branch::BranchTerm {
                 coefficient,
                 amplitude: monomial.exponent(amplitude),
                 frequency: monomial.exponent(omega) / 2,
             }
         };
-        let terms: Vec<branch::Term> = relation.terms().map(term).collect();
+        let terms: Vec<branch::BranchTerm> = relation.terms().map(term).collect();
         branch::follow(&terms, value_of(amplitude).unwrap_or(0.0), self.precision())
     }
 

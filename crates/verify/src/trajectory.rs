@@ -27,12 +27,14 @@ use thiserror::Error;
 
 use crate::expr::{CompiledFunction, Expr, ExprError, LostDigits};
 use crate::interrupt::Interrupt;
-use crate::mechanics::{Equations, MechanicsError, Mechanism, Rates};
+use crate::mechanics::{EquationsOfMotion, MechanicsError, Mechanism, Rates};
 use crate::oscillator::Oscillator;
 use crate::symbol::{Symbol, fresh};
-use crate::system::{End, Integrator, Options, Path, Solver, System, SystemError, solve_together};
+use crate::system::{
+    Integrator, Path, PathEnd, Solver, System, SystemError, SystemOptions, solve_together,
+};
 
-pub use section::{Crossing, MOST_CROSSINGS, Section};
+pub use section::{Crossing, MOST_CROSSINGS, PoincareSection};
 pub use sensitivity::DISPLACEMENT;
 pub use sweep::{SweptMotion, sweep};
 
@@ -42,7 +44,7 @@ use section::OnSection;
 
 /// An initial value problem: equations, initial state and duration.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Course {
+pub struct TrajectoryRequest {
     /// The coordinates.
     pub coordinates: Vec<Symbol>,
     /// The equations, as they print, each `... = 0`.
@@ -50,7 +52,7 @@ pub struct Course {
     /// Coordinates and velocities with their rates.
     pub rates: Rates,
     /// h and what changes it; nothing for an equation whose inertia depends on the position.
-    pub energy: Option<Energy>,
+    pub energy: Option<EnergyWithPowers>,
     /// A number for every parameter.
     pub values: BTreeMap<Symbol, f64>,
     /// Initial positions and velocities, in the order of the states.
@@ -58,7 +60,7 @@ pub struct Course {
     /// Duration, in the unit of time.
     pub duration: f64,
     /// The Poincaré section at which states are recorded beside the requested times.
-    pub section: Option<Section>,
+    pub section: Option<PoincareSection>,
     /// From when on: what is before that has not settled.
     pub after: f64,
     /// Relative error of a step.
@@ -71,7 +73,7 @@ pub struct Course {
 
 /// An energy and what changes it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Energy {
+pub struct EnergyWithPowers {
     /// h in coordinates and velocities.
     pub value: Expr,
     /// The power of each force that has no part in h, by its name.
@@ -82,19 +84,19 @@ pub struct Energy {
 #[derive(Clone, Debug)]
 pub struct Trajectory {
     /// The initial value problem that was solved.
-    pub course: Course,
+    pub course: TrajectoryRequest,
     /// By which integrator it was followed.
     pub integrator: Integrator,
     /// The balance of energy; nothing where there is no energy.
-    pub balance: Option<Balance>,
-    pieces: Vec<Piece>,
+    pub balance: Option<EnergyBalance>,
+    pieces: Vec<TrajectorySegment>,
     on_section: OnSection,
-    reason: End,
+    reason: PathEnd,
 }
 
 /// The energy at the end, beside that of the start and the work in between.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Balance {
+pub struct EnergyBalance {
     /// h at the start.
     pub start: f64,
     /// h at the end.
@@ -156,7 +158,7 @@ fn names(symbols: &[Symbol]) -> String {
 /// The times at which energy is accounted for.
 const ACCOUNTS: u32 = 2000;
 
-impl Course {
+impl TrajectoryRequest {
     /// The initial value problem of an equation of motion, from rest at zero for 50 units of time.
     /// Its energy is that of the velocity and of all terms of the position alone that have a
     /// potential in closed form; every other term has a work of its own.
@@ -181,7 +183,7 @@ impl Course {
     /// Energies that give no accelerations.
     pub fn of_mechanism(
         mechanism: &Mechanism,
-        equations: &Equations,
+        equations: &EquationsOfMotion,
     ) -> Result<Self, TrajectoryError> {
         let lagrangian = &mechanism.kinetic - &mechanism.potential;
         let mut energy = vec![-&lagrangian];
@@ -198,7 +200,7 @@ impl Course {
         }
         powers.push(("dissipation".to_owned(), Expr::sum(lost)));
         powers.retain(|(_, power)| !power.is_zero());
-        let energy = Energy { value: Expr::sum(energy), powers };
+        let energy = EnergyWithPowers { value: Expr::sum(energy), powers };
         Ok(Self::new(
             mechanism.coordinates.clone(),
             equations.left.clone(),
@@ -211,7 +213,7 @@ impl Course {
         coordinates: Vec<Symbol>,
         equations: Vec<Expr>,
         rates: Rates,
-        energy: Option<Energy>,
+        energy: Option<EnergyWithPowers>,
     ) -> Self {
         Self {
             start: vec![0.0; rates.states.len()],
@@ -223,8 +225,8 @@ impl Course {
             duration: 50.0,
             section: None,
             after: 0.0,
-            tolerance: Options::default().tolerance,
-            step_limit: Options::default().step_limit,
+            tolerance: SystemOptions::default().tolerance,
+            step_limit: SystemOptions::default().step_limit,
             interrupt: Interrupt::default(),
         }
     }
@@ -253,7 +255,7 @@ impl Course {
 
     /// The names without whose numbers nothing moves.
     fn parameters_of_motion(&self) -> BTreeSet<Symbol> {
-        let section = self.section.iter().map(Section::expression);
+        let section = self.section.iter().map(PoincareSection::expression);
         let all = self.rates.right.iter().chain(section).flat_map(Expr::symbols);
         all.filter(|name| !self.is_variable(*name)).collect()
     }
@@ -308,7 +310,7 @@ impl Course {
         accounted: Accounted,
     ) -> Result<Trajectory, TrajectoryError> {
         match first {
-            Ok(motion) if motion.reason != End::Singular => Ok(motion),
+            Ok(motion) if motion.reason != PathEnd::Singular => Ok(motion),
             Ok(_) | Err(TrajectoryError::System(SystemError::Start(_))) => {
                 let second = self.followed_by(Integrator::RungeKutta, accounted);
                 match (&first, &second) {
@@ -404,8 +406,8 @@ impl Course {
         Ok(motion)
     }
 
-    fn options(&self, integrator: Integrator) -> Options {
-        Options {
+    fn options(&self, integrator: Integrator) -> SystemOptions {
+        SystemOptions {
             integrator,
             tolerance: self.tolerance,
             step_limit: self.step_limit,
@@ -499,7 +501,7 @@ struct Ready {
 
 impl Ready {
     /// The states at the start of a course; no work has been done.
-    fn start(&self, course: &Course) -> Vec<f64> {
+    fn start(&self, course: &TrajectoryRequest) -> Vec<f64> {
         let mut start = course.start.clone();
         start.resize(self.states.len(), 0.0);
         start
@@ -507,7 +509,7 @@ impl Ready {
 
     /// These equations take the numbers of a course that differs in its numbers and its start
     /// alone. `None` says that other numbers make other equations.
-    fn with_numbers(&self, course: &Course) -> Option<Self> {
+    fn with_numbers(&self, course: &TrajectoryRequest) -> Option<Self> {
         let mut values = self.values.clone();
         for (name, value) in &mut values {
             *value = *course.values.get(name)?;
@@ -528,7 +530,7 @@ impl Ready {
 
 /// A stretch of a motion: as the equations say, or with something held by dry friction.
 #[derive(Clone, Debug)]
-struct Piece {
+struct TrajectorySegment {
     from: f64,
     path: Path,
     /// The map from the integrated states to all states on a sliding segment; `None` if all states
@@ -538,7 +540,7 @@ struct Piece {
     recorded: usize,
 }
 
-impl Piece {
+impl TrajectorySegment {
     fn end(&self) -> f64 {
         self.path.end()
     }
@@ -574,7 +576,7 @@ impl Sampled {
 
 impl Trajectory {
     /// The account of the energy.
-    fn account(&self) -> Option<Balance> {
+    fn account(&self) -> Option<EnergyBalance> {
         let energy = self.course.energy.as_ref()?;
         if !self.course.missing_for_energy().is_empty() {
             return None;
@@ -609,7 +611,7 @@ impl Trajectory {
             astray = astray.max((now - start - work).abs());
             moved = moved.max(now.abs()).max(work.abs()).max(largest);
         }
-        Some(Balance {
+        Some(EnergyBalance {
             start,
             end,
             work: sum(&works),
@@ -688,17 +690,17 @@ impl Trajectory {
 
     /// The time at which it ends.
     pub fn end(&self) -> f64 {
-        self.pieces.last().map_or(0.0, Piece::end)
+        self.pieces.last().map_or(0.0, TrajectorySegment::end)
     }
 
     /// Why it ends there.
-    pub fn reason(&self) -> End {
+    pub fn reason(&self) -> PathEnd {
         self.reason
     }
 
     /// Whether it was followed as long as asked.
     pub fn is_complete(&self) -> bool {
-        self.reason == End::Reached
+        self.reason == PathEnd::Reached
     }
 
     /// Coordinates, then velocities; nothing outside of the motion.
@@ -729,16 +731,16 @@ impl Trajectory {
 }
 
 /// Why a motion ended, in words.
-pub fn in_words(end: End) -> &'static str {
+pub fn in_words(end: PathEnd) -> &'static str {
     match end {
-        End::Reached => "at the time asked for",
-        End::Event(_) => "at an event",
-        End::StepLimit => "after as many steps as were allowed",
-        End::Singular => "where a state or its rate has no value, or no next step",
-        End::Overflow => "where a state leaves the range of numbers, 1e300",
-        End::Sticks => {
+        PathEnd::Reached => "at the time asked for",
+        PathEnd::Event(_) => "at an event",
+        PathEnd::StepLimit => "after as many steps as were allowed",
+        PathEnd::Singular => "where a state or its rate has no value, or no next step",
+        PathEnd::Overflow => "where a state leaves the range of numbers, 1e300",
+        PathEnd::Sticks => {
             "on a corner that the rates on both sides lead back to, where it is not followed"
         }
-        End::Interrupted => "interrupted",
+        PathEnd::Interrupted => "interrupted",
     }
 }

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::mechanics::dimension::{Dimension, check, dimension};
-use crate::mechanics::{Equations, Groups, MechanicsError, Mechanism, MechanismQuestion};
+use crate::mechanics::{EquationsOfMotion, Groups, MechanicsError, Mechanism, MechanismQuestion};
 use crate::symbol::Symbol;
 
 /// An equation of the paper.
@@ -175,7 +175,7 @@ fn kinetic(
 
 /// Equation (5): its swing term by term, its contact by its unit.
 fn equation_of_motion(
-    equations: &Equations,
+    equations: &EquationsOfMotion,
     all: &BTreeMap<Symbol, Dimension>,
 ) -> Result<Finding, MechanicsError> {
     let swing: Expr = PRINTED_SWING.parse().unwrap_or_else(|_| Expr::zero());

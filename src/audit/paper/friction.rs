@@ -60,7 +60,7 @@ fn has_digits(printed: &str, number: f64) -> [bool; 2] {
 
 /// A printed number, and how the number that belongs there comes to its digits with some pi.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Entry {
+pub struct PrintedDigits {
     /// The entry as it is printed.
     pub printed: &'static str,
     /// Whether they are those of the rounded number.
@@ -69,7 +69,7 @@ pub struct Entry {
     pub cut: bool,
 }
 
-impl Entry {
+impl PrintedDigits {
     fn of(printed: &'static str, number: f64) -> Self {
         let [rounded, cut] = has_digits(printed, number);
         Self { printed, rounded, cut }
@@ -93,7 +93,7 @@ pub struct TableRow {
     pub laws: SpeedRow,
     /// The printed value and error at a speed of the paper, with what the best pi makes of them;
     /// nothing at any other speed.
-    pub printed: Option<[Entry; 2]>,
+    pub printed: Option<[PrintedDigits; 2]>,
 }
 
 /// The number of printed entries that come out with one value of pi.
@@ -113,10 +113,11 @@ pub struct PiReading {
 
 impl PiReading {
     fn of(name: &'static str, value: f64) -> Self {
-        let entries: Vec<Entry> =
+        let entries: Vec<PrintedDigits> =
             SPEEDS.iter().flat_map(|(speed, printed)| entries(*speed, printed, value)).collect();
-        let count =
-            |wanted: fn(&Entry) -> bool| entries.iter().filter(|entry| wanted(entry)).count();
+        let count = |wanted: fn(&PrintedDigits) -> bool| {
+            entries.iter().filter(|entry| wanted(entry)).count()
+        };
         Self {
             name,
             value,
@@ -137,16 +138,16 @@ impl PiReading {
     }
 }
 
-fn entries(speed: f64, printed: &PrintedSpeed, pi: f64) -> [Entry; 2] {
+fn entries(speed: f64, printed: &PrintedSpeed, pi: f64) -> [PrintedDigits; 2] {
     [
-        Entry::of(printed.value, arctangent(speed, pi)),
-        Entry::of(printed.error, arctangent_error(speed, pi)),
+        PrintedDigits::of(printed.value, arctangent(speed, pi)),
+        PrintedDigits::of(printed.error, arctangent_error(speed, pi)),
     ]
 }
 
 /// Table 1, recomputed and searched.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Table {
+pub struct FrictionTable {
     /// The two laws at the paper's speeds, then at those asked for.
     pub rows: Vec<TableRow>,
     /// Every value of pi that was tried.
@@ -157,7 +158,7 @@ pub struct Table {
     best: usize,
 }
 
-impl Table {
+impl FrictionTable {
     /// Table 1 of the paper, and the speeds of a study beside its own.
     ///
     /// ```
@@ -227,7 +228,7 @@ mod tests {
         assert_eq!(has_digits("-0.99414", -0.994138), [true, false]);
         assert_eq!(has_digits("0.00000", -0.0), [true, true]);
         assert_eq!(has_digits("0.5", 0.61), [false, false]);
-        assert_eq!(Entry::of("-0.5", -0.54).treatment(), "either");
+        assert_eq!(PrintedDigits::of("-0.5", -0.54).treatment(), "either");
     }
 
     #[test]

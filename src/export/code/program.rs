@@ -11,7 +11,7 @@ use crate::exact::{Doubles, Polynomial, Rational};
 use crate::export::rounding_noise;
 use crate::expr::{Expr, Function, Node, fresh};
 use crate::method::numbers::{is_odd_equation, law_takes_size, motion_takes_size};
-use crate::method::table::{Entry, Motion};
+use crate::method::table::{MethodEntry, MotionEvaluation};
 use crate::oscillator::Oscillator;
 use crate::report::{self, Block, Document};
 use crate::series::FourierSeries;
@@ -43,11 +43,11 @@ pub(super) fn of_solution(
     if solution.slow().is_some() {
         return Err(NoCode::Slow);
     }
-    let names = Names::of(solution);
+    let names = ProgramNames::of(solution);
     let mut header = header(solution, verification, tolerance);
     let mut remarks: Vec<String> = Vec::new();
     let formula = formula(solution);
-    let is_exact = Entry::of(solution.method).motion == Motion::Exact;
+    let is_exact = MethodEntry::of(solution.method).motion == MotionEvaluation::Exact;
     let mut routines = Vec::new();
     match (&formula, verification) {
         (Ok(law), _) => {
@@ -133,7 +133,7 @@ fn wrapped(line: &str) -> Vec<String> {
 }
 
 /// The names of variables that a program introduces.
-struct Names {
+struct ProgramNames {
     amplitude: Symbol,
     time: Symbol,
     theta: Symbol,
@@ -149,7 +149,7 @@ struct Names {
     sign: Symbol,
 }
 
-impl Names {
+impl ProgramNames {
     fn of(solution: &Solution) -> Self {
         let taken = solution.names();
         Self {
@@ -221,7 +221,7 @@ fn ordered(solution: &Solution, polynomial: &Polynomial) -> Value {
 /// first.
 fn resolved<'a>(
     solution: &'a Solution,
-    names: &Names,
+    names: &ProgramNames,
     symbols: BTreeSet<Symbol>,
 ) -> (Vec<&'a Definition>, Vec<Symbol>) {
     let definitions = solution.definitions_behind(symbols.clone());
@@ -263,7 +263,12 @@ fn flips(solution: &Solution, expression: &Expr, negated: bool) -> bool {
     turned().unwrap_or(false)
 }
 
-fn frequency(oscillator: &Oscillator, solution: &Solution, names: &Names, law: &Law) -> Routine {
+fn frequency(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    names: &ProgramNames,
+    law: &Law,
+) -> Routine {
     let (definitions, arguments) = resolved(solution, names, law.expression.symbols());
     let mut body = Vec::new();
     let by_size = arguments.contains(&names.amplitude) && law_takes_size(oscillator, solution);
@@ -362,7 +367,7 @@ fn terms(harmonics: Vec<Harmonic>, theta: Symbol) -> Vec<Value> {
 }
 
 /// What a function of the motion does before its result, and of what it is one.
-struct Beginning {
+struct FunctionPrologue {
     arguments: Vec<Symbol>,
     body: Vec<Statement>,
 }
@@ -370,7 +375,7 @@ struct Beginning {
 fn motion(
     oscillator: &Oscillator,
     solution: &Solution,
-    names: &Names,
+    names: &ProgramNames,
     of_frequency: &[Symbol],
 ) -> [Routine; 2] {
     let harmonics = solution.displacement.harmonics();
@@ -405,7 +410,7 @@ fn motion(
             }
             Sign::Any | Sign::Opposite => angle(names),
         });
-        Beginning { arguments, body }
+        FunctionPrologue { arguments, body }
     };
     let symbols =
         |(_, cosine, sine): &(usize, Polynomial, Polynomial)| [cosine.symbols(), sine.symbols()];
@@ -461,7 +466,7 @@ fn motion(
 /// Displacement and velocity of a motion that is an expression in the time.
 fn written_motion(
     solution: &Solution,
-    names: &Names,
+    names: &ProgramNames,
     motion: &Expr,
 ) -> Result<[Routine; 2], NoCode> {
     let velocity = motion.differentiate(names.time).map_err(|_| NoCode::NoMotion(None))?;
@@ -483,7 +488,7 @@ fn written_motion(
 }
 
 /// `omega*t`, for a negative amplitude half a period later.
-fn turned_angle(names: &Names) -> Expr {
+fn turned_angle(names: &ProgramNames) -> Expr {
     let half = Expr::pi() * Expr::number(Rational::new(1.into(), 2.into()));
     Expr::from(names.omega) * Expr::from(names.time) + (Expr::one() - Expr::from(names.sign)) * half
 }
@@ -493,7 +498,7 @@ fn turned_angle(names: &Names) -> Expr {
 /// with it.
 fn missing_at_start(
     solution: &Solution,
-    names: &Names,
+    names: &ProgramNames,
     harmonics: &[(usize, Polynomial, Polynomial)],
 ) -> Expr {
     let half = Expr::number(Rational::new(1.into(), 2.into()));
@@ -507,15 +512,15 @@ fn missing_at_start(
 }
 
 /// `theta = omega*t`.
-fn angle(names: &Names) -> Statement {
+fn angle(names: &ProgramNames) -> Statement {
     let angle = Expr::from(names.omega) * Expr::from(names.time);
     Statement::Variable(names.theta, Value::Expression(angle))
 }
 
 /// Displacement and velocity; `before` stands before either.
 fn both(
-    names: &Names,
-    beginnings: [Beginning; 2],
+    names: &ProgramNames,
+    beginnings: [FunctionPrologue; 2],
     before: Option<Symbol>,
     displaced: Vec<Harmonic>,
     moving: Vec<Harmonic>,
@@ -572,7 +577,7 @@ enum Sign {
     HalfPeriod,
 }
 
-fn sign_of_motion(oscillator: &Oscillator, solution: &Solution, names: &Names) -> Sign {
+fn sign_of_motion(oscillator: &Oscillator, solution: &Solution, names: &ProgramNames) -> Sign {
     let harmonics = solution.displacement.harmonics();
     let amplitude: Polynomial = Polynomial::symbol(names.amplitude);
     let of_one_term = harmonics.iter().all(|(k, cosine, sine)| match k {
@@ -596,14 +601,14 @@ fn sign_of_motion(oscillator: &Oscillator, solution: &Solution, names: &Names) -
 }
 
 /// Whether a symbol is defined by way of the amplitude.
-fn is_of_amplitude(solution: &Solution, symbol: Symbol, names: &Names) -> bool {
+fn is_of_amplitude(solution: &Solution, symbol: Symbol, names: &ProgramNames) -> bool {
     let behind = solution.definitions_behind(BTreeSet::from([symbol]));
     behind.iter().any(|definition| definition.meaning.contains(names.amplitude))
 }
 
 /// The motion at given values.
 fn motion_in_numbers(
-    names: &Names,
+    names: &ProgramNames,
     motion: &FourierSeries<Doubles>,
     frequency: f64,
 ) -> [Routine; 2] {
@@ -623,7 +628,7 @@ fn motion_in_numbers(
             cosine: value(sine).map(|_| number(k as f64 * sine)),
             sine: value(cosine).map(|_| number(-(k as f64) * cosine)),
         });
-    let beginning = || Beginning {
+    let beginning = || FunctionPrologue {
         arguments: vec![names.time],
         body: vec![Statement::Variable(names.omega, number(frequency)), angle(names)],
     };
@@ -634,7 +639,7 @@ fn motion_in_numbers(
 /// `value*scale` with them: as the amplitude goes to zero, several of them become infinite and
 /// their sum does not.
 fn digits<'a>(
-    names: &Names,
+    names: &ProgramNames,
     formulas: impl IntoIterator<Item = &'a Expr>,
     value: Symbol,
     scale: &Expr,
@@ -685,7 +690,7 @@ fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
     if solution.validity.contains(&Note::Exact(ExactBy::Linear)) {
         return None;
     }
-    if Entry::of(solution.method).motion == Motion::Exact {
+    if MethodEntry::of(solution.method).motion == MotionEvaluation::Exact {
         return Some(
             "The program does not look whether the motion is periodic: where it is not, its numbers mean nothing."
                 .to_owned(),

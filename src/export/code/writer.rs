@@ -127,7 +127,7 @@ enum Level {
 
 /// A part of an expression as text.
 #[derive(Clone)]
-struct Piece {
+struct CodeFragment {
     /// Without its sign.
     text: String,
     /// Whether a minus stands before it.
@@ -136,10 +136,10 @@ struct Piece {
     /// Whether it is made of numbers written out alone.
     literal: bool,
     /// What stands below the line where this is a factor of a fraction.
-    below: Option<Box<Piece>>,
+    below: Option<Box<CodeFragment>>,
 }
 
-impl Piece {
+impl CodeFragment {
     fn new(text: String, level: Level) -> Self {
         Self { text, negative: false, level, literal: false, below: None }
     }
@@ -224,7 +224,7 @@ impl Writer<'_> {
                 let mut parts = Vec::new();
                 for (index, term) in terms.enumerate() {
                     let term = term?;
-                    let unsigned = Piece { negative: false, ..term.clone() };
+                    let unsigned = CodeFragment { negative: false, ..term.clone() };
                     let sign = match (index, term.negative) {
                         (0, false) => "",
                         (0, true) => "-",
@@ -250,45 +250,46 @@ impl Writer<'_> {
         Ok(broken(before, filled.collect(), after, &self.syntax.breaks))
     }
 
-    fn value(&self, value: &Value) -> Result<Piece, NoCode> {
+    fn value(&self, value: &Value) -> Result<CodeFragment, NoCode> {
         match value {
             Value::Expression(expression) => self.expression(expression),
             Value::Sum(parts) | Value::Lines(parts) => {
-                let parts: Vec<Piece> =
+                let parts: Vec<CodeFragment> =
                     parts.iter().map(|part| self.value(part)).collect::<Result<_, _>>()?;
                 Ok(self.sum(&parts))
             }
             Value::Product(parts) => {
-                let parts: Vec<Piece> =
+                let parts: Vec<CodeFragment> =
                     parts.iter().map(|part| self.value(part)).collect::<Result<_, _>>()?;
                 let negative = parts.iter().filter(|part| part.negative).count() % 2 == 1;
-                let unsigned = parts.into_iter().map(|part| Piece { negative: false, ..part });
-                let factors: Vec<Piece> = unsigned.filter(|part| !part.is_one()).collect();
+                let unsigned =
+                    parts.into_iter().map(|part| CodeFragment { negative: false, ..part });
+                let factors: Vec<CodeFragment> = unsigned.filter(|part| !part.is_one()).collect();
                 // A fraction stands before what it is multiplied with, without parentheses.
-                let first = factors.first().map(|first| Piece {
+                let first = factors.first().map(|first| CodeFragment {
                     level: if first.level == Level::Product { Level::Power } else { first.level },
                     ..first.clone()
                 });
                 let factors = first.into_iter().chain(factors.into_iter().skip(1)).collect();
-                Ok(Piece { negative, ..self.fraction(factors, vec![]) })
+                Ok(CodeFragment { negative, ..self.fraction(factors, vec![]) })
             }
             Value::Call(name, arguments) => {
                 let arguments: Vec<String> =
                     arguments.iter().map(|argument| self.name(*argument)).collect();
-                Ok(Piece::new(format!("{name}({})", arguments.join(", ")), Level::Atom))
+                Ok(CodeFragment::new(format!("{name}({})", arguments.join(", ")), Level::Atom))
             }
         }
     }
 
-    fn expression(&self, expression: &Expr) -> Result<Piece, NoCode> {
-        expression.fold(|node, children: &[Piece]| self.node(node, children))
+    fn expression(&self, expression: &Expr) -> Result<CodeFragment, NoCode> {
+        expression.fold(|node, children: &[CodeFragment]| self.node(node, children))
     }
 
-    fn node(&self, expression: &Expr, children: &[Piece]) -> Result<Piece, NoCode> {
+    fn node(&self, expression: &Expr, children: &[CodeFragment]) -> Result<CodeFragment, NoCode> {
         Ok(match expression.node() {
             Node::Number(value) => self.number(value)?,
-            Node::Pi => Piece::new(self.syntax.pi.to_owned(), Level::Atom),
-            Node::Symbol(symbol) => Piece::new(self.name(*symbol), Level::Atom),
+            Node::Pi => CodeFragment::new(self.syntax.pi.to_owned(), Level::Atom),
+            Node::Symbol(symbol) => CodeFragment::new(self.name(*symbol), Level::Atom),
             Node::Sum(_) => self.sum(&positive_first(children)),
             Node::Product(coefficient, _) => {
                 let (above, below) = self.number_parts(coefficient)?;
@@ -299,12 +300,12 @@ impl Writer<'_> {
                         None => above.push(child.clone()),
                     }
                 }
-                Piece { negative: coefficient.is_negative(), ..self.fraction(above, below) }
+                CodeFragment { negative: coefficient.is_negative(), ..self.fraction(above, below) }
             }
             Node::Power(base, exponent) => match (exponent.as_number(), children) {
                 (Some(number), [written, _]) if number.is_negative() => {
                     let inverse = self.power(base, written, &-number)?;
-                    Piece {
+                    CodeFragment {
                         below: Some(Box::new(inverse.clone())),
                         ..self.fraction(vec![], vec![inverse])
                     }
@@ -313,17 +314,17 @@ impl Writer<'_> {
                 (None, [base, exponent]) => {
                     let text =
                         (self.syntax.power)(&base.as_base(), Exponent::Real(&exponent.whole()));
-                    Piece::new(text, Level::Power)
+                    CodeFragment::new(text, Level::Power)
                 }
-                _ => Piece::new(String::new(), Level::Atom),
+                _ => CodeFragment::new(String::new(), Level::Atom),
             },
             Node::Function(function, _) => self.call((self.syntax.function)(*function), children),
         })
     }
 
-    fn call(&self, name: &str, arguments: &[Piece]) -> Piece {
-        let written = |arguments: &[Piece]| {
-            let written: Vec<String> = arguments.iter().map(Piece::whole).collect();
+    fn call(&self, name: &str, arguments: &[CodeFragment]) -> CodeFragment {
+        let written = |arguments: &[CodeFragment]| {
+            let written: Vec<String> = arguments.iter().map(CodeFragment::whole).collect();
             written.join(", ")
         };
         let text = match (name.strip_prefix('.'), arguments) {
@@ -336,11 +337,16 @@ impl Writer<'_> {
             }
             _ => format!("{name}({})", written(arguments)),
         };
-        Piece::new(text, Level::Atom)
+        CodeFragment::new(text, Level::Atom)
     }
 
     /// `base^number` for a positive number.
-    fn power(&self, base: &Expr, written: &Piece, number: &Rational) -> Result<Piece, NoCode> {
+    fn power(
+        &self,
+        base: &Expr,
+        written: &CodeFragment,
+        number: &Rational,
+    ) -> Result<CodeFragment, NoCode> {
         if number.is_one() {
             return Ok(written.clone());
         }
@@ -359,17 +365,17 @@ impl Writer<'_> {
             Exponent::Half => Level::Atom,
             _ => Level::Power,
         };
-        Ok(Piece::new((self.syntax.power)(&written.as_base(), exponent), level))
+        Ok(CodeFragment::new((self.syntax.power)(&written.as_base(), exponent), level))
     }
 
     /// A sum of pieces, which has at least one.
-    fn sum(&self, terms: &[Piece]) -> Piece {
+    fn sum(&self, terms: &[CodeFragment]) -> CodeFragment {
         if let [only] = terms {
             return only.clone();
         }
         let mut text = String::new();
         for term in terms {
-            let unsigned = Piece { negative: false, ..term.clone() };
+            let unsigned = CodeFragment { negative: false, ..term.clone() };
             let level = if text.is_empty() { Level::Sum } else { Level::Product };
             text.push_str(match (text.is_empty(), term.negative) {
                 (true, true) => "-",
@@ -380,17 +386,17 @@ impl Writer<'_> {
             text.push_str(&unsigned.at(level));
         }
         match text.is_empty() {
-            true => Piece::literal(format!("0{}", self.syntax.point), Level::Atom),
-            false => Piece {
+            true => CodeFragment::literal(format!("0{}", self.syntax.point), Level::Atom),
+            false => CodeFragment {
                 literal: terms.iter().all(|term| term.literal),
-                ..Piece::new(text, Level::Sum)
+                ..CodeFragment::new(text, Level::Sum)
             },
         }
     }
 
     /// Factors over factors.
-    fn fraction(&self, above: Vec<Piece>, below: Vec<Piece>) -> Piece {
-        let one = || vec![Piece::literal(format!("1{}", self.syntax.point), Level::Atom)];
+    fn fraction(&self, above: Vec<CodeFragment>, below: Vec<CodeFragment>) -> CodeFragment {
+        let one = || vec![CodeFragment::literal(format!("1{}", self.syntax.point), Level::Atom)];
         let above = if above.is_empty() { one() } else { above };
         let numerator = self.product(&above);
         match below.as_slice() {
@@ -401,9 +407,9 @@ impl Writer<'_> {
                     (&numerator.text, numerator.literal),
                     (&divisor.at(Level::Power), divisor.literal),
                 );
-                Piece {
+                CodeFragment {
                     literal: numerator.literal && divisor.literal,
-                    ..Piece::new(text, Level::Product)
+                    ..CodeFragment::new(text, Level::Product)
                 }
             }
             several => {
@@ -413,18 +419,18 @@ impl Writer<'_> {
                     (&numerator.text, numerator.literal),
                     (&format!("({})", divisor.text), divisor.literal),
                 );
-                Piece::new(text, Level::Product)
+                CodeFragment::new(text, Level::Product)
             }
         }
     }
 
-    fn product(&self, factors: &[Piece]) -> Piece {
+    fn product(&self, factors: &[CodeFragment]) -> CodeFragment {
         let Some((first, rest)) = factors.split_first() else {
-            return Piece::literal(format!("1{}", self.syntax.point), Level::Atom);
+            return CodeFragment::literal(format!("1{}", self.syntax.point), Level::Atom);
         };
         if rest.is_empty() {
             return match first.level {
-                Level::Sum => Piece::new(first.at(Level::Power), Level::Atom),
+                Level::Sum => CodeFragment::new(first.at(Level::Power), Level::Atom),
                 _ => first.clone(),
             };
         }
@@ -436,7 +442,7 @@ impl Writer<'_> {
             literal &= factor.literal;
             last = factor.literal;
         }
-        Piece { literal, ..Piece::new(text, Level::Product) }
+        CodeFragment { literal, ..CodeFragment::new(text, Level::Product) }
     }
 
     /// Two operands with the sign of a product or a quotient between them, and whether each is a
@@ -452,9 +458,9 @@ impl Writer<'_> {
         format!("{}{}{}", left.0, operators[operator], right.0)
     }
 
-    fn number(&self, value: &Rational) -> Result<Piece, NoCode> {
+    fn number(&self, value: &Rational) -> Result<CodeFragment, NoCode> {
         let (above, below) = self.number_parts(value)?;
-        Ok(Piece {
+        Ok(CodeFragment {
             negative: value.is_negative(),
             ..self.fraction(Vec::from_iter(above), Vec::from_iter(below))
         })
@@ -462,13 +468,16 @@ impl Writer<'_> {
 
     /// The size of a number, what stands above and below the line; one of many digits is a decimal,
     /// which stands above.
-    fn number_parts(&self, value: &Rational) -> Result<(Option<Piece>, Option<Piece>), NoCode> {
+    fn number_parts(
+        &self,
+        value: &Rational,
+    ) -> Result<(Option<CodeFragment>, Option<CodeFragment>), NoCode> {
         /// All of them a double tells apart.
         const DIGITS: usize = 15;
         let size = value.abs();
         let [above, below] = [size.numer(), size.denom()].map(ToString::to_string);
         let whole = |text: &String| {
-            let piece = Piece::literal(format!("{text}{}", self.syntax.point), Level::Atom);
+            let piece = CodeFragment::literal(format!("{text}{}", self.syntax.point), Level::Atom);
             (text != "1").then_some(piece)
         };
         if above.len().max(below.len()) <= DIGITS && above.len() + below.len() <= DIGITS + 1 {
@@ -476,7 +485,7 @@ impl Writer<'_> {
         }
         let double = to_f64(&size);
         match double.is_normal() {
-            true => Ok((Some(Piece::literal(decimal(double), Level::Atom)), None)),
+            true => Ok((Some(CodeFragment::literal(decimal(double), Level::Atom)), None)),
             false => Err(NoCode::Beyond),
         }
     }
@@ -492,7 +501,7 @@ fn decimal(value: f64) -> String {
 
 /// Terms as they are read: where those with a minus come first, those next without one stand before
 /// them.
-fn positive_first(terms: &[Piece]) -> Vec<Piece> {
+fn positive_first(terms: &[CodeFragment]) -> Vec<CodeFragment> {
     let minus = terms.iter().take_while(|term| term.negative).count();
     let (minus, others) = terms.split_at(minus);
     let plus = others.iter().take_while(|term| !term.negative).count();

@@ -178,13 +178,13 @@ fn plot(
 }
 
 /// The power of ten that an axis is in, and its range in units of it.
-type Extent = (i32, (f64, f64));
+type AxisExtent = (i32, (f64, f64));
 
 /// The axes of a panel.
 fn axes(
     panel: &Panel,
-    (x_power, x_range): Extent,
-    (y_power, y_range): Extent,
+    (x_power, x_range): AxisExtent,
+    (y_power, y_range): AxisExtent,
     columns: usize,
 ) -> Layout {
     let mut layout = Layout::new(x_range, y_range)
@@ -216,7 +216,7 @@ fn axes(
 
 /// The power of ten that makes the values readable, and their range in units of it (a constant in
 /// the middle of one).
-fn extent(values: &[f64], scale: Scale) -> Extent {
+fn extent(values: &[f64], scale: Scale) -> AxisExtent {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     if scale == Scale::Logarithmic {

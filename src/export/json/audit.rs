@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use super::number::texts;
 use crate::audit::{Audit, Computed, Finding, Tried, Verdict};
 use crate::report::{audit_computed, audit_entry, audit_printed};
@@ -138,7 +138,7 @@ fn verdicts(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
 /// ```
 pub fn audit(audit: &Audit) -> AuditDocument {
     AuditDocument {
-        schema: Kind::Audit.schema().to_owned(),
+        schema: DocumentKind::Audit.schema().to_owned(),
         title: audit.title.clone(),
         counts: AuditCounts {
             reproduced: audit.count(Verdict::Reproduced),
@@ -158,7 +158,7 @@ fn number(found: &Result<Computed, crate::audit::Lack>) -> Option<f64> {
 fn claim(finding: &Finding) -> AuditClaim {
     let own = &finding.claim;
     let shown = finding.shown();
-    let entry = |(index, printed): (usize, &crate::audit::Entry)| AuditEntry {
+    let entry = |(index, printed): (usize, &crate::audit::PrintedEntry)| AuditEntry {
         printed: printed.printed.clone(),
         computed: shown.and_then(|tried| audit_entry(finding, tried, index)),
         value: shown.and_then(|tried| number(tried.computed.get(index)?)),

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::number::{expression, texts};
 use super::schema::check_kind;
-use super::{JsonError, Kind, unexpected};
+use super::{DocumentKind, JsonError, unexpected};
 use crate::certificate::{
     Certificate, HIGHEST_HARMONIC, JudgedFormula, LettersOfLaw, MOST_BITS, coordinate,
 };
@@ -36,7 +36,7 @@ const LONGEST_FORCE: usize = 2000;
 #[serde(deny_unknown_fields)]
 pub struct CertificateDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Certificate.schema())))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = DocumentKind::Certificate.schema())))]
     pub schema: String,
     /// The equation that f belongs to.
     #[cfg_attr(feature = "schema", schemars(extend("const" = EQUATION)))]
@@ -146,7 +146,7 @@ pub struct CertificateLetters {
 /// ```
 pub fn certificate(certificate: &Certificate) -> CertificateDocument {
     CertificateDocument {
-        schema: Kind::Certificate.schema().to_owned(),
+        schema: DocumentKind::Certificate.schema().to_owned(),
         ode: EQUATION.to_owned(),
         f: force(&certificate.force),
         start: certificate.start.to_string(),
@@ -260,7 +260,7 @@ impl CertificateDocument {
     /// # Errors
     /// A key that holds something else, or more than a certificate ever has.
     pub fn read(&self) -> Result<Certificate, JsonError> {
-        check_kind(&self.schema, Kind::Certificate)?;
+        check_kind(&self.schema, DocumentKind::Certificate)?;
         if self.ode != EQUATION {
             return unexpected("ode", "`x''+f(x)=0`");
         }

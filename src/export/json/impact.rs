@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::number::text;
 use super::solution::{SolutionDocument, solution};
-use super::{JsonError, Kind, check_kind};
+use super::{DocumentKind, JsonError, check_kind};
 use crate::audit::paper;
 use crate::impact::contact::{ContactErrors, ContactLaw, ContactMotion, ContactRow, SineSeries};
 use crate::impact::{
@@ -518,7 +518,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
     let contact_laws = impact.contact_laws.iter().map(ContactLawRow::of);
     let first = paper.as_ref().or(derived.as_ref()).map(|column| column.verdict.clone());
     ImpactDocument {
-        schema: Kind::Impact.schema().to_owned(),
+        schema: DocumentKind::Impact.schema().to_owned(),
         equation: impact.equation.clone(),
         parameters: Parameters::of(
             setup,
@@ -708,7 +708,7 @@ fn contact_damping(impact: &Impact) -> Option<ContactDamping> {
 
 const READINGS: [Reading; 3] = [Reading::Paper, Reading::Energy, Reading::Derived];
 
-fn quantity(impact: &Impact, quantity: &impact::Quantity) -> Quantity {
+fn quantity(impact: &Impact, quantity: &impact::ImpactQuantity) -> Quantity {
     let errors: Vec<f64> = quantity.errors().collect();
     let found = |reading| {
         let index = impact.columns.iter().position(|column| column.reading == reading);
@@ -742,7 +742,7 @@ impl PhaseName {
 }
 
 impl Phase {
-    fn of(phase: &impact::Phase) -> Self {
+    fn of(phase: &impact::MotionPhase) -> Self {
         let state = |time: f64| {
             let (x, velocity) = phase.at(time);
             State { x, velocity }
@@ -795,8 +795,8 @@ impl Phase {
     }
 
     /// The phase that the document describes.
-    pub fn read(&self) -> impact::Phase {
-        impact::Phase {
+    pub fn read(&self) -> impact::MotionPhase {
+        impact::MotionPhase {
             name: self.name.name(),
             start: self.start,
             end: self.end,
@@ -850,8 +850,8 @@ impl ImpactDocument {
     ///
     /// # Errors
     /// A document of another kind.
-    pub fn read_phases(&self) -> Result<Vec<impact::Phase>, JsonError> {
-        check_kind(&self.schema, Kind::Impact)?;
+    pub fn read_phases(&self) -> Result<Vec<impact::MotionPhase>, JsonError> {
+        check_kind(&self.schema, DocumentKind::Impact)?;
         let phases = match self.phases.is_empty() {
             false => &self.phases,
             true => &self.derived_phases,

@@ -59,13 +59,13 @@ pub use number::{Constant, Map, Polynomial, Term};
 pub use optimization::{OptimizationDocument, optimization};
 pub use primary::{PrimaryDocument, PrimarySweepDocument, primary, primary_sweep};
 pub use response::{ResponseDocument, response};
-pub use schema::Kind;
+pub use schema::DocumentKind;
 pub use simulation::{SimulationDocument, simulation};
 pub use solution::{SolutionDocument, solution};
 pub use stability::{StabilityDocument, stability};
 pub use sweep::{SweepDocument, sweep};
 
-use crate::impact::Phase;
+use crate::impact::MotionPhase;
 use crate::solution::Solution;
 use schema::check_kind;
 
@@ -137,6 +137,6 @@ pub fn read_solution(document: &Value) -> Result<Solution, JsonError> {
 /// assert_eq!(phases.iter().map(|phase| phase.name).collect::<Vec<_>>(), ["approach", "contact", "return"]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn read_phases(document: &Value) -> Result<Vec<Phase>, JsonError> {
+pub fn read_phases(document: &Value) -> Result<Vec<MotionPhase>, JsonError> {
     ImpactDocument::deserialize(document)?.read_phases()
 }

@@ -4,12 +4,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use super::number::{Map, named, texts};
 use crate::report::MotionSweep;
 use crate::report::TrajectoryReport;
-use crate::system::{End, Integrator};
-use crate::trajectory::{Course, Crossing, Section, in_words};
+use crate::system::{Integrator, PathEnd};
+use crate::trajectory::{Crossing, PoincareSection, TrajectoryRequest, in_words};
 
 /// A motion in numbers, of an equation of motion or of a mechanism of several coordinates. Units
 /// are those of the values given.
@@ -65,12 +65,12 @@ pub struct MotionSample {
 }
 
 /// Coordinates and velocities by their names.
-fn states(course: &Course, state: &[f64]) -> Map<f64> {
+fn states(course: &TrajectoryRequest, state: &[f64]) -> Map<f64> {
     named(course.rates.states.iter().zip(state.iter().copied()))
 }
 
 impl MotionSample {
-    fn of(course: &Course, t: f64, state: &[f64]) -> Self {
+    fn of(course: &TrajectoryRequest, t: f64, state: &[f64]) -> Self {
         Self { t, state: states(course, state) }
     }
 }
@@ -129,7 +129,7 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
     let sample = |t: f64| Some(MotionSample::of(course, t, &motion.at(t)?));
     let start = MotionSample::of(course, 0.0, &course.start);
     MotionDocument {
-        schema: Kind::Motion.schema().to_owned(),
+        schema: DocumentKind::Motion.schema().to_owned(),
         coordinates: texts(&course.coordinates),
         equations: course.equations.iter().map(|left| format!("{left} = 0")).collect(),
         parameters: named(course.values.iter().map(|(name, value)| (name, *value))),
@@ -160,13 +160,13 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
 }
 
 fn section_document(
-    course: &Course,
-    section: &Section,
+    course: &TrajectoryRequest,
+    section: &PoincareSection,
     (crossings, touches): (&[Crossing], &[f64]),
 ) -> SectionDocument {
     let [every, rising] = match section {
-        Section::Every(period) => [Some(period.to_string()), None],
-        Section::Rising(expression) => [None, Some(expression.to_string())],
+        PoincareSection::Every(period) => [Some(period.to_string()), None],
+        PoincareSection::Rising(expression) => [None, Some(expression.to_string())],
     };
     let state = |crossing: &Crossing| MotionSample::of(course, crossing.time, &crossing.state);
     SectionDocument {
@@ -237,10 +237,10 @@ pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
             .as_ref()
             .map(|section| section_document(course, section, (&motion.crossings, &motion.touches))),
         stopped: in_words(motion.reason).to_owned(),
-        complete: motion.reason == End::Reached,
+        complete: motion.reason == PathEnd::Reached,
     });
     MotionSweepDocument {
-        schema: Kind::MotionSweep.schema().to_owned(),
+        schema: DocumentKind::MotionSweep.schema().to_owned(),
         coordinates: texts(&course.coordinates),
         equations: course.equations.iter().map(|left| format!("{left} = 0")).collect(),
         parameters: rest(named(course.values.iter().map(|(name, value)| (name, *value)))),

@@ -148,12 +148,12 @@ pub(super) fn meanings(definitions: &[Definition]) -> Map<String> {
 
 /// What the names in a document stand for: the letters of an answer give way to the names of its
 /// equation.
-pub(super) struct Names {
+pub(super) struct DocumentNames {
     own: Vec<Symbol>,
     letters: Letters,
 }
 
-impl Names {
+impl DocumentNames {
     /// Those beside the names of an equation, driven or not.
     pub fn beside(own: impl IntoIterator<Item = Symbol>, driven: bool) -> Self {
         let own: Vec<Symbol> = own.into_iter().collect();

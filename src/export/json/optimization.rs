@@ -12,10 +12,12 @@ use serde_json::Value;
 
 use super::number::{Map, finite, text};
 use super::simulation::Barrier;
-use super::{JsonError, Kind};
-use crate::genetic::{Coding, Crossover, Mutation, Penalty, StallTest, Stop};
+use super::{DocumentKind, JsonError};
+use crate::genetic::{Coding, Crossover, GeneticStop, Mutation, Penalty, StallTest};
 use crate::impact::{self, ContactDamping, Friction, Parameter, REST_FRACTION, SpeedUnit};
-use crate::optimize::{self, Found, Objective, Question, Role, SearchRun, Study, WITHIN};
+use crate::optimize::{
+    self, Found, Objective, OptimizationProblem, Role, SearchRun, Study, WITHIN,
+};
 use crate::report::optimization_sentences;
 
 /// A search for the best damper. Angles are in radians, everything else in SI units, unless another
@@ -257,7 +259,7 @@ pub struct Run {
     /// constraints.
     pub integrated: usize,
     /// Why it ended.
-    #[cfg_attr(feature = "schema", schemars(extend("enum" = Stop::ALL.map(Stop::name))))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = GeneticStop::ALL.map(GeneticStop::name))))]
     pub stop: String,
 }
 
@@ -402,7 +404,7 @@ pub struct Sensitivity {
 /// ```
 pub fn optimization(study: &Study) -> OptimizationDocument {
     OptimizationDocument {
-        schema: Kind::Optimization.schema().to_owned(),
+        schema: DocumentKind::Optimization.schema().to_owned(),
         asked: Asked::of(&study.question),
         complete: study.complete,
         runs: study.runs.iter().map(Run::of).collect(),
@@ -453,7 +455,7 @@ fn searches(study: &Study) -> Vec<Search> {
     std::iter::once(own).chain(rivals).collect()
 }
 
-fn design(study: &Study, design: &optimize::Design) -> Design {
+fn design(study: &Study, design: &optimize::EvaluatedDesign) -> Design {
     let variables = study.question.variables.iter().zip(&design.point);
     let material = design.material.and_then(|number| study.question.materials.get(number));
     Design {
@@ -499,7 +501,7 @@ fn decision(decision: &optimize::Decision) -> Decision {
 
 impl Asked {
     /// What a question asks.
-    pub fn of(question: &Question) -> Self {
+    pub fn of(question: &OptimizationProblem) -> Self {
         Self {
             objectives: question
                 .objectives
@@ -578,7 +580,7 @@ impl SearchMaterial {
 }
 
 impl SearchHeldFixed {
-    fn of(question: &Question) -> Self {
+    fn of(question: &OptimizationProblem) -> Self {
         let case = &question.case;
         let fixed = |parameter: Parameter| {
             let mut variables = question.variables.iter();
@@ -612,7 +614,7 @@ impl SearchHeldFixed {
 }
 
 impl Genetic {
-    fn of(question: &Question) -> Self {
+    fn of(question: &OptimizationProblem) -> Self {
         let options = &question.genetic;
         let (coding, bits) = match options.coding {
             Coding::Real => ("real", None),
@@ -681,7 +683,7 @@ impl Run {
             generations: self.generations,
             evaluations: self.evaluations,
             integrated: self.integrated,
-            stop: Stop::from_name(&self.stop)?,
+            stop: GeneticStop::from_name(&self.stop)?,
         })
     }
 }
@@ -700,7 +702,7 @@ struct Head {
 ///
 /// # Errors
 /// What the writer says.
-pub fn record_head(question: &Question) -> Result<String, JsonError> {
+pub fn record_head(question: &OptimizationProblem) -> Result<String, JsonError> {
     let head = Head { schema: RECORD.to_owned(), asked: asked(question)? };
     line(&head)
 }
@@ -728,7 +730,7 @@ fn line(of: &impl Serialize) -> Result<String, JsonError> {
     Ok(text + "\n")
 }
 
-fn asked(question: &Question) -> Result<Value, JsonError> {
+fn asked(question: &OptimizationProblem) -> Result<Value, JsonError> {
     serde_json::to_value(Asked::of(question)).map_err(unwritable)
 }
 
@@ -749,7 +751,10 @@ fn asked(question: &Question) -> Result<Value, JsonError> {
 /// assert_eq!(optimize(question, runs, &Watch::default())?, study);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn read_record(text: &str, question: &Question) -> Result<(Vec<SearchRun>, usize), JsonError> {
+pub fn read_record(
+    text: &str,
+    question: &OptimizationProblem,
+) -> Result<(Vec<SearchRun>, usize), JsonError> {
     let whole = text.rfind('\n').map_or(0, |place| place + 1);
     let mut lines = text[..whole].lines();
     let first = lines.next().ok_or_else(no_record)?;

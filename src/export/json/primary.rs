@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use super::sweep::Axis;
 use crate::impact::Units;
 use crate::impact::primary::{
@@ -186,7 +186,7 @@ pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
     let driven = own.force != 0.0;
     let rest = motion.rest_time();
     PrimaryDocument {
-        schema: Kind::Primary.schema().to_owned(),
+        schema: DocumentKind::Primary.schema().to_owned(),
         parameters: PrimaryParameters {
             mass: own.mass,
             stiffness: own.stiffness,
@@ -265,7 +265,7 @@ pub fn primary_sweep(report: &PrimarySweepReport) -> PrimarySweepDocument {
         rows.iter().all(|row| unit(row) == first).then_some(first)
     };
     PrimarySweepDocument {
-        schema: Kind::PrimarySweep.schema().to_owned(),
+        schema: DocumentKind::PrimarySweep.schema().to_owned(),
         axes: report.axes.iter().map(Axis::from).collect(),
         time_unit: common(|row| row.time_unit),
         length_unit: common(|row| row.length_unit),

@@ -4,7 +4,7 @@ use super::{JsonError, unexpected};
 
 /// A kind of document.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum DocumentKind {
     /// `derive`.
     Solution,
     /// `compare`.
@@ -45,7 +45,7 @@ pub enum Kind {
     Certificate,
 }
 
-impl Kind {
+impl DocumentKind {
     /// Every kind.
     pub const ALL: [Self; 19] = [
         Self::Solution,
@@ -137,7 +137,7 @@ impl Kind {
 }
 
 /// Refuses a document of another kind.
-pub(super) fn check_kind(schema: &str, kind: Kind) -> Result<(), JsonError> {
+pub(super) fn check_kind(schema: &str, kind: DocumentKind) -> Result<(), JsonError> {
     match schema == kind.schema() {
         true => Ok(()),
         false => unexpected("schema", kind.schema()),

@@ -5,10 +5,10 @@ use num_traits::Zero;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::number::{Names, meanings, named, text, texts};
+use super::number::{DocumentNames, meanings, named, text, texts};
 use super::verification::{Verification, verification as judged};
-use super::{Constant, JsonError, Kind, Map, Polynomial, check_kind, unexpected};
-use crate::derivation::Line;
+use super::{Constant, DocumentKind, JsonError, Map, Polynomial, check_kind, unexpected};
+use crate::derivation::DerivationLine;
 use crate::exact::{self, Monomial, POLYNOMIALS, Polynomials};
 use crate::expr::{Equation, parse_equation};
 use crate::series::FourierSeries;
@@ -27,7 +27,7 @@ use crate::verify;
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 pub struct SolutionDocument {
     /// The kind of document.
-    #[cfg_attr(feature = "schema", schemars(extend("const" = Kind::Solution.schema())))]
+    #[cfg_attr(feature = "schema", schemars(extend("const" = DocumentKind::Solution.schema())))]
     pub schema: String,
     /// The equation of motion as it was understood, `... = 0`; time is its own, so frequencies are
     /// in radians per unit of it.
@@ -175,7 +175,7 @@ impl Convergence {
         }
     }
 
-    fn read(&self, names: &Names) -> Result<solution::Convergence, JsonError> {
+    fn read(&self, names: &DocumentNames) -> Result<solution::Convergence, JsonError> {
         let powers = self.variable.iter();
         Ok(solution::Convergence {
             variable: powers.fold(Monomial::one(), |product, (name, power)| {
@@ -405,7 +405,7 @@ pub fn solution(
     let _letters = solution.letters().in_force();
     let optional = |law: Option<&exact::Polynomial>| law.map(|law| Polynomial::of(law, solution));
     SolutionDocument {
-        schema: Kind::Solution.schema().to_owned(),
+        schema: DocumentKind::Solution.schema().to_owned(),
         equation: solution.equation.to_string(),
         method: solution.method.name().to_owned(),
         order: solution.order,
@@ -549,7 +549,7 @@ fn all<T, U>(
     found.iter().map(read).collect()
 }
 
-fn symbols(texts: &[String], names: &Names) -> Vec<Symbol> {
+fn symbols(texts: &[String], names: &DocumentNames) -> Vec<Symbol> {
     texts.iter().map(|text| names.symbol(text)).collect()
 }
 
@@ -560,7 +560,7 @@ impl SolutionDocument {
     /// # Errors
     /// A document of another kind; a name, a fraction or an expression that is none.
     pub fn read(&self) -> Result<Solution, JsonError> {
-        check_kind(&self.schema, Kind::Solution)?;
+        check_kind(&self.schema, DocumentKind::Solution)?;
         let method = Method::from_name(&self.method);
         let amplitude = AmplitudeConvention::from_name(&self.amplitude);
         let (Some(method), Some(amplitude)) = (method, amplitude) else {
@@ -574,7 +574,7 @@ impl SolutionDocument {
         let time = Symbol::new("t");
         let own = self.parameters.iter().map(|name| Symbol::new(name));
         let driven = equation.left.contains(time) || equation.right.contains(time);
-        let names = &Names::beside(own.chain([equation.coordinate]), driven);
+        let names = &DocumentNames::beside(own.chain([equation.coordinate]), driven);
         let definition = |(name, meaning): (&String, &String)| {
             Ok(Definition { symbol: names.symbol(name), meaning: names.expression(meaning, name)? })
         };
@@ -615,7 +615,7 @@ impl SolutionDocument {
     }
 
     /// The law, of whose kinds a document holds one.
-    fn law(&self, names: &Names) -> Result<Law, JsonError> {
+    fn law(&self, names: &DocumentNames) -> Result<Law, JsonError> {
         let optional = |law: &Option<Polynomial>, key| some(law, |law| names.polynomial(law, key));
         let frequency = optional(&self.frequency, "frequency")?;
         let squared = optional(&self.frequency_squared, "frequency_squared")?;
@@ -632,14 +632,14 @@ impl SolutionDocument {
             (None, None, None, None, Some(system)) => Law::System(system),
             (None, None, None, None, None) => {
                 let lines = self.by_quadrature.as_deref().map(|text| text.split("; "));
-                Law::Quadrature(lines.into_iter().flatten().map(Line::words).collect())
+                Law::Quadrature(lines.into_iter().flatten().map(DerivationLine::words).collect())
             }
         })
     }
 }
 
 /// `omega = ...` or `omega^2 = ...`.
-fn closed_form(text: &str, names: &Names) -> Result<ClosedForm, JsonError> {
+fn closed_form(text: &str, names: &DocumentNames) -> Result<ClosedForm, JsonError> {
     let (squared, value) = match text.split_once(" = ") {
         Some((name, value)) if name == names.frequency() => (false, value),
         Some((name, value)) if name.strip_suffix("^2") == Some(names.frequency()) => (true, value),
@@ -650,8 +650,8 @@ fn closed_form(text: &str, names: &Names) -> Result<ClosedForm, JsonError> {
 }
 
 impl System {
-    fn read(&self, names: &Names) -> Result<solution::System, JsonError> {
-        Ok(solution::System {
+    fn read(&self, names: &DocumentNames) -> Result<solution::AlgebraicSystem, JsonError> {
+        Ok(solution::AlgebraicSystem {
             unknowns: symbols(&self.unknowns, names),
             equations: all(&self.equations, |text| names.expression(text, "equations"))?,
         })
@@ -659,7 +659,7 @@ impl System {
 }
 
 impl LimitCycle {
-    fn read(&self, names: &Names) -> Result<solution::LimitCycle, JsonError> {
+    fn read(&self, names: &DocumentNames) -> Result<solution::LimitCycle, JsonError> {
         Ok(solution::LimitCycle {
             amplitude: names.polynomial(&self.amplitude, "limit_cycle")?,
             number: self.number,
@@ -670,7 +670,7 @@ impl LimitCycle {
 }
 
 impl Cycle {
-    fn read(&self, names: &Names) -> Result<LeadingCycle, JsonError> {
+    fn read(&self, names: &DocumentNames) -> Result<LeadingCycle, JsonError> {
         Ok(LeadingCycle {
             amplitude: names.expression(&self.amplitude.exact, "amplitude")?,
             attracts_where: some(&self.attracts_where_positive, |text| {
@@ -681,7 +681,7 @@ impl Cycle {
 }
 
 impl Response {
-    fn read(&self, names: &Names) -> Result<solution::Response, JsonError> {
+    fn read(&self, names: &DocumentNames) -> Result<solution::Response, JsonError> {
         let polynomial = |value: &Polynomial, key| names.polynomial(value, key);
         let both = |[u, v]: &[Polynomial; 2], key| Ok([polynomial(u, key)?, polynomial(v, key)?]);
         let expression = |text: &String, key| names.expression(text, key);
@@ -717,7 +717,7 @@ impl Response {
 }
 
 impl Modulation {
-    fn read(&self, names: &Names) -> Result<solution::Modulation, JsonError> {
+    fn read(&self, names: &DocumentNames) -> Result<solution::Modulation, JsonError> {
         let expression = |text: &String, key| names.expression(text, key);
         Ok(solution::Modulation {
             amplitude: names.symbol(&self.amplitude),
@@ -757,7 +757,7 @@ impl Modulation {
 }
 
 impl Displacement {
-    fn read(&self, names: &Names) -> Result<FourierSeries<Polynomials>, JsonError> {
+    fn read(&self, names: &DocumentNames) -> Result<FourierSeries<Polynomials>, JsonError> {
         /// No document of ours comes near it; a hostile one must not fill the memory.
         const HIGHEST_HARMONIC: usize = 100_000;
         let length = self

@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Kind;
+use super::DocumentKind;
 use super::number::{Constant, Map, Polynomial, constants, finite, texts};
 use crate::expr::Expr;
 use crate::report::StabilityReport;
@@ -107,7 +107,7 @@ pub fn stability(report: &StabilityReport) -> StabilityDocument {
     let polynomial = |polynomial| Polynomial::of_sum(&curves.ordered(polynomial));
     let unknown = curves.unknown.symbol().to_string();
     StabilityDocument {
-        schema: Kind::Stability.schema().to_owned(),
+        schema: DocumentKind::Stability.schema().to_owned(),
         equation: curves.equation.to_string(),
         gives: Expr::from(&curves.unknown.given()).to_string(),
         unknown,

@@ -1,6 +1,6 @@
 //! The blocks of a comparison as LaTeX.
 
-use super::table::{self, Table};
+use super::table::{self, LatexTable};
 use super::{constant, expression, scientific, scientific_text, sum, symbol};
 use crate::decimal::{decimal, significant};
 use crate::expr::{Equation, Expr};
@@ -19,7 +19,7 @@ pub(super) fn truth(equation: &Equation, frequency: &Result<f64, String>) -> Str
 }
 
 /// The table, a formula at the end of each row.
-pub(super) fn methods(rows: &[MethodRow], at: &Values) -> Table {
+pub(super) fn methods(rows: &[MethodRow], at: &Values) -> LatexTable {
     let at = at.iter();
     let at: Vec<String> =
         at.map(|(name, value)| format!("{} = {}", symbol(name), expression(value))).collect();
@@ -28,7 +28,7 @@ pub(super) fn methods(rows: &[MethodRow], at: &Values) -> Table {
         false => format!(" at ${}$", at.join(", ")),
     };
     let omega = format!("${}${place}", symbol(FREQUENCY));
-    Table {
+    LatexTable {
         places: "lrrrl".to_owned(),
         head: table::head(&["method", &omega, "error in \\%", "deviation in \\%", "formula"]),
         rows: rows.iter().map(row).collect(),

@@ -4,7 +4,7 @@ use super::{scientific_text, words};
 use crate::report::{Heading, are_names};
 
 /// A table whose cells are LaTeX already.
-pub(in crate::export) struct Table {
+pub(in crate::export) struct LatexTable {
     /// Where each column stands: `l`, `r`.
     pub(in crate::export) places: String,
     /// What stands above each column.
@@ -15,7 +15,7 @@ pub(in crate::export) struct Table {
     pub(in crate::export) framed: bool,
 }
 
-impl Table {
+impl LatexTable {
     /// A table whose first column stands on the left and every other one on the right.
     pub(super) fn of_numbers(head: Vec<String>, rows: Vec<Vec<String>>) -> Self {
         Self {
@@ -44,7 +44,7 @@ pub(super) fn head(names: &[&str]) -> Vec<String> {
 }
 
 /// A table of numbers and words.
-pub(super) fn table(head: &[Heading], rows: &[Vec<String>]) -> Table {
+pub(super) fn table(head: &[Heading], rows: &[Vec<String>]) -> LatexTable {
     let cell = |cell: &String| match cell.parse::<f64>() {
         Ok(_) => format!("${}$", scientific_text(cell)),
         Err(_) => words(cell),
@@ -53,7 +53,7 @@ pub(super) fn table(head: &[Heading], rows: &[Vec<String>]) -> Table {
     if are_names(rows) {
         places.replace_range(..1, "l");
     }
-    Table {
+    LatexTable {
         places,
         head: head.iter().map(|heading| heading.latex.to_owned()).collect(),
         rows: rows.iter().map(|row| row.iter().map(cell).collect()).collect(),

@@ -1,7 +1,7 @@
 //! A row for each run, or for each design of a front, to go on with.
 
 use crate::export::csv::{cell, line, quoted};
-use crate::optimize::{Finalist, Objective, Question, SearchRun, Study};
+use crate::optimize::{Finalist, Objective, OptimizationProblem, SearchRun, Study};
 
 /// The table: for one objective the best design of every run as it has it, for several the front by
 /// integration. A first line of comment has the units; what has no value is empty.
@@ -30,7 +30,7 @@ pub fn optimization(study: &Study) -> String {
 }
 
 /// Name and unit of each column.
-fn columns(question: &Question) -> Vec<(String, String)> {
+fn columns(question: &OptimizationProblem) -> Vec<(String, String)> {
     let column = |name: &str, unit: &str| {
         let unit = if unit.is_empty() { "1" } else { unit };
         (name.to_owned(), unit.to_owned())
@@ -56,7 +56,7 @@ fn columns(question: &Question) -> Vec<(String, String)> {
 }
 
 /// The variables that have a column of their own: the mass may be an objective, which has one.
-fn own_variables(question: &Question) -> impl Iterator<Item = usize> {
+fn own_variables(question: &OptimizationProblem) -> impl Iterator<Item = usize> {
     let is_objective =
         |name: &str| question.objectives.iter().any(|objective| objective.name() == name);
     (0..question.variables.len())
@@ -64,7 +64,7 @@ fn own_variables(question: &Question) -> impl Iterator<Item = usize> {
 }
 
 /// What is known of a design beside what was made small, and what varies.
-fn others(question: &Question) -> impl Iterator<Item = Objective> {
+fn others(question: &OptimizationProblem) -> impl Iterator<Item = Objective> {
     let varies = |name: &str| {
         let mut variables = question.variables.iter();
         variables.any(|variable| variable.parameter.name() == name)
@@ -77,7 +77,7 @@ fn others(question: &Question) -> impl Iterator<Item = Objective> {
 }
 
 /// The best design of a run for one objective, and how the run went.
-fn best_of(run: &SearchRun, question: &Question) -> Vec<String> {
+fn best_of(run: &SearchRun, question: &OptimizationProblem) -> Vec<String> {
     let found = run.found.first();
     let mut fields = vec![run.number.to_string(), number(found.map(|found| found.values[0]))];
     fields
@@ -96,7 +96,7 @@ fn best_of(run: &SearchRun, question: &Question) -> Vec<String> {
 }
 
 /// A design of the front of several objectives.
-fn compromise(finalist: &Finalist, question: &Question) -> Vec<String> {
+fn compromise(finalist: &Finalist, question: &OptimizationProblem) -> Vec<String> {
     let design = &finalist.design;
     let mut fields = vec![finalist.run.to_string()];
     fields.extend(finalist.values.iter().map(|value| number(Some(*value))));
@@ -112,7 +112,7 @@ fn number(value: Option<f64>) -> String {
     cell(value.filter(|value| value.is_finite()))
 }
 
-fn name_of(material: Option<usize>, question: &Question) -> String {
+fn name_of(material: Option<usize>, question: &OptimizationProblem) -> String {
     let material = material.and_then(|number| question.materials.get(number));
     quoted(material.map_or("", |material| &material.name))
 }

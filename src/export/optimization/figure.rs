@@ -46,7 +46,7 @@ fn axis(objective: Objective) -> &'static str {
 
 fn search(study: &Study) -> Result<String, FigureError> {
     let objective = study.objective();
-    let convergence = Convergence::of(study);
+    let convergence = SearchConvergence::of(study);
     let designs = Designs::of(study);
     let curves = convergence.curves(study);
     let mut panels = Vec::new();
@@ -72,13 +72,13 @@ fn search(study: &Study) -> Result<String, FigureError> {
 }
 
 /// What each search has after so many evaluations.
-struct Convergence {
+struct SearchConvergence {
     runs: Vec<Points>,
     median: Points,
     rivals: Vec<Points>,
 }
 
-impl Convergence {
+impl SearchConvergence {
     fn of(study: &Study) -> Self {
         let population = study.question.genetic.population as f64;
         let (crossed, mutated) = study.question.genetic.children();

@@ -155,7 +155,7 @@ fn works(motion: &Simulation) -> Vec<(&'static str, Points, CurveStyle)> {
 const TIME: &str = "time t (units of 1/ω)";
 
 /// A quantity of a sweep.
-pub(super) struct Quantity {
+pub(super) struct SweepQuantity {
     pub(super) title: &'static str,
     pub(super) label: &'static str,
     /// What a motion without it lacks.
@@ -163,26 +163,26 @@ pub(super) struct Quantity {
     value: fn(&Summary) -> Option<f64>,
 }
 
-pub(super) const QUANTITIES: [Quantity; 4] = [
-    Quantity {
+pub(super) const QUANTITIES: [SweepQuantity; 4] = [
+    SweepQuantity {
         title: "Rest time",
         label: "rest time (units of 1/ω)",
         name: "rest time",
         value: |summary| summary.rest_time.ok(),
     },
-    Quantity {
+    SweepQuantity {
         title: "Impacts",
         label: "number of impacts",
         name: "impacts",
         value: |summary| summary.is_begun().then_some(summary.impacts as f64),
     },
-    Quantity {
+    SweepQuantity {
         title: "Deepest penetration",
         label: "penetration (rad)",
         name: "penetration",
         value: |summary| summary.is_begun().then_some(summary.deepest),
     },
-    Quantity {
+    SweepQuantity {
         title: "Energy lost in contact",
         label: "energy (units of m g L)",
         name: "energy",
@@ -276,7 +276,7 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
             let x_label = axis_label(one);
             // A motion without the quantity interrupts the curve: nothing is drawn across what is
             // not there, and one point alone is no curve.
-            let runs = |quantity: &Quantity| -> Vec<Points> {
+            let runs = |quantity: &SweepQuantity| -> Vec<Points> {
                 let found: Vec<Option<(f64, f64)>> = order
                     .iter()
                     .map(|&index| Some((values[index], (quantity.value)(report.rows.get(index)?)?)))
@@ -284,7 +284,7 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
                 let unbroken = found.split(Option::is_none).filter(|run| run.len() > 1);
                 unbroken.map(|run| run.iter().copied().flatten().collect()).collect()
             };
-            let drawn: Vec<(&Quantity, Vec<Points>)> = QUANTITIES
+            let drawn: Vec<(&SweepQuantity, Vec<Points>)> = QUANTITIES
                 .iter()
                 .map(|quantity| (quantity, runs(quantity)))
                 .filter(|(_, runs)| !runs.is_empty())
@@ -337,6 +337,11 @@ pub fn sweep(report: &SweepReport) -> Result<String, FigureError> {
 }
 
 #[cfg(not(feature = "plot"))]
-fn heat_map(_: &[Vec<f64>], _: [&Axis; 2], _: &Quantity, _: &str) -> Result<String, FigureError> {
+fn heat_map(
+    _: &[Vec<f64>],
+    _: [&Axis; 2],
+    _: &SweepQuantity,
+    _: &str,
+) -> Result<String, FigureError> {
     Err(FigureError::LeftOut)
 }

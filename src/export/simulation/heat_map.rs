@@ -5,7 +5,7 @@ use std::sync::Arc;
 use kuva::prelude::{ColorMap, Heatmap, Layout, Plot, TickFormat};
 use kuva::render::render::{Primitive, TextAnchor, render_multiple};
 
-use super::figure::{Quantity, axis_label};
+use super::figure::{SweepQuantity, axis_label};
 use crate::decimal::{decimal, significant};
 use crate::export::figure::{FigureError, power_of_ten, written};
 use crate::impact::sweep::{Axis, Spacing};
@@ -91,7 +91,7 @@ const MISSING: &str = "#c8c8c8";
 pub(super) fn heat_map(
     grid: &[Vec<f64>],
     [down, across]: [&Axis; 2],
-    quantity: &Quantity,
+    quantity: &SweepQuantity,
     caption: &str,
 ) -> Result<String, FigureError> {
     let (down_ruler, across_ruler) = (Ruler::of(down), Ruler::of(across));

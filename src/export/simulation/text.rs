@@ -8,7 +8,7 @@ use crate::decimal::{decimal, significant};
 use crate::export::text::percent;
 use crate::impact::sweep::Axis;
 use crate::impact::{
-    Baseline, Contact, ContactDamping, Dissipation, Geometry, Integrator, Model, NoRest,
+    Baseline, ContactDamping, ContactRecord, Dissipation, Geometry, Integrator, Model, NoRest,
     Simulation, Units,
 };
 
@@ -303,7 +303,7 @@ fn impacts(motion: &Simulation, judge: Option<&Simulation>) -> String {
 
 /// How long an impact lasts, as far as its two times tell: one of a barrier too stiff is shorter
 /// than their last digit.
-fn duration(impact: &Contact) -> String {
+fn duration(impact: &ContactRecord) -> String {
     let least = 2.0 * f64::EPSILON * impact.entry_time.abs();
     match impact.exit_time.map(|exit| exit - impact.entry_time) {
         None => "-".to_owned(),

@@ -4,7 +4,7 @@
 use super::super::materials::percent;
 use super::{closed_forms_off, with_unit};
 use crate::decimal::{decimal, significant};
-use crate::genetic::Stop;
+use crate::genetic::GeneticStop;
 use crate::impact::Parameter;
 use crate::optimize::{DEFAULT_BOX, Decision, Objective, Role, Sensitivity, Study, WITHIN};
 
@@ -22,7 +22,8 @@ pub fn optimization_sentences(study: &Study) -> Vec<String> {
     let mut sentences = Vec::new();
     if !study.complete {
         let (done, all) = (study.runs.len(), study.question.runs);
-        let cut_short = study.runs.iter().filter(|run| run.stop == Stop::Interrupted).count();
+        let cut_short =
+            study.runs.iter().filter(|run| run.stop == GeneticStop::Interrupted).count();
         let of_these = match cut_short {
             0 => String::new(),
             number => format!(", {number} of them cut short"),
@@ -348,7 +349,7 @@ fn the_generations(study: &Study) -> Option<String> {
     let stalled: Vec<usize> = study
         .runs
         .iter()
-        .filter(|run| run.stop == Stop::Stalled)
+        .filter(|run| run.stop == GeneticStop::Stalled)
         .map(|run| run.generations)
         .collect();
     let at_once = stalled.iter().filter(|generations| **generations == earliest).count();

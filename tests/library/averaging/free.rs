@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use lindstedt::expr::{CompiledFunction, Expr};
 use lindstedt::method::{Options, solve};
 use lindstedt::solution::{AmplitudeConvention, Degrees, Method};
-use lindstedt::trajectory::Course;
+use lindstedt::trajectory::TrajectoryRequest;
 use lindstedt::verify::{Verdict, judge};
 use lindstedt::{Oscillator, Symbol};
 
@@ -293,7 +293,8 @@ fn dry_friction_takes_its_work_from_turn_to_turn() {
         notes.iter().any(|note| note.contains("cos(a_m) - cos(a_n) = alpha*(a_n + a_m)")),
         "{notes:?}"
     );
-    let mut course = Course::of_equation(&Oscillator::parse(equation).expect("an equation"));
+    let mut course =
+        TrajectoryRequest::of_equation(&Oscillator::parse(equation).expect("an equation"));
     course.values.insert("alpha".into(), 0.02);
     course.duration = 60.0;
     course.tolerance = 1e-12;

@@ -8,7 +8,7 @@ use lindstedt::Values;
 use lindstedt::solution::Method;
 use lindstedt::verify::Reach;
 use lindstedt::verify::Verdict;
-use lindstedt::verify::comparison::{Comparison as Table, Row, compare};
+use lindstedt::verify::comparison::{Comparison as Table, ComparisonRow, compare};
 
 use super::Comparison;
 use super::definitions::{Answer, Question};
@@ -62,7 +62,7 @@ pub fn judgement(
 
 /// Errors and verdicts that do not follow from the frequencies beside them.
 fn verdicts(table: &Table) -> Option<String> {
-    let wrong = |row: &&Row| {
+    let wrong = |row: &&ComparisonRow| {
         let error = row
             .frequency
             .zip(table.true_frequency)
@@ -128,7 +128,7 @@ fn deviations(
 }
 
 /// A range that skips a failure, or ends before one.
-fn range(question: &Question, row: &Row, unit: f64) -> Option<String> {
+fn range(question: &Question, row: &ComparisonRow, unit: f64) -> Option<String> {
     let definition = |question: &Question| match row.solution.method {
         Method::Hamiltonian | Method::VariationalIteration | Method::MaxMin => {
             question.shared_integral()

@@ -4,7 +4,7 @@
 
 use lindstedt::expr::parse_expression;
 use lindstedt::impact::{Friction, Model, Regime, Side, Start};
-use lindstedt::system::{End, Event, Options, Path, System};
+use lindstedt::system::{Event, Path, PathEnd, System, SystemOptions};
 
 use super::taylor;
 
@@ -73,7 +73,7 @@ fn stop(text: String) -> Event {
 
 /// The motion in pieces, its contacts, and when it stuck.
 fn follow(model: &Model, start: Start, duration: f64) -> (Vec<Piece>, Vec<Contact>, Option<f64>) {
-    let options = Options::default();
+    let options = SystemOptions::default();
     let (mut pieces, mut contacts) = (vec![], vec![]);
     let (mut t, mut x, mut v) = (0.0, start.x, start.velocity);
     loop {
@@ -87,11 +87,11 @@ fn follow(model: &Model, start: Start, duration: f64) -> (Vec<Piece>, Vec<Contac
         pieces.push(Piece { from: t, to, path, contact: None });
         t = to;
         let side = match reason {
-            End::Event(0) => Side::Right,
-            End::Event(_) => Side::Left,
-            End::Sticks => return (pieces, contacts, Some(t)),
+            PathEnd::Event(0) => Side::Right,
+            PathEnd::Event(_) => Side::Left,
+            PathEnd::Sticks => return (pieces, contacts, Some(t)),
             reason => {
-                assert_eq!(reason, End::Reached);
+                assert_eq!(reason, PathEnd::Reached);
                 return (pieces, contacts, None);
             }
         };
@@ -109,12 +109,12 @@ fn follow(model: &Model, start: Start, duration: f64) -> (Vec<Piece>, Vec<Contac
         let depth = deepest.map_or(0.0, |met| path.at(met.time).expect("a state")[0].powi(2));
         pieces.push(Piece { from, to, path, contact: Some(side) });
         match reason {
-            End::Event(0) => {
+            PathEnd::Event(0) => {
                 contacts.push(Contact { times: [from, to], speeds: [speed, -end[1]], depth })
             }
-            End::Sticks => return (pieces, contacts, Some(to)),
+            PathEnd::Sticks => return (pieces, contacts, Some(to)),
             reason => {
-                assert_eq!(reason, End::Event(1));
+                assert_eq!(reason, PathEnd::Event(1));
                 return (pieces, contacts, None);
             }
         }

@@ -1,6 +1,6 @@
 //! Dry friction: what it takes, and when it holds and lets go.
 
-use lindstedt::impact::{Integrator, Model, Simulation, Start, Stop};
+use lindstedt::impact::{Integrator, Model, Simulation, SimulationStop, Start};
 
 use super::{REST, run, taylor};
 
@@ -37,7 +37,7 @@ fn a_driven_pendulum_sticks_and_slips_when_the_force_says_so() {
     let release = (0.3_f64 / 0.5).asin() / 0.8;
     for integrator in [Integrator::Taylor, Integrator::RungeKutta] {
         let motion = run(&model, start, 1e-12, 60.0, integrator);
-        assert_eq!(motion.stop, Stop::Duration, "{}", motion.stop);
+        assert_eq!(motion.stop, SimulationStop::Duration, "{}", motion.stop);
         assert_eq!(motion.path.at(0.999 * release), Some((0.0, 0.0)));
         assert!(motion.path.at(release + 0.1).expect("t").0 > 0.0);
         let first = motion

@@ -1,7 +1,7 @@
 //! One integrator against the other, and against itself a hundred times tighter.
 
 use lindstedt::impact::{
-    Friction, Integrator, Model, Settings, Start, Stop, known_until, simulate,
+    Friction, Integrator, Model, Settings, SimulationStop, Start, known_until, simulate,
 };
 
 use super::{REST, run, taylor};
@@ -28,8 +28,8 @@ fn the_judge_agrees() {
     ] {
         let fast = taylor(&model, start, 1e-13, 40.0);
         let judge = run(&model, start, 1e-13, 40.0, Integrator::RungeKutta);
-        assert_eq!(judge.stop, Stop::Duration, "{}", judge.stop);
-        assert_eq!(fast.stop, Stop::Duration, "{}", fast.stop);
+        assert_eq!(judge.stop, SimulationStop::Duration, "{}", judge.stop);
+        assert_eq!(fast.stop, SimulationStop::Duration, "{}", fast.stop);
         assert_eq!(fast.impacts.len(), judge.impacts.len(), "{model:?}");
         for (one, other) in fast.impacts.iter().zip(&judge.impacts) {
             assert_eq!(one.side, other.side);

@@ -1,6 +1,6 @@
 //! Rest times by their definition, from samples of the motion and from the action.
 
-use lindstedt::impact::{Integrator, Model, NoRest, Settings, Start, Stop, simulate};
+use lindstedt::impact::{Integrator, Model, NoRest, Settings, SimulationStop, Start, simulate};
 use lindstedt::numeric::ode::root::find_root;
 
 use super::{REST, run, taylor};
@@ -154,7 +154,7 @@ fn a_run_ends_where_its_energy_has_died_away() {
             let calm = 0.9 * 0.6_f64.powi(k);
             let options = Settings { rest_energy: Some(calm), ..options };
             let motion = simulate(&model, REST, Integrator::Taylor, &options).expect("a motion");
-            assert_eq!(motion.stop, Stop::RestEnergy);
+            assert_eq!(motion.stop, SimulationStop::RestEnergy);
             let energy = model.energy(motion.end_x, motion.end_velocity);
             assert!(energy <= calm * (1.0 + 1e-9) && motion.end_time >= last, "{energy} {calm}");
             last = motion.end_time;
@@ -164,7 +164,7 @@ fn a_run_ends_where_its_energy_has_died_away() {
                 assert!((energy / calm - 1.0).abs() < 1e-9, "{energy} {calm}");
                 let judge =
                     simulate(&model, REST, Integrator::RungeKutta, &options).expect("a motion");
-                assert_eq!(judge.stop, Stop::RestEnergy);
+                assert_eq!(judge.stop, SimulationStop::RestEnergy);
                 assert!((judge.end_time - motion.end_time).abs() < 1e-5);
             }
         }
@@ -363,7 +363,7 @@ fn a_pendulum_held_by_its_barrier_rests_there() {
         assert!((rest.amplitude - 10.0 * level).abs() < 1e-12, "{rest:?}");
         let time = rest.time.expect("it rests");
         assert!((time - sampled).abs() < 1e-3, "{time} {sampled}");
-        assert_eq!(motion.stop == Stop::AtRest, stop_at_rest);
+        assert_eq!(motion.stop == SimulationStop::AtRest, stop_at_rest);
     }
     // Its mirror image is the same.
     let mirrored = Model { left: Some(0.2), right: None, ..model };

@@ -16,7 +16,7 @@ use std::str::FromStr;
 use num_traits::{One, Zero};
 use thiserror::Error;
 
-use super::{Equations, Mechanism};
+use super::{EquationsOfMotion, Mechanism};
 use crate::exact::Rational;
 use crate::expr::{Expr, ExprError, Function, Node, ParseError, parse_expression};
 use crate::symbol::Symbol;
@@ -373,7 +373,7 @@ impl Mechanism {
     }
 }
 
-impl Equations {
+impl EquationsOfMotion {
     /// Checks every term of the printed equations against the others of its equation.
     ///
     /// # Errors

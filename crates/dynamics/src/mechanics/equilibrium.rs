@@ -7,13 +7,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Equations, MechanicsError, trigonometry::simplified};
+use super::{EquationsOfMotion, MechanicsError, trigonometry::simplified};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
 
 /// Where a coordinate rests.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Place {
+pub enum RestPosition {
     /// Here.
     At(Expr),
     /// Anywhere: nothing pulls on it.
@@ -24,7 +24,7 @@ pub enum Place {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rest {
     /// The place of each coordinate.
-    pub places: Vec<Place>,
+    pub places: Vec<RestPosition>,
     /// Under which condition it exists, in the parameters: `-1 <= this <= 1`; always where there is
     /// none.
     pub condition: Option<Expr>,
@@ -33,9 +33,9 @@ pub struct Rest {
 impl Rest {
     /// The coordinates with their places; one that may be anywhere is put at 0.
     pub fn values(&self, coordinates: &[Symbol]) -> BTreeMap<Symbol, Expr> {
-        let place = |place: &Place| match place {
-            Place::At(place) => place.clone(),
-            Place::Anywhere => Expr::zero(),
+        let place = |place: &RestPosition| match place {
+            RestPosition::At(place) => place.clone(),
+            RestPosition::Anywhere => Expr::zero(),
         };
         coordinates.iter().copied().zip(self.places.iter().map(place)).collect()
     }
@@ -56,7 +56,7 @@ impl Rest {
 /// assert_eq!(found[0].places[0], Place::At("L + g*m/k".parse()?));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
+pub fn equilibria(equations: &EquationsOfMotion) -> Result<Vec<Rest>, MechanicsError> {
     let coordinates = &equations.coordinates;
     let forces = equations.forces_at_rest()?;
     let angles: Vec<Symbol> =
@@ -86,7 +86,7 @@ pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
         && forces.iter().all(|force| rests(force).is_ok_and(|force| force.is_zero()))
     {
         found.push(Rest {
-            places: coordinates.iter().map(|_| Place::At(Expr::zero())).collect(),
+            places: coordinates.iter().map(|_| RestPosition::At(Expr::zero())).collect(),
             condition: None,
         });
     }
@@ -100,7 +100,7 @@ pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
     {
         let place = Expr::function(Function::Acos, vec![cosine.clone()])?;
         for place in [place.clone(), -place] {
-            add(Rest { places: vec![Place::At(place)], condition: Some(cosine.clone()) });
+            add(Rest { places: vec![RestPosition::At(place)], condition: Some(cosine.clone()) });
         }
     }
     Ok(found)
@@ -108,7 +108,7 @@ pub fn equilibria(equations: &Equations) -> Result<Vec<Rest>, MechanicsError> {
 
 /// What the terms in the time do at a place of rest of the equations without them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Drive {
+pub enum DriveAtRest {
     /// There are none.
     Absent,
     /// They vanish there, as what shakes the pivot of a pendulum upright does: it is a rest, whose
@@ -118,12 +118,12 @@ pub enum Drive {
     Acts,
 }
 
-impl Equations {
+impl EquationsOfMotion {
     /// What the terms in the time do at a place of rest.
-    pub(super) fn drive_at(&self, rest: &Rest) -> Result<Drive, ExprError> {
-        let at = |place: &Place| match place {
-            Place::At(place) => Some(place.clone()),
-            Place::Anywhere => None,
+    pub(super) fn drive_at(&self, rest: &Rest) -> Result<DriveAtRest, ExprError> {
+        let at = |place: &RestPosition| match place {
+            RestPosition::At(place) => Some(place.clone()),
+            RestPosition::Anywhere => None,
         };
         let names = self.coordinates.iter();
         let mut there: BTreeMap<Symbol, Expr> = names
@@ -132,7 +132,7 @@ impl Equations {
             .filter_map(|(name, place)| Some((*name, at(place)?)))
             .collect();
         there.extend(names.map(|name| (name.derivative(), Expr::zero())));
-        let mut drive = Drive::Absent;
+        let mut drive = DriveAtRest::Absent;
         for rest in self.rest.iter().filter(|rest| rest.contains(Symbol::new("t"))) {
             let written_out = rest.expand()?;
             let terms = written_out.terms().iter();
@@ -142,9 +142,9 @@ impl Equations {
             }
             let acts = driving.substitute_all(&there).and_then(|driving| simplified(&driving));
             if !acts.is_ok_and(|driving| driving.is_zero()) {
-                return Ok(Drive::Acts);
+                return Ok(DriveAtRest::Acts);
             }
-            drive = Drive::Vanishes;
+            drive = DriveAtRest::Vanishes;
         }
         Ok(drive)
     }
@@ -188,7 +188,7 @@ fn linear_places(
     coordinates: &[Symbol],
     forces: &[Expr],
     chosen: BTreeMap<Symbol, Expr>,
-) -> Result<Option<Vec<Place>>, ExprError> {
+) -> Result<Option<Vec<RestPosition>>, ExprError> {
     let mut places: BTreeMap<Symbol, Expr> = chosen;
     let mut open: Vec<Expr> = Vec::new();
     for force in forces {
@@ -230,8 +230,8 @@ fn linear_places(
         return Ok(None);
     }
     let place = |name: &Symbol| match free.contains(name) {
-        true => Place::Anywhere,
-        false => Place::At(places.get(name).cloned().unwrap_or_else(Expr::zero)),
+        true => RestPosition::Anywhere,
+        false => RestPosition::At(places.get(name).cloned().unwrap_or_else(Expr::zero)),
     };
     Ok(Some(coordinates.iter().map(place).collect()))
 }

@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use num_traits::{One, Signed, Zero};
 
-use super::{Combination, Dimension, Equations, MechanicsError, Mechanism};
+use super::{Combination, Dimension, EquationsOfMotion, MechanicsError, Mechanism};
 use crate::exact::Rational;
 use crate::expr::{Expr, ExprError, Function, Node, fresh};
 use crate::symbol::Symbol;
@@ -80,7 +80,7 @@ impl Groups {
     /// ```
     pub fn of(
         mechanism: &Mechanism,
-        equations: &Equations,
+        equations: &EquationsOfMotion,
         units: &BTreeMap<Symbol, Dimension>,
     ) -> Result<Self, MechanicsError> {
         // In sums that enter as one, each with the unit of its terms.
@@ -197,7 +197,10 @@ fn preferred(inertia: &[Expr], stiffness: &[Expr], parameters: &[Symbol]) -> Vec
 
 /// Positive parameters taken out of roots: `(l*u)^(3/2) = l^(3/2)*u^(3/2)`, also where `l` is
 /// common to the terms of a sum. What has a unit is positive.
-fn positive_factors_out(expression: &Expr, equations: &Equations) -> Result<Expr, ExprError> {
+fn positive_factors_out(
+    expression: &Expr,
+    equations: &EquationsOfMotion,
+) -> Result<Expr, ExprError> {
     expression.fold(|expr, children: &[Expr]| {
         let whole = expr.with_children(children)?;
         let Node::Power(base, exponent) = whole.node() else {
@@ -330,7 +333,7 @@ struct Scaling<'a> {
 
 impl Scaling<'_> {
     /// Names what stands before the terms, in the order in which they print: first the frequencies.
-    fn collect(&mut self, equations: &Equations) -> Result<(), ExprError> {
+    fn collect(&mut self, equations: &EquationsOfMotion) -> Result<(), ExprError> {
         let mut counted = 0;
         while let Some((product, role)) = self.next(equations) {
             let (wanted, factor, meaning) = match role {
@@ -381,7 +384,7 @@ impl Scaling<'_> {
     }
 
     /// Whether a name is a parameter that no group has replaced yet.
-    fn is_open(&self, name: Symbol, equations: &Equations) -> bool {
+    fn is_open(&self, name: Symbol, equations: &EquationsOfMotion) -> bool {
         equations.is_parameter(name)
             && !self.taken.contains(&name)
             && !self.basis.members.iter().any(|(own, _)| *own == name)
@@ -389,7 +392,7 @@ impl Scaling<'_> {
 
     /// The next product of parameters that stands before something, with its number, and what it
     /// stands before.
-    fn next(&self, equations: &Equations) -> Option<(Expr, Role)> {
+    fn next(&self, equations: &EquationsOfMotion) -> Option<(Expr, Role)> {
         let open = |expression: &Expr| {
             expression.symbols().into_iter().any(|name| self.is_open(name, equations))
         };

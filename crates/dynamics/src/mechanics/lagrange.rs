@@ -19,7 +19,7 @@ use crate::symbol::Symbol;
 
 /// Equations of motion, one for each coordinate.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Equations {
+pub struct EquationsOfMotion {
     /// The coordinates.
     pub coordinates: Vec<Symbol>,
     /// M, the mass matrix.
@@ -35,7 +35,7 @@ pub struct Equations {
     pub combinations: Vec<Combination>,
 }
 
-impl fmt::Display for Equations {
+impl fmt::Display for EquationsOfMotion {
     /// A line each.
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let lines: Vec<String> = self.left.iter().map(|left| format!("{left} = 0")).collect();
@@ -44,7 +44,7 @@ impl fmt::Display for Equations {
 }
 
 /// The equations of a mechanism that has been checked.
-pub(super) fn equations(mechanism: &Mechanism) -> Result<Equations, MechanicsError> {
+pub(super) fn equations(mechanism: &Mechanism) -> Result<EquationsOfMotion, MechanicsError> {
     let coordinates = &mechanism.coordinates;
     let mut mass = Vec::new();
     let mut rest = Vec::new();
@@ -71,7 +71,7 @@ pub(super) fn equations(mechanism: &Mechanism) -> Result<Equations, MechanicsErr
     let singular = || MechanicsError::Singular(mechanism.kinetic.clone());
     // Whether every acceleration follows.
     linear::solution(&mass, &rest, singular)?;
-    let mut equations = Equations {
+    let mut equations = EquationsOfMotion {
         coordinates: coordinates.clone(),
         mass,
         rest,
@@ -152,7 +152,7 @@ fn vanishes_with(factor: &Expr, u: &Expr) -> bool {
     positive && (same(&base) || of_wave)
 }
 
-impl Equations {
+impl EquationsOfMotion {
     /// The equations of a mechanism in these combinations, with what those are in their places.
     pub(super) fn written_out(mut self, combinations: Vec<Combination>) -> Result<Self, ExprError> {
         let entries = self.mass.iter_mut().flatten();

@@ -41,9 +41,9 @@ use crate::symbol::Symbol;
 
 pub use combination::Combination;
 pub use dimension::{Dimension, UnitError};
-pub use equilibrium::{Drive, Place, Rest, equilibria};
+pub use equilibrium::{DriveAtRest, Rest, RestPosition, equilibria};
 pub use groups::{Group, Groups};
-pub use lagrange::Equations;
+pub use lagrange::EquationsOfMotion;
 pub use modes::{Mode, Modes, NoModes};
 pub use rates::Rates;
 pub use study::{MechanismQuestion, MechanismStudy, RestStudy, study};
@@ -190,7 +190,7 @@ impl Mechanism {
     /// assert_eq!(equations.to_string(), "s''*(M + m) + L*m*x''*cos(x) - L*m*x'^2*sin(x) = 0\ns''*cos(x) + L*x'' + g*sin(x) = 0");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn equations(&self) -> Result<Equations, MechanicsError> {
+    pub fn equations(&self) -> Result<EquationsOfMotion, MechanicsError> {
         self.check()?;
         let (own, combinations) = combination::combined(self)?;
         let equations = lagrange::equations(&own)?;

@@ -18,7 +18,9 @@ use thiserror::Error;
 
 use super::combination::{put_into, written_out};
 use super::equilibrium::undriven;
-use super::{Combination, Equations, MechanicsError, Place, Rest, trigonometry::simplified};
+use super::{
+    Combination, EquationsOfMotion, MechanicsError, Rest, RestPosition, trigonometry::simplified,
+};
 use crate::expr::{EvaluationError, Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
 
@@ -90,7 +92,7 @@ impl Modes {
     /// assert_eq!(Modes::at(&pendulum, upright)?.square()?.map(|square| square.to_string()), Some("-g/L".to_owned()));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn at(equations: &Equations, rest: &Rest) -> Result<Self, MechanicsError> {
+    pub fn at(equations: &EquationsOfMotion, rest: &Rest) -> Result<Self, MechanicsError> {
         Jacobians::new(equations)?.modes_at(equations, rest)
     }
 
@@ -169,7 +171,7 @@ impl Jacobians {
     ///
     /// # Errors
     /// Derivatives too long to be written out, or without a value at rest.
-    pub(super) fn new(equations: &Equations) -> Result<Self, MechanicsError> {
+    pub(super) fn new(equations: &EquationsOfMotion) -> Result<Self, MechanicsError> {
         let coordinates = &equations.coordinates;
         let velocities = || coordinates.iter().map(|name| name.derivative());
         let still: BTreeMap<Symbol, Expr> = velocities().map(|name| (name, Expr::zero())).collect();
@@ -196,7 +198,7 @@ impl Jacobians {
     /// Entries too long to be written out, or without a value there.
     pub(super) fn modes_at(
         &self,
-        equations: &Equations,
+        equations: &EquationsOfMotion,
         rest: &Rest,
     ) -> Result<Modes, MechanicsError> {
         let coordinates = &equations.coordinates;
@@ -204,7 +206,7 @@ impl Jacobians {
         let anywhere: Vec<Symbol> = coordinates
             .iter()
             .zip(&rest.places)
-            .filter_map(|(name, place)| (*place == Place::Anywhere).then_some(*name))
+            .filter_map(|(name, place)| (*place == RestPosition::Anywhere).then_some(*name))
             .collect();
         for name in &anywhere {
             place.remove(name);

@@ -1,6 +1,6 @@
 //! The same equations of first order, ready to be followed.
 
-use super::{Equations, MechanicsError};
+use super::{EquationsOfMotion, MechanicsError};
 use crate::expr::Expr;
 use crate::symbol::Symbol;
 
@@ -13,7 +13,7 @@ pub struct Rates {
     pub right: Vec<Expr>,
 }
 
-impl Equations {
+impl EquationsOfMotion {
     /// The equations of first order, for [`System`](crate::system::System).
     ///
     /// # Errors

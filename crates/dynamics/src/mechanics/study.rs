@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use super::modes::Jacobians;
 use super::{
-    Dimension, Drive, Equations, Groups, MechanicsError, Mechanism, Mode, Modes, NoModes, Rest,
-    equilibria,
+    Dimension, DriveAtRest, EquationsOfMotion, Groups, MechanicsError, Mechanism, Mode, Modes,
+    NoModes, Rest, equilibria,
 };
 use crate::symbol::Symbol;
 
@@ -27,7 +27,7 @@ pub struct MechanismStudy {
     /// What was asked.
     pub question: MechanismQuestion,
     /// The equations of motion.
-    pub equations: Equations,
+    pub equations: EquationsOfMotion,
     /// Places of rest, and how it swings there.
     pub rests: Vec<RestStudy>,
     /// The dimensionless form; nothing without units.
@@ -40,7 +40,7 @@ pub struct RestStudy {
     /// Where.
     pub rest: Rest,
     /// What the terms in the time, which the linear equations leave out, do there.
-    pub drive: Drive,
+    pub drive: DriveAtRest,
     /// The linear equations there.
     pub modes: Modes,
     /// Their numbers; nothing where not every parameter has a value, or the place does not exist

@@ -69,7 +69,7 @@ fn joined(sum: &Expr) -> Result<Option<Expr>, ExprError> {
             if place == index || !(whole || first.angle == second.angle) {
                 continue;
             }
-            let Some(together) = Wave::join(&first, &second, opposite)? else {
+            let Some(together) = SineOrCosine::join(&first, &second, opposite)? else {
                 continue;
             };
             let share = match other.abs() < number.abs() {
@@ -101,12 +101,12 @@ fn without_number(term: &Expr) -> (Rational, Expr) {
 
 /// The sine or cosine of an angle.
 #[derive(Clone, PartialEq)]
-struct Wave {
+struct SineOrCosine {
     function: Function,
     angle: Expr,
 }
 
-impl Wave {
+impl SineOrCosine {
     fn expression(&self) -> Expr {
         // A wave was read from an expression, so it can be written as one.
         Expr::function(self.function, vec![self.angle.clone()]).unwrap_or_else(|_| Expr::zero())
@@ -136,7 +136,7 @@ impl Wave {
 }
 
 /// Every ordered pair of waves among the factors of a term; a square is a pair of itself.
-fn pairs(term: &Expr) -> Vec<[Wave; 2]> {
+fn pairs(term: &Expr) -> Vec<[SineOrCosine; 2]> {
     let (_, factors) = term.factors();
     let mut waves = Vec::new();
     for factor in factors {
@@ -152,7 +152,7 @@ fn pairs(term: &Expr) -> Vec<[Wave; 2]> {
             continue;
         };
         let times = if *exponent >= Rational::from_integer(2.into()) { 2 } else { 1 };
-        let wave = Wave { function: *function, angle: angle.clone() };
+        let wave = SineOrCosine { function: *function, angle: angle.clone() };
         waves.extend(std::iter::repeat_n(wave, times));
     }
     let mut pairs = Vec::new();

@@ -25,12 +25,12 @@ use super::polynomial::{first_root, value};
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Argument {
     pub(super) expression: Expr,
-    pub(super) kind: Kind,
+    pub(super) kind: FunctionGrowth,
 }
 
 /// How a function answers to its argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Kind {
+pub(super) enum FunctionGrowth {
     /// It grows with it without bound, and is nothing far below zero: `exp`.
     Growing,
     /// It grows with its size: `sinh`, `cosh`.
@@ -69,7 +69,7 @@ pub(super) fn arguments(
         };
         let moves = states.iter().any(|state| argument.expression.contains(*state));
         let begins_at_guard = || {
-            let root = matches!(argument.kind, Kind::Power(_))
+            let root = matches!(argument.kind, FunctionGrowth::Power(_))
                 .then(|| root_of_square(&argument.expression, values));
             let root = root.flatten().map(|root| Guard::new(root, values));
             root.is_some_and(|root| guards.iter().any(|guard| root.ratio_to(guard).is_some()))
@@ -120,20 +120,20 @@ fn argument(node: &Expr) -> Option<Argument> {
         Node::Power(base, exponent) => match exponent.as_number() {
             Some(number) => {
                 let ordinary = number.is_integer() && number.is_positive() && to_f64(number) < HIGH;
-                (!ordinary).then(|| (base.clone(), Kind::Power(to_f64(&number.abs()))))?
+                (!ordinary).then(|| (base.clone(), FunctionGrowth::Power(to_f64(&number.abs()))))?
             }
             None => {
                 let logarithm = Expr::function(Function::Log, vec![base.clone()]).ok()?;
-                (&logarithm * exponent, Kind::Growing)
+                (&logarithm * exponent, FunctionGrowth::Growing)
             }
         },
         Node::Function(function, arguments) => {
             let kind = match function {
-                Function::Exp => Kind::Growing,
-                Function::Sinh | Function::Cosh => Kind::GrowingBothWays,
-                Function::Tanh => Kind::Bounded,
-                Function::Atan => Kind::Slow,
-                Function::Log => Kind::Power(1.0),
+                Function::Exp => FunctionGrowth::Growing,
+                Function::Sinh | Function::Cosh => FunctionGrowth::GrowingBothWays,
+                Function::Tanh => FunctionGrowth::Bounded,
+                Function::Atan => FunctionGrowth::Slow,
+                Function::Log => FunctionGrowth::Power(1.0),
                 _ => return None,
             };
             (arguments.first()?.clone(), kind)
@@ -143,7 +143,7 @@ fn argument(node: &Expr) -> Option<Argument> {
     Some(Argument { expression, kind })
 }
 
-impl Kind {
+impl FunctionGrowth {
     /// The change of the argument that matters where it is so large, give or take so much; nothing
     /// where the function is as good as constant.
     fn change(self, argument: f64, error: f64) -> Option<f64> {
@@ -167,7 +167,7 @@ impl Kind {
 /// How far a step may go so that it ends beside the next place that is narrow for it; nothing where
 /// it may go to its end. `series` is the argument along the step, by powers of the time since its
 /// beginning.
-pub(super) fn end_of_step(kind: Kind, series: &[f64], length: f64) -> Option<f64> {
+pub(super) fn end_of_step(kind: FunctionGrowth, series: &[f64], length: f64) -> Option<f64> {
     if is_wide(kind, series, length) || !series.iter().all(|value| value.is_finite()) {
         return None;
     }
@@ -205,7 +205,7 @@ pub(super) const COARSE: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// Returns the end of a step in parts of that step, from the values of the argument at [`COARSE`]
 /// and, if these differ much, anywhere.
 pub(super) fn end_by_values(
-    kind: Kind,
+    kind: FunctionGrowth,
     coarse: [f64; 5],
     value: impl Fn(f64) -> f64,
 ) -> Option<f64> {
@@ -217,7 +217,7 @@ pub(super) fn end_by_values(
     let most = coarse.iter().fold(f64::NEG_INFINITY, |most, value| most.max(*value));
     let least = coarse.iter().fold(f64::INFINITY, |least, value| least.min(*value));
     let wide = match kind {
-        Kind::Power(exponent) => {
+        FunctionGrowth::Power(exponent) => {
             let bent =
                 coarse.windows(3).map(|around| (around[0] - 2.0 * around[1] + around[2]).abs());
             // Four times as wide as need be: sqrt(2 |u|/(e |u''|)), in quarters of the step.
@@ -287,7 +287,7 @@ fn turned(place: f64, cell: f64, value: &impl Fn(f64) -> f64) -> (f64, f64) {
 
 /// The time that a place takes, of the argument, give or take an error, its rate and the rate of
 /// that; nothing where the function is as good as constant.
-fn width(kind: Kind, [argument, slope, curvature]: [f64; 3], error: f64) -> Option<f64> {
+fn width(kind: FunctionGrowth, [argument, slope, curvature]: [f64; 3], error: f64) -> Option<f64> {
     let change = kind.change(argument, error)?;
     let width = f64::min(change / slope.abs(), (2.0 * change / curvature.abs()).sqrt());
     (width > 0.0).then_some(width)
@@ -312,7 +312,7 @@ fn end_before(distance: f64, width: f64, length: f64) -> Option<f64> {
 }
 
 /// Whether the argument changes so little along a step that nothing on it can be narrow.
-fn is_wide(kind: Kind, series: &[f64], length: f64) -> bool {
+fn is_wide(kind: FunctionGrowth, series: &[f64], length: f64) -> bool {
     let (mut first, mut second) = (0.0, 0.0);
     let mut power = 1.0;
     for (order, coefficient) in series.iter().enumerate().skip(1) {
@@ -322,7 +322,7 @@ fn is_wide(kind: Kind, series: &[f64], length: f64) -> bool {
         second += order as f64 * term;
     }
     match kind {
-        Kind::Power(exponent) => {
+        FunctionGrowth::Power(exponent) => {
             let size = series[0].abs();
             let monotonic = 2.0 * series.get(1).map_or(0.0, |slope| slope.abs() * length) > first;
             monotonic || first < 0.5 * size && exponent * second < TIMES * TIMES * size
@@ -372,24 +372,24 @@ mod tests {
     fn a_step_ends_beside_the_first_narrow_place() {
         // exp(-((s - 1/2)/w)^2), w = 1e-3: at 2 w, 4 w, ... before the middle.
         let series = [-0.25e6, 1e6, -1e6];
-        let end = end_of_step(Kind::Growing, &series, 1.0).expect("an end");
+        let end = end_of_step(FunctionGrowth::Growing, &series, 1.0).expect("an end");
         assert!((0.3..0.499).contains(&end), "{end}");
         let mut at = 0.0;
         for _ in 0..12 {
             let middle = 0.5 - at;
             let series = [-middle * middle * 1e6, 2e6 * middle, -1e6];
-            let Some(step) = end_of_step(Kind::Growing, &series, 1.0 - at) else {
+            let Some(step) = end_of_step(FunctionGrowth::Growing, &series, 1.0 - at) else {
                 break;
             };
             at += step;
         }
         assert!((0.5 - at - 2e-3).abs() < 1e-4, "{at}");
         // Far below zero an exponential is nothing, and what is wide is seen by itself.
-        assert_eq!(end_of_step(Kind::Growing, &[-1.25e6, 1e6, -1e6], 1.0), None);
-        assert_eq!(end_of_step(Kind::Growing, &[-0.25, 1.0, -1.0], 1.0), None);
+        assert_eq!(end_of_step(FunctionGrowth::Growing, &[-1.25e6, 1e6, -1e6], 1.0), None);
+        assert_eq!(end_of_step(FunctionGrowth::Growing, &[-0.25, 1.0, -1.0], 1.0), None);
         // A steep tanh, and a pole beside the real line.
-        assert!(end_of_step(Kind::Bounded, &[-3e4, 1e5], 1.0).is_some());
-        assert!(end_of_step(Kind::Power(1.0), &[0.25 + 1e-8, -1.0, 1.0], 1.0).is_some());
-        assert_eq!(end_of_step(Kind::Power(1.0), &[1.25, -1.0, 1.0], 1.0), None);
+        assert!(end_of_step(FunctionGrowth::Bounded, &[-3e4, 1e5], 1.0).is_some());
+        assert!(end_of_step(FunctionGrowth::Power(1.0), &[0.25 + 1e-8, -1.0, 1.0], 1.0).is_some());
+        assert_eq!(end_of_step(FunctionGrowth::Power(1.0), &[1.25, -1.0, 1.0], 1.0), None);
     }
 }

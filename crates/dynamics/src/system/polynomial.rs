@@ -12,16 +12,16 @@ pub(super) fn value(series: &[f64], s: f64) -> f64 {
 /// The values at several places, each as [`value`] has it: so many sums at a time wait less on each
 /// other than one.
 pub(super) fn values(series: &[f64], places: &[f64], into: &mut Vec<f64>) {
-    Arch::new().dispatch(Values { series, places, into });
+    Arch::new().dispatch(EvaluatePolynomial { series, places, into });
 }
 
-struct Values<'a> {
+struct EvaluatePolynomial<'a> {
     series: &'a [f64],
     places: &'a [f64],
     into: &'a mut Vec<f64>,
 }
 
-impl WithSimd for Values<'_> {
+impl WithSimd for EvaluatePolynomial<'_> {
     type Output = ();
 
     #[inline(always)]

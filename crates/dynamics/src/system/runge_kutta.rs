@@ -14,9 +14,9 @@
 
 use std::cell::RefCell;
 
-use super::narrow::{Argument, COARSE, Kind, arguments, end_by_values};
+use super::narrow::{Argument, COARSE, FunctionGrowth, arguments, end_by_values};
 use super::{
-    End, Event, LARGEST, Occurrence, Options, Path, System, SystemError, end_of_range,
+    Event, LARGEST, Occurrence, Path, PathEnd, System, SystemError, SystemOptions, end_of_range,
     is_vanishing, taylor, within_range, without_value,
 };
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, Function, Node};
@@ -38,12 +38,12 @@ const SAME_PLACE: f64 = 1e-10;
 
 /// A trajectory in the units of the run.
 #[derive(Clone, Debug)]
-pub(super) struct Motion {
+pub(super) struct ScaledTrajectory {
     trajectory: Trajectory<Point<Vec<f64>>>,
-    units: Units,
+    units: RunScales,
 }
 
-impl Motion {
+impl ScaledTrajectory {
     /// All states at a time within the path.
     pub(super) fn at(&self, time: f64) -> Option<Vec<f64>> {
         let scaled = self.units.count(time).min(self.trajectory.end().t);
@@ -70,7 +70,7 @@ impl Motion {
 
     /// The time up to which all states are within the range of numbers, where they leave it, and
     /// why it ends there.
-    fn end_of_range(&self) -> Option<(f64, End)> {
+    fn end_of_range(&self) -> Option<(f64, PathEnd)> {
         let mut before = self.trajectory.start().t;
         for knot in self.trajectory.knots() {
             if !within_range(self.states(&knot)) {
@@ -79,8 +79,10 @@ impl Motion {
                     point.is_some_and(|point| within_range(self.states(&point)))
                 };
                 return Some(match is_vanishing([before, knot.t]) {
-                    true => (before, End::Singular),
-                    false => (before + end_of_range(knot.t - before, is_within)?, End::Overflow),
+                    true => (before, PathEnd::Singular),
+                    false => {
+                        (before + end_of_range(knot.t - before, is_within)?, PathEnd::Overflow)
+                    }
                 });
             }
             before = knot.t;
@@ -91,7 +93,7 @@ impl Motion {
 
 /// What states and time are counted in.
 #[derive(Clone, Debug)]
-struct Units {
+struct RunScales {
     /// The size of every state: what it reaches on the first step of its series. One that stays
     /// zero there is taken to be as large as the smallest of the others.
     sizes: Vec<f64>,
@@ -99,7 +101,7 @@ struct Units {
     time: f64,
 }
 
-impl Units {
+impl RunScales {
     fn new(system: &System, [start, end]: [f64; 2], values: &[f64], events: &[Event]) -> Self {
         // Without a series there, the values themselves must do.
         let alone = || (f64::INFINITY, values.iter().map(|value| value.abs()).collect());
@@ -142,13 +144,13 @@ pub(super) fn follow(
     [start, end]: [f64; 2],
     values: &[f64],
     events: &[Event],
-    options: &Options,
+    options: &SystemOptions,
 ) -> Result<Path, SystemError> {
     // What cannot be expanded is refused by either integrator.
     taylor::check(system, events)?;
     let smooth = Smooth::new(system, events)?;
-    let units = Units::new(system, [start, end], values, events);
-    let scaled = Scaled {
+    let units = RunScales::new(system, [start, end], values, events);
+    let scaled = ScaledSystem {
         states: values.len(),
         scratch: RefCell::new(smooth.arguments(system)),
         smooth: &smooth,
@@ -156,13 +158,13 @@ pub(super) fn follow(
     };
     let begin = Point { t: 0.0, y: scaled.start(system, values)? };
     let watched = scaled.watched(events);
-    let settings = ode::Options {
+    let settings = ode::IntegrationOptions {
         maximum_steps: options.step_limit,
         // What is looked for may vary faster than the motion: no more than a series of it could
         // tell.
         maximum_step: if watched.is_empty() { f64::INFINITY } else { 1.0 },
         interrupt: options.interrupt,
-        ..ode::Options::with_tolerance(options.tolerance.max(SMALLEST_TOLERANCE))
+        ..ode::IntegrationOptions::with_tolerance(options.tolerance.max(SMALLEST_TOLERANCE))
     };
     let rates = |t: f64, y: &Vec<f64>, rates: &mut Vec<f64>| scaled.rates(t, y, rates);
     let critical: Vec<f64> = system.critical.iter().map(|time| units.count(*time)).collect();
@@ -180,7 +182,7 @@ pub(super) fn follow(
     })?;
     drop(watched);
     let mut occurrences = occurrences(trajectory.occurrences(), &units, events.len());
-    let motion = Motion { trajectory, units };
+    let motion = ScaledTrajectory { trajectory, units };
     let last = motion.trajectory.end();
     let (end, reason) = match (motion.end_of_range(), reason(motion.trajectory.stop_reason())) {
         (Some((time, reason)), _) => {
@@ -188,19 +190,19 @@ pub(super) fn follow(
             occurrences.retain(|occurrence| occurrence.time <= time);
             (time, reason)
         }
-        (None, End::Reached) => (end, End::Reached),
-        (None, End::Singular) => {
+        (None, PathEnd::Reached) => (end, PathEnd::Reached),
+        (None, PathEnd::Singular) => {
             (motion.units.time(last.t), without_value(motion.states(&last), motion.last_step()))
         }
         (None, reason) => (motion.units.time(last.t), reason),
     };
-    Ok(Path { end, reason, occurrences, motion: super::Motion::RungeKutta(motion) })
+    Ok(Path { end, reason, occurrences, motion: super::PathRepresentation::RungeKutta(motion) })
 }
 
 /// Where the events of the user happened, each place once.
 fn occurrences(
     all: &[ode::Occurrence<Point<Vec<f64>>>],
-    units: &Units,
+    units: &RunScales,
     events: usize,
 ) -> Vec<Occurrence> {
     let mut occurrences: Vec<Occurrence> = Vec::new();
@@ -219,15 +221,15 @@ fn occurrences(
 
 /// The functions of a system in the units of a run: of the states over their sizes, then the sides
 /// of the corners, then what is left over of each corner where it was crossed last.
-struct Scaled<'a> {
+struct ScaledSystem<'a> {
     states: usize,
     smooth: &'a Smooth,
-    units: &'a Units,
+    units: &'a RunScales,
     /// The arguments of every function: states, sides, time, numbers.
     scratch: RefCell<Vec<f64>>,
 }
 
-impl Scaled<'_> {
+impl ScaledSystem<'_> {
     fn corners(&self) -> usize {
         self.smooth.corners.len()
     }
@@ -353,14 +355,14 @@ impl Scaled<'_> {
     }
 }
 
-fn reason(stopped: StopReason) -> End {
+fn reason(stopped: StopReason) -> PathEnd {
     match stopped {
-        StopReason::EndReached => End::Reached,
-        StopReason::Event { event, .. } => End::Event(event),
-        StopReason::MaximumSteps { .. } => End::StepLimit,
-        StopReason::Interrupted { .. } => End::Interrupted,
-        StopReason::SwitchingStalled { .. } => End::Sticks,
-        StopReason::NonFinite { .. } | StopReason::StepTooSmall { .. } => End::Singular,
+        StopReason::EndReached => PathEnd::Reached,
+        StopReason::Event { event, .. } => PathEnd::Event(event),
+        StopReason::MaximumSteps { .. } => PathEnd::StepLimit,
+        StopReason::Interrupted { .. } => PathEnd::Interrupted,
+        StopReason::SwitchingStalled { .. } => PathEnd::Sticks,
+        StopReason::NonFinite { .. } | StopReason::StepTooSmall { .. } => PathEnd::Singular,
     }
 }
 
@@ -373,7 +375,7 @@ struct Smooth {
     events: Vec<CompiledFunction>,
     corners: Vec<CompiledFunction>,
     /// What may turn faster than the motion.
-    narrow: Vec<(Kind, CompiledFunction)>,
+    narrow: Vec<(FunctionGrowth, CompiledFunction)>,
 }
 
 impl Smooth {

@@ -15,11 +15,11 @@
 
 use std::collections::BTreeMap;
 
-use super::narrow::{Kind, end_of_step};
+use super::narrow::{FunctionGrowth, end_of_step};
 use super::polynomial::{first_root, powers, sign_at_start, value, values};
 use super::{
-    End, Event, Motion, Occurrence, Options, Path, System, SystemError, end_of_range, is_vanishing,
-    within_range, without_value,
+    Event, Occurrence, Path, PathEnd, PathRepresentation, System, SystemError, SystemOptions,
+    end_of_range, is_vanishing, within_range, without_value,
 };
 use crate::series::recurrence::{RecurrenceError, Recurrences};
 use crate::series::tape::Tape;
@@ -27,7 +27,7 @@ use crate::symbol::Symbol;
 
 /// One step: the Taylor polynomials of all states about its beginning.
 #[derive(Clone, Debug)]
-pub(super) struct Step {
+pub(super) struct TaylorStep {
     /// Since the start of the path.
     start: f64,
     order: usize,
@@ -36,7 +36,7 @@ pub(super) struct Step {
 }
 
 /// All states at a time since the start, before the end of the last step; `None` before the first.
-pub(super) fn at(steps: &[Step], time: f64) -> Option<Vec<f64>> {
+pub(super) fn at(steps: &[TaylorStep], time: f64) -> Option<Vec<f64>> {
     let after = steps.partition_point(|step| step.start <= time);
     let step = steps.get(after.checked_sub(1)?)?;
     let polynomials = step.coefficients.chunks(step.order + 1);
@@ -44,7 +44,7 @@ pub(super) fn at(steps: &[Step], time: f64) -> Option<Vec<f64>> {
 }
 
 /// One state at such a time.
-pub(super) fn state_at(steps: &[Step], time: f64, state: usize) -> Option<f64> {
+pub(super) fn state_at(steps: &[TaylorStep], time: f64, state: usize) -> Option<f64> {
     let after = steps.partition_point(|step| step.start <= time);
     let step = steps.get(after.checked_sub(1)?)?;
     let series = step.coefficients.chunks(step.order + 1).nth(state)?;
@@ -52,7 +52,7 @@ pub(super) fn state_at(steps: &[Step], time: f64, state: usize) -> Option<f64> {
 }
 
 /// The first states, a column each, at such times in increasing order.
-pub(super) fn sample(steps: &[Step], mut times: &[f64], columns: &mut [Vec<f64>]) {
+pub(super) fn sample(steps: &[TaylorStep], mut times: &[f64], columns: &mut [Vec<f64>]) {
     let mut places = Vec::new();
     let mut following = steps.iter().skip(1).peekable();
     let Some(mut step) = steps.first() else {
@@ -89,7 +89,7 @@ pub(super) fn expansion(
     system: &System,
     events: &[Event],
     tolerance: f64,
-) -> Result<Expansion, RecurrenceError> {
+) -> Result<SystemSeries, RecurrenceError> {
     /// An argument need be known to this part of itself only.
     const CLOSELY: f64 = 1e-9;
     let order = order(tolerance);
@@ -100,14 +100,14 @@ pub(super) fn expansion(
     let outputs = system.right.iter().chain(events.iter().map(|event| &event.expression));
     let outputs =
         outputs.chain(narrow).map(|output| recurrences.add(output)).collect::<Result<_, _>>()?;
-    Ok(Expansion {
+    Ok(SystemSeries {
         tape: recurrences.into_tape(),
         states: system.state.len(),
         events: events.len(),
         order,
         outputs,
         narrow: system.narrow.iter().map(|argument| argument.kind).collect(),
-        powers: Powers::new(order),
+        powers: PowerTable::new(order),
         of_steps: Allowance::new(tolerance, order),
         of_arguments: Allowance::new(CLOSELY, order),
     })
@@ -148,7 +148,7 @@ pub(super) fn first_step(
 pub const LANES: usize = 8;
 
 /// The path of a run.
-pub(super) fn follow(mut run: Run) -> Result<Path, SystemError> {
+pub(super) fn follow(mut run: TaylorRun) -> Result<Path, SystemError> {
     loop {
         if let Some(reason) = run.before_step() {
             return Ok(run.finish(reason));
@@ -162,11 +162,11 @@ pub(super) fn follow(mut run: Run) -> Result<Path, SystemError> {
 
 /// The paths of several runs of the same recurrences, in their order: eight of them side by side,
 /// each bit for bit what it is alone.
-pub(super) fn follow_together(mut runs: Vec<Run>) -> Vec<Result<Path, SystemError>> {
+pub(super) fn follow_together(mut runs: Vec<TaylorRun>) -> Vec<Result<Path, SystemError>> {
     let Some(first) = runs.first() else { return vec![] };
     let mut tape: Tape<LANES> = first.expansion.tape.side_by_side();
     let rates = first.expansion.rates().to_vec();
-    let mut ends: Vec<Option<Result<End, SystemError>>> = runs.iter().map(|_| None).collect();
+    let mut ends: Vec<Option<Result<PathEnd, SystemError>>> = runs.iter().map(|_| None).collect();
     for (runs, ends) in runs.chunks_mut(LANES).zip(ends.chunks_mut(LANES)) {
         loop {
             for (lane, (run, end)) in runs.iter_mut().zip(&mut *ends).enumerate() {
@@ -187,16 +187,17 @@ pub(super) fn follow_together(mut runs: Vec<Run>) -> Vec<Result<Path, SystemErro
             }
         }
     }
-    let finished = |(run, end): (Run, Result<End, SystemError>)| end.map(|end| run.finish(end));
+    let finished =
+        |(run, end): (TaylorRun, Result<PathEnd, SystemError>)| end.map(|end| run.finish(end));
     runs.into_iter().zip(ends.into_iter().flatten()).map(finished).collect()
 }
 
 /// A run on its way.
-pub(super) struct Run<'a> {
+pub(super) struct TaylorRun<'a> {
     system: &'a System,
     events: &'a [Event],
-    options: &'a Options,
-    expansion: Expansion,
+    options: &'a SystemOptions,
+    expansion: SystemSeries,
     start: f64,
     end: f64,
     duration: f64,
@@ -205,7 +206,7 @@ pub(super) struct Run<'a> {
     values: Vec<f64>,
     /// The signs of the events behind the last step.
     signs: Vec<f64>,
-    steps: Vec<Step>,
+    steps: Vec<TaylorStep>,
     occurrences: Vec<Occurrence>,
     /// How often in a row it was back on a corner at once.
     stuck: usize,
@@ -228,15 +229,15 @@ struct Last {
     occurrences: usize,
 }
 
-impl<'a> Run<'a> {
+impl<'a> TaylorRun<'a> {
     /// A run between two times from these values, with the expansion of these events.
     pub(super) fn new(
         system: &'a System,
         [start, end]: [f64; 2],
         values: &[f64],
         events: &'a [Event],
-        options: &'a Options,
-        mut expansion: Expansion,
+        options: &'a SystemOptions,
+        mut expansion: SystemSeries,
     ) -> Self {
         expansion.begin(start, values);
         Self {
@@ -260,19 +261,19 @@ impl<'a> Run<'a> {
     }
 
     /// Whether it may go side by side with an expansion.
-    pub(super) fn is_like(&self, expansion: &Expansion) -> bool {
+    pub(super) fn is_like(&self, expansion: &SystemSeries) -> bool {
         self.expansion.tape.is_like(&expansion.tape)
     }
 
     /// The path of a run that has ended.
-    fn finish(mut self, reason: End) -> Path {
+    fn finish(mut self, reason: PathEnd) -> Path {
         if self.steps.is_empty() {
             // Nowhere to go: where it starts it is all the same.
-            self.steps.push(Step { start: 0.0, order: 0, coefficients: self.values });
+            self.steps.push(TaylorStep { start: 0.0, order: 0, coefficients: self.values });
         }
         Path {
-            end: if reason == End::Reached { self.end } else { self.start + self.time },
-            motion: Motion::Taylor { steps: self.steps, start: self.start },
+            end: if reason == PathEnd::Reached { self.end } else { self.start + self.time },
+            motion: PathRepresentation::Taylor { steps: self.steps, start: self.start },
             reason,
             occurrences: self.occurrences,
         }
@@ -280,13 +281,13 @@ impl<'a> Run<'a> {
 
     /// Puts the expansion where the next step begins, for it to be computed; answers why the run
     /// ends there, if it does.
-    fn before_step(&mut self) -> Option<End> {
+    fn before_step(&mut self) -> Option<PathEnd> {
         let over = self.time >= self.duration;
         if !over && self.steps.len() >= self.options.step_limit {
-            return Some(End::StepLimit);
+            return Some(PathEnd::StepLimit);
         }
         if !over && self.options.interrupt.is_requested() {
-            return Some(End::Interrupted);
+            return Some(PathEnd::Interrupted);
         }
         self.expansion.put(self.start + self.time, &self.values);
         None
@@ -297,7 +298,7 @@ impl<'a> Run<'a> {
     ///
     /// # Errors
     /// A state or an event without a value where the run begins.
-    fn step(&mut self) -> Result<Option<End>, SystemError> {
+    fn step(&mut self) -> Result<Option<PathEnd>, SystemError> {
         let over = self.time >= self.duration;
         let now = self.start + self.time;
         let defined = self.defined();
@@ -312,22 +313,22 @@ impl<'a> Run<'a> {
             self.halvings = 0;
         }
         match defined {
-            Err(_) if over => return Ok(Some(End::Reached)),
+            Err(_) if over => return Ok(Some(PathEnd::Reached)),
             Err(error) if self.steps.is_empty() => return Err(error),
             Err(_) => return Ok(Some(self.without_value())),
             Ok(()) => {}
         }
         if over {
-            return Ok(Some(End::Reached));
+            return Ok(Some(PathEnd::Reached));
         }
         let reach = self.reach(now);
         if reach.is_nan() || reach <= 0.0 || now + reach == now {
-            return Ok(Some(End::Singular));
+            return Ok(Some(PathEnd::Singular));
         }
         let met = self.met.take();
         if met.is_some_and(|(corner, speed)| self.expansion.stays_on(corner, speed * reach, reach))
         {
-            return Ok(Some(End::Sticks));
+            return Ok(Some(PathEnd::Sticks));
         }
         Ok(self.go(reach))
     }
@@ -348,7 +349,7 @@ impl<'a> Run<'a> {
     }
 
     /// Why it ends here, where there is no series.
-    fn without_value(&self) -> End {
+    fn without_value(&self) -> PathEnd {
         let before = self.steps.last().map_or(self.time, |step| step.start);
         without_value(self.values.iter().copied(), [before, self.time])
     }
@@ -364,7 +365,7 @@ impl<'a> Run<'a> {
 
     /// Goes so far, or to the first corner or event that stops; answers why the run ends there, if
     /// it does.
-    fn go(&mut self, reach: f64) -> Option<End> {
+    fn go(&mut self, reach: f64) -> Option<PathEnd> {
         // A corner within the step ends it, and so does an event that stops.
         let mut corner = self.expansion.first_corner(reach);
         let mut length = corner.map_or(reach, |(_, place)| place);
@@ -403,18 +404,18 @@ impl<'a> Run<'a> {
         if stop.is_some() || range.is_some() {
             self.expansion.tape.values(length, &mut self.values);
         }
-        self.steps.push(Step { start: time, order, coefficients });
+        self.steps.push(TaylorStep { start: time, order, coefficients });
         let whole = corner.is_none() && stop.is_none() && range.is_none();
         self.last = whole.then_some(last);
         let at_end = time + length >= self.duration && whole;
         self.time = if at_end { self.duration } else { time + length };
         if let Some(event) = stop {
-            return Some(End::Event(event));
+            return Some(PathEnd::Event(event));
         }
         if range.is_some() {
             return Some(match is_vanishing([time, time + length]) {
-                true => End::Singular,
-                false => End::Overflow,
+                true => PathEnd::Singular,
+                false => PathEnd::Overflow,
             });
         }
         let (corner, _) = corner?;
@@ -425,7 +426,7 @@ impl<'a> Run<'a> {
         const OFTEN: usize = 20;
         let at_once = length <= 1e-12 * reach + 4.0 * f64::EPSILON * self.time;
         self.stuck = if at_once { self.stuck + 1 } else { 0 };
-        (self.stuck > OFTEN).then_some(End::Sticks)
+        (self.stuck > OFTEN).then_some(PathEnd::Sticks)
     }
 
     /// Whether the rates where a step has come to are others than its series says: a wall, say,
@@ -500,7 +501,7 @@ fn next_critical(critical: &[f64], now: f64) -> Option<f64> {
 
 /// Right sides and events, with their series.
 #[derive(Clone, Debug)]
-pub(super) struct Expansion {
+pub(super) struct SystemSeries {
     /// Its variables are the states, then time.
     tape: Tape,
     states: usize,
@@ -508,15 +509,15 @@ pub(super) struct Expansion {
     order: usize,
     /// The places of the rates, then of the events, then of what may turn faster than the motion.
     outputs: Vec<usize>,
-    narrow: Vec<Kind>,
-    powers: Powers,
+    narrow: Vec<FunctionGrowth>,
+    powers: PowerTable,
     /// What the last terms of states, events and corners may be.
     of_steps: Allowance,
     /// Those of arguments of what is narrow.
     of_arguments: Allowance,
 }
 
-impl Expansion {
+impl SystemSeries {
     /// This expansion takes other numbers for the letters; it has none where other numbers make
     /// other recurrences.
     pub(super) fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
@@ -798,7 +799,7 @@ impl Allowance {
 
     /// The longest step, no longer than this, on which the last terms of a series of this order are
     /// within the tolerance.
-    fn reach(&self, series: &[f64], longest: f64, powers: &mut Powers) -> f64 {
+    fn reach(&self, series: &[f64], longest: f64, powers: &mut PowerTable) -> f64 {
         const TRIALS: usize = 400;
         let order = self.order;
         let Some(lead) = series.iter().position(|c| *c != 0.0) else {
@@ -873,12 +874,12 @@ impl Allowance {
 /// The powers of one number after the other: most of the series of a step are looked at in the same
 /// place.
 #[derive(Clone, Debug)]
-struct Powers {
+struct PowerTable {
     of: f64,
     table: Vec<f64>,
 }
 
-impl Powers {
+impl PowerTable {
     /// Room for this order and those below it.
     fn new(order: usize) -> Self {
         Self { of: f64::NAN, table: vec![0.0; order + 1] }

@@ -121,7 +121,7 @@ impl Expr {
     /// # Errors
     /// [`ExprError::TooManyTerms`] where that is not enough.
     pub fn expand_within(&self, limit: usize) -> Result<Self, ExprError> {
-        let mut budget = Budget { left: limit, limit };
+        let mut budget = NodeBudget { left: limit, limit };
         let mut current = self.clone();
         loop {
             let next =
@@ -156,12 +156,12 @@ fn power_slope(
     Ok(result)
 }
 
-struct Budget {
+struct NodeBudget {
     left: usize,
     limit: usize,
 }
 
-impl Budget {
+impl NodeBudget {
     fn spend(&mut self, amount: usize) -> Result<(), ExprError> {
         self.left = self.left.checked_sub(amount).ok_or(ExprError::TooManyTerms(self.limit))?;
         Ok(())
@@ -209,7 +209,7 @@ fn products_of_power(terms: &[Expr], times: u32, enough: usize) -> usize {
     total
 }
 
-fn expand_node(expr: &Expr, children: &[Expr], budget: &mut Budget) -> Result<Expr, ExprError> {
+fn expand_node(expr: &Expr, children: &[Expr], budget: &mut NodeBudget) -> Result<Expr, ExprError> {
     match (expr.node(), children) {
         (Node::Product(coefficient, _), factors) => {
             factors.iter().try_fold(Expr::number(coefficient.clone()), |product, factor| {
@@ -233,7 +233,7 @@ fn expand_node(expr: &Expr, children: &[Expr], budget: &mut Budget) -> Result<Ex
     }
 }
 
-fn multiply(a: &Expr, b: &Expr, budget: &mut Budget) -> Result<Expr, ExprError> {
+fn multiply(a: &Expr, b: &Expr, budget: &mut NodeBudget) -> Result<Expr, ExprError> {
     budget.spend(a.terms().len().saturating_mul(b.terms().len()).saturating_sub(1))?;
     let pairs =
         a.terms().iter().flat_map(|first| b.terms().iter().map(move |second| first * second));
@@ -257,7 +257,7 @@ mod tests {
             ("x + y + x*y", 6, false),
         ] {
             let sum = parsed(text);
-            let mut budget = Budget { left: 10_000, limit: 10_000 };
+            let mut budget = NodeBudget { left: 10_000, limit: 10_000 };
             expand_node(
                 &sum.integer_power(times).unwrap(),
                 &[sum.clone(), Expr::from(times)],

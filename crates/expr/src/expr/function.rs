@@ -169,13 +169,13 @@ impl Function {
         ExprError::WrongArguments { function: self.name(), expected: self.argument_count(), given }
     }
 
-    fn entry(self) -> &'static Entry {
+    fn entry(self) -> &'static FunctionDefinition {
         &TABLE[self as usize]
     }
 }
 
 /// What the crate knows of one function.
-struct Entry {
+struct FunctionDefinition {
     function: Function,
     name: &'static str,
     parity: Parity,
@@ -218,8 +218,8 @@ use Function::{
 use Value::{One as Unary, Two as Binary};
 
 /// The entries stand in the order of the variants of [`Function`].
-static TABLE: [Entry; 26] = [
-    Entry {
+static TABLE: [FunctionDefinition; 26] = [
+    FunctionDefinition {
         function: Sin,
         name: "sin",
         parity: Parity::Odd,
@@ -227,7 +227,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(quarter_turns(u).map(|turns| Expr::from([0, 1, 0, -1][turns]))),
         derivative: |u, _, _| call(Cos, u),
     },
-    Entry {
+    FunctionDefinition {
         function: Cos,
         name: "cos",
         parity: Parity::Even,
@@ -235,7 +235,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(quarter_turns(u).map(|turns| Expr::from([1, 0, -1, 0][turns]))),
         derivative: |u, _, _| Ok(-call(Sin, u)?),
     },
-    Entry {
+    FunctionDefinition {
         function: Tan,
         name: "tan",
         parity: Parity::Odd,
@@ -246,7 +246,7 @@ static TABLE: [Entry; 26] = [
         },
         derivative: |u, _, _| Ok(Expr::one() + call(Tan, u)?.integer_power(2)?),
     },
-    Entry {
+    FunctionDefinition {
         function: Sinh,
         name: "sinh",
         parity: Parity::Odd,
@@ -254,7 +254,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(at(u, 0, Expr::zero)),
         derivative: |u, _, _| call(Cosh, u),
     },
-    Entry {
+    FunctionDefinition {
         function: Cosh,
         name: "cosh",
         parity: Parity::Even,
@@ -262,7 +262,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(at(u, 0, Expr::one)),
         derivative: |u, _, _| call(Sinh, u),
     },
-    Entry {
+    FunctionDefinition {
         function: Tanh,
         name: "tanh",
         parity: Parity::Odd,
@@ -270,7 +270,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(at(u, 0, Expr::zero)),
         derivative: |u, _, _| call(Cosh, u)?.integer_power(-2),
     },
-    Entry {
+    FunctionDefinition {
         function: Asin,
         name: "asin",
         parity: Parity::Odd,
@@ -283,7 +283,7 @@ static TABLE: [Entry; 26] = [
             Expr::divide(&Expr::one(), &(Expr::one() - u.integer_power(2)?).sqrt()?)
         },
     },
-    Entry {
+    FunctionDefinition {
         function: Acos,
         name: "acos",
         parity: Parity::None,
@@ -298,7 +298,7 @@ static TABLE: [Entry; 26] = [
             Expr::divide(&Expr::from(-1), &(Expr::one() - u.integer_power(2)?).sqrt()?)
         },
     },
-    Entry {
+    FunctionDefinition {
         function: Atan,
         name: "atan",
         parity: Parity::Odd,
@@ -306,7 +306,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(at(u, 0, Expr::zero).or_else(|| at(u, 1, || turn(1, 4)))),
         derivative: |u, _, _| Expr::divide(&Expr::one(), &(Expr::one() + u.integer_power(2)?)),
     },
-    Entry {
+    FunctionDefinition {
         function: Asinh,
         name: "asinh",
         parity: Parity::Odd,
@@ -316,7 +316,7 @@ static TABLE: [Entry; 26] = [
             Expr::divide(&Expr::one(), &(Expr::one() + u.integer_power(2)?).sqrt()?)
         },
     },
-    Entry {
+    FunctionDefinition {
         function: Exp,
         name: "exp",
         parity: Parity::None,
@@ -324,7 +324,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(at(u, 0, Expr::one)),
         derivative: |u, _, _| call(Exp, u),
     },
-    Entry {
+    FunctionDefinition {
         function: Log,
         name: "log",
         parity: Parity::None,
@@ -335,7 +335,7 @@ static TABLE: [Entry; 26] = [
         },
         derivative: |u, _, _| Expr::divide(&Expr::one(), u),
     },
-    Entry {
+    FunctionDefinition {
         function: Absolute,
         name: "abs",
         parity: Parity::Even,
@@ -343,7 +343,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(u.as_number().map(|number| Expr::number(number.abs()))),
         derivative: |u, _, _| call(Sign, u),
     },
-    Entry {
+    FunctionDefinition {
         function: Sign,
         name: "sgn",
         parity: Parity::Odd,
@@ -351,7 +351,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(u.as_number().map(|number| Expr::number(number.signum()))),
         derivative: |_, _, _| Ok(Expr::zero()),
     },
-    Entry {
+    FunctionDefinition {
         function: Maximum,
         name: "max",
         parity: Parity::Symmetric,
@@ -362,7 +362,7 @@ static TABLE: [Entry; 26] = [
             _ => Ok(Expr::one() - call(Step, &(u - v))?),
         },
     },
-    Entry {
+    FunctionDefinition {
         function: Minimum,
         name: "min",
         parity: Parity::Symmetric,
@@ -373,7 +373,7 @@ static TABLE: [Entry; 26] = [
             _ => call(Step, &(u - v)),
         },
     },
-    Entry {
+    FunctionDefinition {
         function: Step,
         name: "H",
         parity: Parity::None,
@@ -383,7 +383,7 @@ static TABLE: [Entry; 26] = [
     },
     // NIST Digital Library of Mathematical Functions 10.6 and 10.29: J0' = -J1, J1' = J0 - J1/u,
     // I0' = I1, I1' = I0 - I1/u.
-    Entry {
+    FunctionDefinition {
         function: BesselJ0,
         name: "J0",
         parity: Parity::Even,
@@ -391,7 +391,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(at(u, 0, Expr::one)),
         derivative: |u, _, _| Ok(-call(BesselJ1, u)?),
     },
-    Entry {
+    FunctionDefinition {
         function: BesselJ1,
         name: "J1",
         parity: Parity::Odd,
@@ -399,7 +399,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(at(u, 0, Expr::zero)),
         derivative: |u, _, _| Ok(call(BesselJ0, u)? - Expr::divide(&call(BesselJ1, u)?, u)?),
     },
-    Entry {
+    FunctionDefinition {
         function: BesselI0,
         name: "I0",
         parity: Parity::Even,
@@ -407,7 +407,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(at(u, 0, Expr::one)),
         derivative: |u, _, _| call(BesselI1, u),
     },
-    Entry {
+    FunctionDefinition {
         function: BesselI1,
         name: "I1",
         parity: Parity::Odd,
@@ -415,7 +415,7 @@ static TABLE: [Entry; 26] = [
         exact: |u, _| Ok(at(u, 0, Expr::zero)),
         derivative: |u, _, _| Ok(call(BesselI0, u)? - Expr::divide(&call(BesselI1, u)?, u)?),
     },
-    Entry {
+    FunctionDefinition {
         function: Gamma,
         name: "Gamma",
         parity: Parity::None,
@@ -429,7 +429,7 @@ static TABLE: [Entry; 26] = [
             Err(ExprError::Undefined(print::call_in_message(Gamma, std::slice::from_ref(u))))
         },
     },
-    Entry {
+    FunctionDefinition {
         function: EllipticK,
         name: "K",
         parity: Parity::None,
@@ -444,7 +444,7 @@ static TABLE: [Entry; 26] = [
     },
     // NIST Digital Library of Mathematical Functions 22.13: sn' = cn dn, cn' = -sn dn, dn' = -m sn
     // cn.
-    Entry {
+    FunctionDefinition {
         function: JacobiSn,
         name: "sn",
         parity: Parity::Odd,
@@ -455,7 +455,7 @@ static TABLE: [Entry; 26] = [
             _ => Err(no_slope(JacobiSn, u, m)),
         },
     },
-    Entry {
+    FunctionDefinition {
         function: JacobiCn,
         name: "cn",
         parity: Parity::Even,
@@ -466,7 +466,7 @@ static TABLE: [Entry; 26] = [
             _ => Err(no_slope(JacobiCn, u, m)),
         },
     },
-    Entry {
+    FunctionDefinition {
         function: JacobiDn,
         name: "dn",
         parity: Parity::Even,

@@ -13,12 +13,12 @@ use crate::exact::rational::{self, Integer, Rational};
 /// Flat, like terms merged, zeros gone, sorted.
 pub(super) fn sum(terms: impl IntoIterator<Item = Expr>) -> Expr {
     let mut constant = Rational::zero();
-    let mut parts: Vec<Part> = Vec::new();
+    let mut parts: Vec<LikeTerm> = Vec::new();
     for expr in terms {
         for term in expr.terms() {
             match term.node() {
                 Node::Number(value) => constant = number::add(&constant, value),
-                _ => parts.push(Part::of(term)),
+                _ => parts.push(LikeTerm::of(term)),
             }
         }
     }
@@ -26,7 +26,7 @@ pub(super) fn sum(terms: impl IntoIterator<Item = Expr>) -> Expr {
 }
 
 /// The sum of a number and of terms; one piece of code, whatever the terms came from.
-fn merged(constant: Rational, mut parts: Vec<Part>) -> Expr {
+fn merged(constant: Rational, mut parts: Vec<LikeTerm>) -> Expr {
     sort_by_hash(&mut parts, |part| &part.rest);
     let mut merged: Vec<Expr> = Vec::with_capacity(parts.len() + 1);
     if !constant.is_zero() {
@@ -57,13 +57,13 @@ fn merged(constant: Rational, mut parts: Vec<Part>) -> Expr {
 }
 
 /// A term as coefficient and rest, which is what like terms share.
-struct Part {
+struct LikeTerm {
     rest: Expr,
     coefficient: Rational,
     term: Expr,
 }
 
-impl Part {
+impl LikeTerm {
     fn of(term: &Expr) -> Self {
         let (rest, coefficient) = match term.node() {
             Node::Product(coefficient, factors) if !coefficient.is_one() => {

@@ -18,7 +18,7 @@ use super::dissipation::{
     ContactDamping, ContactScales, DampingError, Dissipation, SpeedUnit, friction_of_torque,
     torque_of_friction, viscous_coefficient, viscous_ratio,
 };
-use super::hertz::{Design, NotPositive};
+use super::hertz::{NotPositive, StiffnessDesign};
 use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, Side, Start};
 use super::parameter::Parameter;
 use super::units::Units;
@@ -63,7 +63,7 @@ pub struct Case {
     /// Omega/omega, dimensionless, not negative.
     pub frequency_ratio: f64,
     /// Mass, radius, length, modulus, gravity, in SI units.
-    pub design: Design,
+    pub design: StiffnessDesign,
 }
 
 impl Default for Case {
@@ -86,7 +86,7 @@ impl Default for Case {
             friction: Friction::default(),
             beta: 0.0,
             frequency_ratio: 0.0,
-            design: Design::default(),
+            design: StiffnessDesign::default(),
         }
     }
 }
@@ -312,7 +312,7 @@ impl Case {
     /// The speed at which a restitution is stated, in units of L omega; `None` where none is
     /// stated.
     fn stated_speed(&self) -> Option<f64> {
-        let Design { length, gravity, .. } = self.design;
+        let StiffnessDesign { length, gravity, .. } = self.design;
         let speed = self.at_speed?;
         Some(self.speed_unit.dimensionless(speed, length, gravity))
     }
@@ -467,7 +467,7 @@ mod tests {
         let case = Case {
             gamma: Some(1e6),
             contact_damping: ContactDamping::Lambda(0.1),
-            design: Design { length: 0.25, gravity: 9.0, ..Design::default() },
+            design: StiffnessDesign { length: 0.25, gravity: 9.0, ..StiffnessDesign::default() },
             ..Case::default()
         };
         assert!((case.motion().unwrap().0.mu / 1.5e5 - 1.0).abs() < 1e-15);

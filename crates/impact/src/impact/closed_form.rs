@@ -19,7 +19,7 @@ use super::derived::{DerivedContact, Flight};
 use super::error::ImpactError;
 use super::form::Form;
 use super::judge::{Deviation, TrueImpact};
-use super::phases::{ContactSpeed, Swing, ThreePhases, three_phases};
+use super::phases::{ContactSpeed, ImpactProblem, ThreePhases, three_phases};
 use super::setup::{Letters, Setup};
 use super::trial::{Attempt, Trial};
 use crate::method::{self, is_odd};
@@ -44,7 +44,7 @@ pub struct Impact {
     /// The derived law of the free swing in the paper's reading, where there is one.
     pub free_swing: Option<Solution>,
     /// The closed forms, the paper's first.
-    pub columns: Vec<Column>,
+    pub columns: Vec<JudgedPhases>,
     /// The swing of the derived column.
     pub flight: Option<Flight>,
     /// The contact of the derived column.
@@ -89,7 +89,7 @@ impl Reading {
 /// The three phases in one reading, judged.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
-pub struct Column {
+pub struct JudgedPhases {
     /// Which reading it is.
     pub reading: Reading,
     /// The closed forms.
@@ -137,9 +137,12 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
                 (None, vec![], Some(error.to_string()))
             }
         };
-        let column =
-            |(reading, phases)| Column { reading, deviation: trial.deviation(&phases), phases };
-        let mut columns: Vec<Column> = paper.into_iter().map(column).collect();
+        let column = |(reading, phases)| JudgedPhases {
+            reading,
+            deviation: trial.deviation(&phases),
+            phases,
+        };
+        let mut columns: Vec<JudgedPhases> = paper.into_iter().map(column).collect();
         let (flight, contact) = derived
             .map(|derived| {
                 columns.push(column((Reading::Derived, derived.phases)));
@@ -211,7 +214,7 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
         false => values.get(&name).copied(),
     };
     let squared = law.law.frequency_squared().map(|squared| law.evaluate(squared, &known));
-    let swing = Swing {
+    let swing = ImpactProblem {
         amplitude,
         barrier: collision.barrier,
         stiffness: collision.stiffness,
@@ -230,7 +233,7 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
 
 /// One number of an impact: by Runge-Kutta and by every column.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Quantity {
+pub struct ImpactQuantity {
     /// What it is.
     pub name: &'static str,
     /// By Runge-Kutta.
@@ -239,7 +242,7 @@ pub struct Quantity {
     pub closed_forms: Vec<f64>,
 }
 
-impl Quantity {
+impl ImpactQuantity {
     /// The relative error of each column, `closed form / runge_kutta - 1`.
     pub fn errors(&self) -> impl Iterator<Item = f64> + '_ {
         self.closed_forms.iter().map(|value| value / self.runge_kutta - 1.0)
@@ -262,7 +265,7 @@ pub type Shortcoming = (Vec<(&'static str, f64)>, String);
 
 impl Impact {
     /// The column of a reading, where there is one.
-    pub fn column(&self, reading: Reading) -> Option<&Column> {
+    pub fn column(&self, reading: Reading) -> Option<&JudgedPhases> {
         self.columns.iter().find(|column| column.reading == reading)
     }
 
@@ -296,7 +299,7 @@ impl Impact {
                     .collect(),
             }
         };
-        let closed_form = |column: &Column| {
+        let closed_form = |column: &JudgedPhases| {
             let phases = &column.phases;
             path(phases.phases.each_ref().map(|phase| phase.end), &|t| {
                 (phases.position_at(t), phases.velocity_at(t))
@@ -311,12 +314,12 @@ impl Impact {
     }
 
     /// Speed, penetration and duration of the contact, the time to it, and the period.
-    pub fn quantities(&self) -> [Quantity; 5] {
+    pub fn quantities(&self) -> [ImpactQuantity; 5] {
         const NAMES: [&str; 5] = ["time to contact", "speed", "penetration", "duration", "period"];
         let truth = self.truth.quantities();
         let columns: Vec<[f64; 5]> =
             self.columns.iter().map(|column| column.phases.quantities()).collect();
-        std::array::from_fn(|index| Quantity {
+        std::array::from_fn(|index| ImpactQuantity {
             name: NAMES[index],
             runge_kutta: truth[index],
             closed_forms: columns.iter().map(|numbers| numbers[index]).collect(),
@@ -325,13 +328,13 @@ impl Impact {
 
     /// Restitution and speed out of a contact that loses energy, which are judged, and what it
     /// loses per unit of mass, which is not: of a small loss no digits are left.
-    pub fn losses(&self) -> Option<([Quantity; 2], Quantity)> {
+    pub fn losses(&self) -> Option<([ImpactQuantity; 2], ImpactQuantity)> {
         self.setup.loss?;
         let truth = losses([self.truth.touch.v, -self.truth.exit.v]);
         let columns = self.columns.iter().map(|column| &column.phases);
         let found: Vec<[f64; 3]> =
             columns.map(|phases| losses([phases.speed, phases.exit_speed])).collect();
-        let quantity = |index: usize, name| Quantity {
+        let quantity = |index: usize, name| ImpactQuantity {
             name,
             runge_kutta: truth[index],
             closed_forms: found.iter().map(|numbers| numbers[index]).collect(),
@@ -350,7 +353,7 @@ impl Impact {
 
     /// The largest deviation of a column in approach, contact and return, each on its own clock: of
     /// the flights over the amplitude, of the contact over the true depth.
-    pub fn deviations(&self, column: &Column) -> [f64; 3] {
+    pub fn deviations(&self, column: &JudgedPhases) -> [f64; 3] {
         let [approach, contact, back] = column.deviation.aligned;
         [approach / self.amplitude(), contact / self.truth.penetration, back / self.amplitude()]
     }

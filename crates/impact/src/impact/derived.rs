@@ -24,8 +24,8 @@ use num_complex::Complex64;
 use super::contact::{ContactMotion, HuntCrossley, SineSeries};
 use super::error::ImpactError;
 use super::form::Form;
-use super::phases::{Phase, ThreePhases};
-use super::setup::Equations;
+use super::phases::{MotionPhase, ThreePhases};
+use super::setup::ImpactEquations;
 use crate::exact::{Doubles, from_f64};
 use crate::expr::{Equation, Expr};
 use crate::method::motion::Motion;
@@ -59,7 +59,7 @@ impl Flight {
     /// # Errors
     /// [`ImpactError`].
     pub(super) fn derive(
-        equations: &Equations,
+        equations: &ImpactEquations,
         [release, sign]: [f64; 2],
         options: &method::Options,
     ) -> Result<Self, ImpactError> {
@@ -101,7 +101,7 @@ impl Flight {
     /// [`ImpactError::WayBack`]; the method has no motion at that amplitude.
     pub(super) fn passing(
         &self,
-        equations: &Equations,
+        equations: &ImpactEquations,
         barrier: f64,
         speed: f64,
     ) -> Result<Self, ImpactError> {
@@ -167,7 +167,7 @@ impl Flight {
 /// The motion of a law at this amplitude.
 fn motion_at(
     solution: &Solution,
-    equations: &Equations,
+    equations: &ImpactEquations,
     amplitude: f64,
 ) -> Result<Motion, ImpactError> {
     let symbol = solution.amplitude.symbol();
@@ -235,7 +235,7 @@ impl DerivedContact {
 /// [`ImpactError`] where a contact that loses energy has no way back.
 pub(super) fn phases_of(
     flight: &Flight,
-    equations: &Equations,
+    equations: &ImpactEquations,
     barrier: f64,
     [touch, speed]: [f64; 2],
     contact: &DerivedContact,
@@ -253,7 +253,8 @@ pub(super) fn phases_of(
     let depth = contact.sine_series();
     let velocity_jump = depth.at(0.0).1 - speed;
     let pressed = Form::Contact { barrier, inward: -flight.sign, depth };
-    let phase = |name, [start, end, clock]: [f64; 3], form| Phase { name, start, end, clock, form };
+    let phase =
+        |name, [start, end, clock]: [f64; 3], form| MotionPhase { name, start, end, clock, form };
     Ok(ThreePhases {
         phases: [
             phase("approach", [0.0, touch, 0.0], flight.form()),

@@ -58,7 +58,7 @@ pub enum Form {
 
 /// A function of time in a closed form.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Term {
+pub enum TimeFunction {
     /// One.
     Constant,
     /// s (T - s), with T the duration of the phase.
@@ -79,7 +79,7 @@ impl Form {
     /// The terms of a sum that are worth writing, in their order, with their coefficients: those
     /// that six digits of a flight feel, or a contact to [`Form::WRITTEN_CONTACT`]; none for the
     /// forms of one wave.
-    pub fn felt_terms(&self) -> Vec<(Term, f64)> {
+    pub fn felt_terms(&self) -> Vec<(TimeFunction, f64)> {
         let felt = match self {
             Self::Contact { .. } => 0.5 * Self::WRITTEN_CONTACT,
             _ => 5e-7,
@@ -90,17 +90,18 @@ impl Form {
         let (frequency, parabola, sum) = (self.frequency(), self.parabola(), self.harmonics());
         let waves = sum.iter().flat_map(|&(number, amplitude)| {
             let frequency = f64::from(number) * frequency;
-            let wave = |function| Term::Wave { function, frequency };
+            let wave = |function| TimeFunction::Wave { function, frequency };
             [(wave("cos"), amplitude.re), (wave("sin"), -amplitude.im)]
         });
         // A parabola is as large as its vertex.
-        let size = |(term, value): &(Term, f64)| match term {
-            Term::Constant | Term::Wave { .. } => value.abs(),
-            Term::Parabola => value.abs() * (0.5 * PI / frequency).powi(2),
+        let size = |(term, value): &(TimeFunction, f64)| match term {
+            TimeFunction::Constant | TimeFunction::Wave { .. } => value.abs(),
+            TimeFunction::Parabola => value.abs() * (0.5 * PI / frequency).powi(2),
         };
-        let moving: Vec<_> = std::iter::once((Term::Parabola, parabola)).chain(waves).collect();
+        let moving: Vec<_> =
+            std::iter::once((TimeFunction::Parabola, parabola)).chain(waves).collect();
         let largest = moving.iter().map(size).fold(0.0, f64::max);
-        let terms = std::iter::once((Term::Constant, self.centre())).chain(moving);
+        let terms = std::iter::once((TimeFunction::Constant, self.centre())).chain(moving);
         terms.filter(|term| size(term) > felt * largest).collect()
     }
 

@@ -24,7 +24,9 @@ use super::model::{Model, Start};
 use super::parameter::Parameter;
 use super::si::YieldCheck;
 use super::simulate::{SimulationError, simulate};
-use super::simulation::{CLOCK, Contact, Integrator, NoRest, Settings, Simulation, Stop};
+use super::simulation::{
+    CLOCK, ContactRecord, Integrator, NoRest, Settings, Simulation, SimulationStop,
+};
 use super::units::{FIRST_YIELD, Modulus, Units};
 
 /// The materials of a study that is given none, with their elastic moduli, Pa.
@@ -40,7 +42,7 @@ pub const DEFAULT_ZETA: f64 = 0.02;
 /// lambda, s/m, of a study that is given no contact damping: mu/gamma = 0.1 for the default design,
 /// sqrt(g L) = 0.817 m/s.
 pub fn default_lambda() -> f64 {
-    let design = hertz::Design::default();
+    let design = hertz::StiffnessDesign::default();
     0.1 / (design.gravity * design.length).sqrt()
 }
 
@@ -146,15 +148,15 @@ pub enum MaterialsError {
 
 /// What becomes of one motion until it rests.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Course {
+pub struct MotionToRest {
     /// When it rests, in units of 1/omega.
     pub rest_time: Result<f64, NoRest>,
     /// The contacts until then; all of them where it does not rest.
-    pub impacts: Vec<Contact>,
+    pub impacts: Vec<ContactRecord>,
     /// The energy of the swing after each of them that ended, in units of m g L.
     pub energies: Vec<f64>,
     /// Why it was followed no further.
-    pub stop: Stop,
+    pub stop: SimulationStop,
 }
 
 /// Follows one motion until it rests: the one place where a study finds a rest time.
@@ -176,20 +178,21 @@ pub fn course(
     start: Start,
     integrator: Integrator,
     settings: &Settings,
-) -> Result<Course, SimulationError> {
+) -> Result<MotionToRest, SimulationError> {
     let settings = Settings { keep_path: false, ..*settings };
-    Ok(Course::from(&simulate(model, start, integrator, &settings)?))
+    Ok(MotionToRest::from(&simulate(model, start, integrator, &settings)?))
 }
 
-impl From<&Simulation> for Course {
+impl From<&Simulation> for MotionToRest {
     fn from(motion: &Simulation) -> Self {
         let model = &motion.model;
         let rest_time = motion.rest().time;
-        let before_rest = |impact: &&Contact| {
+        let before_rest = |impact: &&ContactRecord| {
             rest_time.is_err() || rest_time.is_ok_and(|rest| impact.entry_time < rest)
         };
-        let impacts: Vec<Contact> = motion.impacts.iter().filter(before_rest).copied().collect();
-        let energy = |impact: &Contact| {
+        let impacts: Vec<ContactRecord> =
+            motion.impacts.iter().filter(before_rest).copied().collect();
+        let energy = |impact: &ContactRecord| {
             Some(model.swing_energy(model.barrier(impact.side)?, impact.speed_out?))
         };
         Self {
@@ -234,7 +237,7 @@ pub struct MaterialRow {
     /// The first contact; nothing where the barrier is not touched, or not left again.
     pub first: Option<FirstContact>,
     /// The motion until it rests.
-    pub course: Course,
+    pub course: MotionToRest,
     /// The rest time of the same barrier without loss, mu = 0, in units of 1/omega.
     pub lossless: Result<f64, NoRest>,
     /// Its stated yield limit, and that of the sphere, beside the pressure of the first contact.
@@ -417,7 +420,7 @@ fn row(
 /// itself. Of one of a chain, or too short for the clock, duration and force are those of the
 /// closed form, in which the swing's own force is left out: it has no time to act.
 fn first_contact(
-    impact: &Contact,
+    impact: &ContactRecord,
     model: &Model,
     start: Start,
     question: &MaterialQuestion,

@@ -100,7 +100,9 @@ mod units;
 pub use baseline::{BASELINE_DURATIONS, Baseline, Geometry, baseline};
 pub use case::{Case, CaseError};
 pub use chain::{ChainError, chain};
-pub use closed_form::{Column, Impact, Quantity, Reading, SampledMotion, Shortcoming, solve};
+pub use closed_form::{
+    Impact, ImpactQuantity, JudgedPhases, Reading, SampledMotion, Shortcoming, solve,
+};
 pub use collision::{Collision, CollisionError};
 pub use compare::{ImpactComparison, ImpactMethod, ImpactRow, compare};
 pub use derived::{DerivedContact, Flight};
@@ -109,25 +111,26 @@ pub use dissipation::{
     torque_of_friction, viscous_coefficient, viscous_ratio,
 };
 pub use error::ImpactError;
-pub use form::{Form, Term};
+pub use form::{Form, TimeFunction};
 pub use judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation, true_impact};
-pub use linearisation::{Line, LinearisationError, Rule, UnknownRule, fit};
+pub use linearisation::{LinearContactForce, LinearisationError, Rule, UnknownRule, fit};
 pub use materials::{
-    Course, DEFAULT_DURATION, DEFAULT_MATERIALS, DEFAULT_ZETA, FirstContact, HeldFixed, Material,
-    MaterialQuestion, MaterialRow, MaterialStudy, MaterialsError, course, default_lambda,
-    study_materials,
+    DEFAULT_DURATION, DEFAULT_MATERIALS, DEFAULT_ZETA, FirstContact, HeldFixed, Material,
+    MaterialQuestion, MaterialRow, MaterialStudy, MaterialsError, MotionToRest, course,
+    default_lambda, study_materials,
 };
 pub use model::{
     DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Friction, Model, ModelError, STEEPNESS, Side, Start,
 };
 pub use parameter::{Parameter, UnknownParameter};
-pub use phases::{ContactSpeed, FittedLine, Phase, Swing, ThreePhases, three_phases};
+pub use phases::{ContactSpeed, FittedLine, ImpactProblem, MotionPhase, ThreePhases, three_phases};
 pub use setup::{ContactLoss, Letters, Setup};
 pub use si::{SiImpact, YieldCheck};
 pub use simulate::{SimulationError, known_until, simulate, simulate_many};
 pub use simulation::{
-    ClosedForm, Contact, ContactDeviation, Difference, EnergyBook, EnergyPoint, Integrator, NoRest,
-    Path, Piece, REST_FRACTION, Regime, Rest, Settings, Simulation, Stop, Turn,
+    ClosedForm, ContactDeviation, ContactRecord, EnergyBook, EnergyPoint, Integrator,
+    MotionDifference, NoRest, PathSegment, REST_FRACTION, Regime, Rest, Settings, Simulation,
+    SimulationPath, SimulationStop, Turn,
 };
 pub use trial::Attempt;
 pub use units::{Elastic, FIRST_YIELD, Modulus, Units};

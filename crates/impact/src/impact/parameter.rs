@@ -61,7 +61,7 @@ pub enum Parameter {
 }
 
 /// Name, group, unit and meaning of a parameter.
-type Row = (&'static str, &'static str, &'static str, &'static str);
+type ParameterRow = (&'static str, &'static str, &'static str, &'static str);
 
 impl Parameter {
     /// Every parameter, in the order of the documentation.
@@ -90,7 +90,7 @@ impl Parameter {
         Self::Gravity,
     ];
 
-    const fn row(self) -> Row {
+    const fn row(self) -> ParameterRow {
         match self {
             Self::Amplitude => ("amplitude", "pendulum", "rad", "the release from rest at x = -A"),
             Self::Start => ("start", "pendulum", "rad", "the displacement x(0)"),

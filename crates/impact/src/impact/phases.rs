@@ -27,8 +27,8 @@ use std::fmt;
 use super::collision::{Collision, CollisionError};
 use super::contact::line::LineContact;
 use super::error::ImpactError;
-use super::form::{Form, Term};
-use super::linearisation::{self, Line, Rule};
+use super::form::{Form, TimeFunction};
+use super::linearisation::{self, LinearContactForce, Rule};
 use crate::decimal::significant;
 use crate::series::terms;
 use crate::symbol::Symbol;
@@ -37,7 +37,7 @@ use num_complex::Complex64;
 /// One impact: x'' + f(x) + gamma F(x - x_c) = 0, released at rest from x = -amplitude towards the
 /// barrier.
 #[derive(Clone, Copy)]
-pub struct Swing<'a> {
+pub struct ImpactProblem<'a> {
     /// Amplitude A > 0: the release is at x = -A.
     pub amplitude: f64,
     /// Position x_c of the barrier, between -A and A.
@@ -79,7 +79,7 @@ impl fmt::Display for ContactSpeed {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ThreePhases {
     /// Approach, contact, return.
-    pub phases: [Phase; 3],
+    pub phases: [MotionPhase; 3],
     /// Speed v at first touch, in the units of x and time of the equation: rad times omega for the
     /// pendulum.
     pub speed: f64,
@@ -104,7 +104,7 @@ pub struct ThreePhases {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FittedLine {
     /// The line, per unit of gamma.
-    pub line: Line,
+    pub line: LinearContactForce,
     /// Depth over which it was fitted, in the unit of x: d_max of the energy balance, gravity
     /// apart.
     pub depth: f64,
@@ -112,7 +112,7 @@ pub struct FittedLine {
 
 /// One phase of the motion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Phase {
+pub struct MotionPhase {
     /// `approach`, `contact` or `return`.
     pub name: &'static str,
     /// Time at which it begins.
@@ -150,8 +150,13 @@ pub struct Phase {
 /// assert!(motion.duration < 0.02 * motion.period);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, ImpactError> {
-    let &Swing { amplitude, barrier, stiffness, frequency_squared, linear_stiffness, .. } = swing;
+pub fn three_phases(
+    swing: &ImpactProblem,
+    column: ContactSpeed,
+) -> Result<ThreePhases, ImpactError> {
+    let &ImpactProblem {
+        amplitude, barrier, stiffness, frequency_squared, linear_stiffness, ..
+    } = swing;
     check(swing)?;
     let frequency = frequency_squared.sqrt();
     let swing_speed = frequency * (amplitude - barrier).sqrt() * (amplitude + barrier).sqrt();
@@ -181,15 +186,21 @@ pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, 
     };
     Ok(ThreePhases {
         phases: [
-            Phase {
+            MotionPhase {
                 name: "approach",
                 start: 0.0,
                 end: touch,
                 clock: 0.0,
                 form: Form::Cosine { amplitude: -amplitude, frequency, phase: 0.0 },
             },
-            Phase { name: "contact", start: touch, end: exit, clock: touch, form: oscillation },
-            Phase {
+            MotionPhase {
+                name: "contact",
+                start: touch,
+                end: exit,
+                clock: touch,
+                form: oscillation,
+            },
+            MotionPhase {
                 name: "return",
                 start: exit,
                 end,
@@ -207,8 +218,8 @@ pub fn three_phases(swing: &Swing, column: ContactSpeed) -> Result<ThreePhases, 
     })
 }
 
-fn check(swing: &Swing) -> Result<(), ImpactError> {
-    let &Swing { amplitude, frequency_squared, linear_stiffness, .. } = swing;
+fn check(swing: &ImpactProblem) -> Result<(), ImpactError> {
+    let &ImpactProblem { amplitude, frequency_squared, linear_stiffness, .. } = swing;
     if !(amplitude.is_finite() && amplitude > 0.0) {
         return Err(CollisionError::Amplitude(amplitude).into());
     }
@@ -222,7 +233,7 @@ fn check(swing: &Swing) -> Result<(), ImpactError> {
     Ok(())
 }
 
-impl Swing<'_> {
+impl ImpactProblem<'_> {
     /// The same without the approximations.
     pub fn collision(&self) -> Collision<'_> {
         Collision {
@@ -244,7 +255,7 @@ impl ThreePhases {
             phases: self
                 .phases
                 .each_ref()
-                .map(|phase| Phase { form: phase.form.moved(sign, offset), ..*phase }),
+                .map(|phase| MotionPhase { form: phase.form.moved(sign, offset), ..*phase }),
             ..self.clone()
         }
     }
@@ -284,7 +295,7 @@ impl ThreePhases {
     }
 }
 
-impl Phase {
+impl MotionPhase {
     /// The number of the join from which its time is counted: contact from t1, the paper's return
     /// from t2, a derived one from t3, its end.
     pub fn joined_at(&self) -> Option<u8> {
@@ -335,9 +346,11 @@ impl Phase {
             Form::Harmonics { .. } | Form::Contact { .. } => {
                 let written =
                     self.form.felt_terms().into_iter().map(|(function, value)| match function {
-                        Term::Constant => significant(value, 9),
-                        Term::Parabola => format!("{} {clock} (t2 - t)", significant(value, 6)),
-                        Term::Wave { function, frequency } => format!(
+                        TimeFunction::Constant => significant(value, 9),
+                        TimeFunction::Parabola => {
+                            format!("{} {clock} (t2 - t)", significant(value, 6))
+                        }
+                        TimeFunction::Wave { function, frequency } => format!(
                             "{} {function}({} {clock})",
                             significant(value, 6),
                             significant(frequency, 6)
@@ -358,15 +371,15 @@ fn signed_term(value: f64, digits: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::hertz::{Design, elastic_force};
-    use crate::numeric::ode::{Event, Options, State, integrate};
+    use crate::impact::hertz::{StiffnessDesign, elastic_force};
+    use crate::numeric::ode::{Event, IntegrationOptions, State, integrate};
     use proptest::prelude::*;
 
     const FORCE: fn(f64) -> f64 = f64::sin;
 
     /// The paper's swing, A = 1.5 and x_c = 0.323, at this stiffness.
-    fn paper(stiffness: f64) -> Swing<'static> {
-        Swing {
+    fn paper(stiffness: f64) -> ImpactProblem<'static> {
+        ImpactProblem {
             amplitude: 1.5,
             barrier: 0.323,
             stiffness,
@@ -384,9 +397,11 @@ mod tests {
 
     #[test]
     fn the_swing_of_the_paper() {
-        let motion =
-            three_phases(&paper(Design::default().stiffness().unwrap()), ContactSpeed::Paper)
-                .unwrap();
+        let motion = three_phases(
+            &paper(StiffnessDesign::default().stiffness().unwrap()),
+            ContactSpeed::Paper,
+        )
+        .unwrap();
         let Form::Cosine { frequency, phase, .. } = motion.phases[2].form else {
             panic!("return is a cosine")
         };
@@ -408,7 +423,7 @@ mod tests {
         near(motion.fitted.unwrap().depth, 1.3909e-3, 5e-8);
         // The cubic restoring force of equation (11).
         near(
-            Swing { restoring_force: &|x| x - x * x * x / 6.0, ..paper(3.0407e7) }
+            ImpactProblem { restoring_force: &|x| x - x * x * x / 6.0, ..paper(3.0407e7) }
                 .collision()
                 .contact_speed()
                 .unwrap(),
@@ -423,7 +438,8 @@ mod tests {
             [(0.323, 3.0407e7), (0.0, 1e6), (-0.9, 1e4), (1.4, 1e9), (0.323, 1.0)]
         {
             let motion =
-                three_phases(&Swing { barrier, ..paper(stiffness) }, ContactSpeed::Paper).unwrap();
+                three_phases(&ImpactProblem { barrier, ..paper(stiffness) }, ContactSpeed::Paper)
+                    .unwrap();
             let [approach, contact, back] = &motion.phases;
             for (left, right) in [(approach, contact), (contact, back)] {
                 let before = left.form.at(left.end - left.start);
@@ -446,12 +462,12 @@ mod tests {
             (-0.5, 1e3, Rule::EqualEnergy),
             (0.9, 30.0, Rule::LeastSquares),
         ] {
-            let swing = Swing { barrier, rule, ..paper(stiffness) };
+            let swing = ImpactProblem { barrier, rule, ..paper(stiffness) };
             let motion = three_phases(&swing, ContactSpeed::Energy).unwrap();
             let (p, q) =
                 (motion.fitted.unwrap().line.slope, motion.fitted.unwrap().line.q(barrier));
             let contact = &motion.phases[1];
-            let options = Options::with_tolerance(1e-13);
+            let options = IntegrationOptions::with_tolerance(1e-13);
             let start = State { t: contact.start, x: barrier, v: motion.speed };
             let events = [
                 Event::record(|_, _, v| v).falling(),
@@ -527,39 +543,40 @@ mod tests {
 
     #[test]
     fn what_cannot_be_is_refused_with_a_way_on() {
-        let refuse = |swing: Swing| three_phases(&swing, ContactSpeed::Energy).unwrap_err();
+        let refuse = |swing: ImpactProblem| three_phases(&swing, ContactSpeed::Energy).unwrap_err();
         let usual = paper(1e6);
         for barrier in [1.5, 2.0] {
-            let refused = refuse(Swing { barrier, ..usual });
+            let refused = refuse(ImpactProblem { barrier, ..usual });
             assert!(
                 refused.to_string().starts_with("the pendulum never reaches the barrier"),
                 "{refused}"
             );
         }
         assert!(matches!(
-            refuse(Swing { barrier: -1.5, ..usual }),
+            refuse(ImpactProblem { barrier: -1.5, ..usual }),
             ImpactError::Collision(CollisionError::ReleasedBehindBarrier { .. })
         ));
         assert!(matches!(
-            refuse(Swing { barrier: f64::NAN, ..usual }),
+            refuse(ImpactProblem { barrier: f64::NAN, ..usual }),
             ImpactError::Collision(CollisionError::Barrier(_))
         ));
         for stiffness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(
-                refuse(Swing { stiffness, ..usual }),
+                refuse(ImpactProblem { stiffness, ..usual }),
                 ImpactError::Collision(CollisionError::Stiffness(_))
             ));
         }
         for amplitude in [0.0, -1.5, f64::INFINITY] {
             assert!(matches!(
-                refuse(Swing { amplitude, ..usual }),
+                refuse(ImpactProblem { amplitude, ..usual }),
                 ImpactError::Collision(CollisionError::Amplitude(_))
             ));
         }
-        let beyond = refuse(Swing { amplitude: 3.0, frequency_squared: 1.0 - 9.0 / 8.0, ..usual });
+        let beyond =
+            refuse(ImpactProblem { amplitude: 3.0, frequency_squared: 1.0 - 9.0 / 8.0, ..usual });
         assert!(beyond.to_string().contains("omega^2 = -0.125 at A = 3"), "{beyond}");
         for amplitude in [std::f64::consts::PI, 3.5] {
-            let outside = refuse(Swing { amplitude, ..usual });
+            let outside = refuse(ImpactProblem { amplitude, ..usual });
             assert!(
                 matches!(outside, ImpactError::Collision(CollisionError::OutsideTheWell { .. })),
                 "{outside}"
@@ -567,7 +584,7 @@ mod tests {
         }
         // A hill on the way: V = cos(3 x)-like, higher in the middle than at the release.
         let hill = |x: f64| -(3.0 * x).sin();
-        let outside = refuse(Swing { restoring_force: &hill, amplitude: 0.9, ..usual });
+        let outside = refuse(ImpactProblem { restoring_force: &hill, amplitude: 0.9, ..usual });
         assert!(
             matches!(outside, ImpactError::Collision(CollisionError::OutsideTheWell { .. })),
             "{outside}"
@@ -586,7 +603,7 @@ mod tests {
         fn energy_is_kept_within_each_phase(
             amplitude in 0.1..2.5_f64, part in -0.9..0.9_f64, gamma_power in 0.0..10.0_f64, time in 0.0..1.0_f64
         ) {
-            let swing = Swing {
+            let swing = ImpactProblem {
                 amplitude,
                 barrier: part * amplitude,
                 frequency_squared: 1.0 - amplitude * amplitude / 8.0,

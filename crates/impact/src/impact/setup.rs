@@ -23,7 +23,7 @@ use super::hertz::DEFAULT_STIFFNESS;
 use super::linearisation::Rule;
 use super::model::{DEFAULT_AMPLITUDE, DEFAULT_BARRIER, Side};
 use super::units::Units;
-use crate::conservative::Force;
+use crate::conservative::CentredForce;
 use crate::conservative::force::NearRest;
 use crate::equilibrium::{centred, no_bottom, with_numbers_where_needed};
 use crate::exact::rational::ratio;
@@ -142,7 +142,7 @@ pub struct Letters {
 }
 
 /// The equations of an impact, and their forces as functions.
-pub(super) struct Equations {
+pub(super) struct ImpactEquations {
     /// The swing alone, as methods are asked: with numbers in it where its equilibrium needs them.
     pub(super) swing: Oscillator,
     /// The values of its parameters.
@@ -223,7 +223,7 @@ impl NearTouch {
             _ => part.with_children(children),
         });
         let numbers = BTreeMap::from([stiffness]);
-        let force = Force::new(&in_root.ok()?, depth, &Expr::zero(), &numbers, SMALLEST)?;
+        let force = CentredForce::new(&in_root.ok()?, depth, &Expr::zero(), &numbers, SMALLEST)?;
         Some(Self { polynomial: force.polynomial_near_rest()?.clone(), root })
     }
 
@@ -236,7 +236,7 @@ impl NearTouch {
     }
 }
 
-impl Equations {
+impl ImpactEquations {
     /// f(x).
     pub(super) fn restoring_force(&self, x: f64) -> f64 {
         self.forces[0].call(&[x, self.gamma])
@@ -299,7 +299,7 @@ impl Setup {
     /// # Errors
     /// A swing that is none or whose force depends on more than the position; a parameter without a
     /// value.
-    pub(super) fn equations(&self) -> Result<Equations, ImpactError> {
+    pub(super) fn equations(&self) -> Result<ImpactEquations, ImpactError> {
         let swing = match &self.swing {
             Some(swing) => swing.clone(),
             None => Oscillator::parse(FREE_SWING)?,
@@ -378,7 +378,7 @@ impl Setup {
             swing_alone.check_digits(&BTreeMap::from([(x, place)]), &[x])?;
         }
         let elastic = Expr::divide(&per_unit, &mass)?;
-        Ok(Equations {
+        Ok(ImpactEquations {
             equilibrium,
             forces: [
                 function(&swing.force, x)?,

@@ -5,7 +5,7 @@
 //! depth, also where a line stood for it; of a damped contact the greatest there is, which comes
 //! before.
 
-use super::closed_form::{Impact, Quantity};
+use super::closed_form::{Impact, ImpactQuantity};
 use super::contact::hunt_crossley;
 use super::hertz;
 use super::units::{FIRST_YIELD, Units};
@@ -19,23 +19,23 @@ pub struct SiImpact {
     /// The stiffness k of the contact, N/m^(3/2).
     pub contact_stiffness: f64,
     /// From the release to the touch, s.
-    pub time_to_contact: Quantity,
+    pub time_to_contact: ImpactQuantity,
     /// The speed at the touch, m/s.
-    pub speed: Quantity,
+    pub speed: ImpactQuantity,
     /// The kinetic energy at the touch, J.
-    pub energy: Quantity,
+    pub energy: ImpactQuantity,
     /// The greatest depth, m.
-    pub penetration: Quantity,
+    pub penetration: ImpactQuantity,
     /// From the touch to the release from the barrier, s.
-    pub duration: Quantity,
+    pub duration: ImpactQuantity,
     /// From release to release, s.
-    pub period: Quantity,
+    pub period: ImpactQuantity,
     /// The greatest force of the contact, its damping included, N; without damping that at the
     /// greatest depth.
-    pub peak_force: Quantity,
+    pub peak_force: ImpactQuantity,
     /// The pressure of Hertz in its middle at the greatest depth, Pa; nothing where the radius is
     /// not known.
-    pub peak_pressure: Option<Quantity>,
+    pub peak_pressure: Option<ImpactQuantity>,
 }
 
 /// A stated yield limit beside the pressure of the true motion.
@@ -85,7 +85,7 @@ impl Impact {
             period: converted("period", &period, time),
             peak_force: match self.setup.loss {
                 None => converted("peak force", &penetration, force),
-                Some(_) => Quantity {
+                Some(_) => ImpactQuantity {
                     name: "peak force",
                     runge_kutta: units.force() * self.greatest_force(),
                     closed_forms: speed
@@ -122,8 +122,12 @@ impl Impact {
 }
 
 /// A number of every reading, converted.
-fn converted(name: &'static str, quantity: &Quantity, convert: impl Fn(f64) -> f64) -> Quantity {
-    Quantity {
+fn converted(
+    name: &'static str,
+    quantity: &ImpactQuantity,
+    convert: impl Fn(f64) -> f64,
+) -> ImpactQuantity {
+    ImpactQuantity {
         name,
         runge_kutta: convert(quantity.runge_kutta),
         closed_forms: quantity.closed_forms.iter().map(|value| convert(*value)).collect(),
@@ -132,7 +136,7 @@ fn converted(name: &'static str, quantity: &Quantity, convert: impl Fn(f64) -> f
 
 impl SiImpact {
     /// Every number with its unit.
-    pub fn rows(&self) -> Vec<(&Quantity, &'static str)> {
+    pub fn rows(&self) -> Vec<(&ImpactQuantity, &'static str)> {
         let rows = [
             (&self.time_to_contact, "s"),
             (&self.speed, "m/s"),

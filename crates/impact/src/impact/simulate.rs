@@ -18,7 +18,7 @@ use thiserror::Error;
 
 use super::chain::{ChainError, chain};
 use super::model::{Model, ModelError, Start};
-use super::simulation::{Integrator, Settings, Simulation, Stop, size};
+use super::simulation::{Integrator, Settings, Simulation, SimulationStop, size};
 use super::{judge, taylor};
 use crate::numeric::ode::IntegrationError;
 use crate::trajectory::DISPLACEMENT;
@@ -107,7 +107,7 @@ pub fn simulate(
 pub fn known_until(motion: &Simulation) -> Option<f64> {
     const SIX_DIGITS: f64 = 1e-6;
     const LOOKS: usize = 2000;
-    if motion.model.beta == 0.0 || matches!(motion.stop, Stop::Interrupted { .. }) {
+    if motion.model.beta == 0.0 || matches!(motion.stop, SimulationStop::Interrupted { .. }) {
         return None;
     }
     let displaced =

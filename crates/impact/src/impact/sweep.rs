@@ -26,7 +26,7 @@ pub use axis::{Axis, AxisError, Spacing};
 
 use super::model::{Model, Start};
 use super::simulate::{SimulationError, simulate, simulate_many};
-use super::simulation::{Contact, Integrator, NoRest, Settings, Simulation, Stop};
+use super::simulation::{ContactRecord, Integrator, NoRest, Settings, Simulation, SimulationStop};
 use crate::parallel::each;
 
 /// The most motions of one sweep.
@@ -123,19 +123,19 @@ pub struct Summary {
     /// Velocity there, rad times omega.
     pub end_velocity: f64,
     /// Why it ended.
-    pub stop: Stop,
+    pub stop: SimulationStop,
 }
 
 impl Summary {
     /// Whether the motion was begun before all were asked to end.
     pub fn is_begun(&self) -> bool {
-        !matches!(self.stop, Stop::Interrupted { t } if t == 0.0)
+        !matches!(self.stop, SimulationStop::Interrupted { t } if t == 0.0)
     }
 
     /// What there is to say of a motion.
     pub fn of(motion: &Simulation) -> Self {
         let largest =
-            |value: fn(&Contact) -> f64| motion.impacts.iter().map(value).fold(0.0, f64::max);
+            |value: fn(&ContactRecord) -> f64| motion.impacts.iter().map(value).fold(0.0, f64::max);
         Self {
             impacts: motion.impacts.len(),
             rest_time: motion.rest().time,

@@ -13,10 +13,10 @@ use super::derived::{DerivedContact, Flight, phases_of};
 use super::error::ImpactError;
 use super::judge::{Deviation, TrueImpact, TrueImpactError, assured_impact, deviation};
 use super::phases::ThreePhases;
-use super::setup::{ContactLoss, Equations, Setup};
+use super::setup::{ContactLoss, ImpactEquations, Setup};
 use crate::method;
-use crate::method::table::{Choice, Entry};
-use crate::numeric::ode::Options;
+use crate::method::table::{Choice, MethodEntry};
+use crate::numeric::ode::IntegrationOptions;
 use crate::solution::{Counts, Degrees, Method, Solution};
 
 /// A method that was tried for the derived column.
@@ -37,7 +37,7 @@ pub struct Attempt {
 /// The question of an impact with its true motion.
 pub(super) struct Trial<'a> {
     pub(super) setup: &'a Setup,
-    pub(super) equations: &'a Equations,
+    pub(super) equations: &'a ImpactEquations,
     /// Where the cycle starts, in x: the release, or the turning point of a motion released inside
     /// the barrier.
     pub(super) turning_point: f64,
@@ -123,9 +123,9 @@ impl Trial<'_> {
             return Err(ImpactError::NoPower { force: force.to_string() });
         }
         let collision = Collision { damping, ..collision };
-        let options = Options {
+        let options = IntegrationOptions {
             maximum_steps: setup.step_limit as usize,
-            ..Options::with_tolerance(setup.integrator_tolerance)
+            ..IntegrationOptions::with_tolerance(setup.integrator_tolerance)
         };
         let truth = assured_impact(&collision, &options).map_err(|error| match error {
             TrueImpactError::Collision(error) => seen(error).into(),
@@ -171,7 +171,7 @@ impl Trial<'_> {
     /// at the best.
     fn climb(&self, method: Method) -> (Option<Derived>, Vec<Attempt>) {
         let setup = self.setup;
-        let takes = |choice| Entry::of(method).takes(choice);
+        let takes = |choice| MethodEntry::of(method).takes(choice);
         let same = |n| match method.counts() {
             Counts::Degrees(count) => Degrees::of(&vec![n; count]),
             _ => None,

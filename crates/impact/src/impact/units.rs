@@ -138,7 +138,7 @@ impl Units {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::hertz::{self, Design};
+    use crate::impact::hertz::{self, StiffnessDesign};
 
     #[test]
     fn the_equivalent_modulus_at_its_limits() {
@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn force_and_pressure_are_those_of_hertz() {
-        let design = Design::default();
+        let design = StiffnessDesign::default();
         let gamma = design.stiffness().unwrap();
         let units = Units {
             mass: design.mass,

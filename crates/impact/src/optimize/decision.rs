@@ -16,9 +16,9 @@
 use std::cell::Cell;
 use std::f64::consts::PI;
 
-use super::design::{Design, Route};
+use super::design::{EvaluatedDesign, Route};
 use super::objective::Objective;
-use super::question::Question;
+use super::question::OptimizationProblem;
 use crate::genetic::{Space, generator};
 use crate::impact::Parameter;
 use crate::numeric::ode::root::{Until, bisect};
@@ -135,7 +135,11 @@ const STEPS: i32 = 40;
 
 impl Decision {
     /// The sensitivities of this design, the best of its box, judged by integration.
-    pub(super) fn of(question: &Question, space: &Space, design: &Design) -> Self {
+    pub(super) fn of(
+        question: &OptimizationProblem,
+        space: &Space,
+        design: &EvaluatedDesign,
+    ) -> Self {
         let best: &[f64] = &design.point;
         let probe = Probe {
             question,
@@ -196,7 +200,7 @@ impl Decision {
 
 /// Designs of one question, followed by closed forms.
 struct Probe<'a> {
-    question: &'a Question,
+    question: &'a OptimizationProblem,
     space: &'a Space,
     /// How many times fewer must do: some tenfold for designs without closed forms, a hundredfold
     /// with a main mass, which has none.
@@ -403,7 +407,7 @@ impl Probe<'_> {
         }
     }
 
-    fn active(&self, best: &Design) -> Vec<String> {
+    fn active(&self, best: &EvaluatedDesign) -> Vec<String> {
         let evaluation = self.question.evaluation(best);
         let words = self.question.constraints();
         let mut active: Vec<String> = Vec::new();

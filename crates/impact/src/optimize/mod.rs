@@ -34,9 +34,9 @@ mod question;
 mod study;
 
 pub use decision::{Decision, Ends, Role, Sensitivity, WITHIN};
-pub use design::{Design, HardestContact, Route};
+pub use design::{EvaluatedDesign, HardestContact, Route};
 pub use objective::Objective;
-pub use question::{DEFAULT_BOX, Limit, OptimizeError, Question, Variable};
+pub use question::{DEFAULT_BOX, Limit, OptimizationProblem, OptimizeError, Variable};
 #[cfg(feature = "parallel")]
 pub use study::optimize_on;
-pub use study::{Finalist, Found, Rival, SearchRun, Spread, Study, Watch, optimize};
+pub use study::{Finalist, Found, Rival, SearchRun, Spread, Study, StudyObserver, optimize};

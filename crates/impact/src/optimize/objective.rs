@@ -1,6 +1,6 @@
 //! What may be small, or limited: one row each.
 
-use super::design::Design;
+use super::design::EvaluatedDesign;
 
 /// A number of a design that is to be small.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,7 +22,7 @@ pub enum Objective {
 }
 
 /// Name, unit, meaning and value of an objective.
-type Row = (&'static str, &'static str, &'static str, fn(&Design) -> Option<f64>);
+type ObjectiveRow = (&'static str, &'static str, &'static str, fn(&EvaluatedDesign) -> Option<f64>);
 
 impl Objective {
     /// Every objective, in the order of the documentation.
@@ -36,7 +36,7 @@ impl Objective {
         Self::PrimaryRestTime,
     ];
 
-    fn row(self) -> Row {
+    fn row(self) -> ObjectiveRow {
         match self {
             Self::RestTime => ("rest_time", "s", "the rest time", |design| {
                 Some(design.rest_time.ok()? * design.units.time())
@@ -85,7 +85,7 @@ impl Objective {
     }
 
     /// Its value of a design; nothing where it has none.
-    pub fn value(self, design: &Design) -> Option<f64> {
+    pub fn value(self, design: &EvaluatedDesign) -> Option<f64> {
         (self.row().3)(design).filter(|value| value.is_finite())
     }
 

@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 
 use thiserror::Error;
 
-use super::design::{Design, Route};
+use super::design::{EvaluatedDesign, Route};
 use super::objective::Objective;
 use crate::decimal::{decimal, significant};
-use crate::genetic::{Evaluation, Options, OptionsError, Space, SpaceError};
+use crate::genetic::{Evaluation, GeneticOptions, OptionsError, Space, SpaceError};
 use crate::impact::primary::MainMass;
 use crate::impact::{
     Case, ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, FIRST_YIELD, Material, Parameter,
@@ -45,7 +45,7 @@ pub struct Limit {
 
 /// A search for the best design: the question.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Question {
+pub struct OptimizationProblem {
     /// What is held fixed, and what the variables do not say.
     pub case: Case,
     /// What is searched.
@@ -70,7 +70,7 @@ pub struct Question {
     /// How long and how closely motions are followed.
     pub settings: Settings,
     /// The genetic algorithm.
-    pub genetic: Options,
+    pub genetic: GeneticOptions,
     /// How often it is run.
     pub runs: usize,
     /// The seed of all random numbers.
@@ -79,7 +79,7 @@ pub struct Question {
     pub defaults: Vec<Parameter>,
 }
 
-impl Default for Question {
+impl Default for OptimizationProblem {
     /// The [`DEFAULT_BOX`], searched a hundred times for the least rest time in seconds, with the
     /// default dissipation.
     fn default() -> Self {
@@ -100,7 +100,7 @@ impl Default for Question {
             barrier_yield: None,
             main_mass: None,
             settings: Settings { duration: DEFAULT_DURATION, ..Settings::default() },
-            genetic: Options::default(),
+            genetic: GeneticOptions::default(),
             runs: 100,
             seed: 1,
             defaults: vec![Parameter::Lambda, Parameter::Zeta],
@@ -168,7 +168,7 @@ pub enum OptimizeError {
 /// The most runs of a study.
 const MOST_RUNS: usize = 100_000;
 
-impl Question {
+impl OptimizationProblem {
     /// The box; a material is a number from 0 to their count.
     ///
     /// # Errors
@@ -256,7 +256,7 @@ impl Question {
     }
 
     /// The reason for which a design has no value of an objective; `None` where it has all of them.
-    pub(super) fn missing_value(&self, design: &Design) -> Option<String> {
+    pub(super) fn missing_value(&self, design: &EvaluatedDesign) -> Option<String> {
         let missing = self.objectives.iter().find(|objective| objective.value(design).is_none())?;
         let rest = match missing.is_of_main_mass() {
             true => design.primary_rest_time.unwrap_or(design.rest_time),
@@ -269,7 +269,7 @@ impl Question {
     }
 
     /// The constraints that a design breaks, in words: `max_impacts = 9 (10)`.
-    pub fn broken(&self, design: &Design) -> Vec<String> {
+    pub fn broken(&self, design: &EvaluatedDesign) -> Vec<String> {
         let evaluation = self.evaluation(design);
         let words = self.constraints();
         let mut broken = Vec::new();
@@ -295,7 +295,7 @@ impl Question {
     }
 
     /// The lowest stated yield limit of the bodies of a design, Pa.
-    pub fn yield_limit(&self, design: &Design) -> Option<f64> {
+    pub fn yield_limit(&self, design: &EvaluatedDesign) -> Option<f64> {
         let barrier = match design.material {
             Some(number) => self.materials.get(number)?.yield_limit,
             None => self.barrier_yield,
@@ -304,7 +304,7 @@ impl Question {
     }
 
     /// What a design is worth.
-    pub fn evaluation(&self, design: &Design) -> Evaluation {
+    pub fn evaluation(&self, design: &EvaluatedDesign) -> Evaluation {
         let value = |objective: Objective| objective.value(design).unwrap_or(f64::INFINITY);
         let mut inequalities: Vec<f64> = self
             .limits

@@ -5,13 +5,13 @@
 //! record.
 
 use super::decision::Decision;
-use super::design::{Design, Route};
+use super::design::{EvaluatedDesign, Route};
 use super::objective::Objective;
-use super::question::{LARGEST_EXCESS, OptimizeError, Question};
+use super::question::{LARGEST_EXCESS, OptimizationProblem, OptimizeError};
 use crate::decimal::significant;
 use crate::genetic::{
-    Evaluation, Individual, Options, Penalty, Run, Space, Stop, crowding, differential_evolution,
-    generator, non_dominated, random_search, search, search_front,
+    Evaluation, GeneticOptions, GeneticRun, GeneticStop, Individual, Penalty, Space, crowding,
+    differential_evolution, generator, non_dominated, random_search, search, search_front,
 };
 use crate::impact::hertz;
 use crate::parallel::each;
@@ -51,11 +51,11 @@ pub struct SearchRun {
     /// if they keep the constraints.
     pub integrated: usize,
     /// Why it ended.
-    pub stop: Stop,
+    pub stop: GeneticStop,
 }
 
 /// Who looks on at a study; nobody by default.
-pub struct Watch<'a> {
+pub struct StudyObserver<'a> {
     /// Whether to stop.
     pub stop: &'a (dyn Fn() -> bool + Sync),
     /// Hears of every run that has ended by itself.
@@ -64,7 +64,7 @@ pub struct Watch<'a> {
     pub progress: &'a (dyn Fn(usize) + Sync),
 }
 
-impl Default for Watch<'_> {
+impl Default for StudyObserver<'_> {
     fn default() -> Self {
         Self { stop: &|| false, done: &|_| (), progress: &|_| () }
     }
@@ -137,7 +137,7 @@ pub struct Finalist {
     /// Its objectives by closed forms, where it has them; else by integration.
     pub by_chain: Vec<f64>,
     /// The design by integration.
-    pub design: Design,
+    pub design: EvaluatedDesign,
     /// Its objectives by integration; infinite where it has none.
     pub values: Vec<f64>,
     /// Whether it rests and keeps the constraints by integration; no front has a design that does
@@ -150,7 +150,7 @@ pub struct Finalist {
 #[non_exhaustive]
 pub struct Study {
     /// What was asked.
-    pub question: Question,
+    pub question: OptimizationProblem,
     /// The runs, by their numbers.
     pub runs: Vec<SearchRun>,
     /// Whether all runs and all that stands beside them were done.
@@ -159,7 +159,7 @@ pub struct Study {
     /// front.
     pub finalists: Vec<Finalist>,
     /// The default design under the same assumptions, by integration, in the box or not.
-    pub default_design: Option<Design>,
+    pub default_design: Option<EvaluatedDesign>,
     /// What decides the best design; with several objectives nothing.
     pub decision: Option<Decision>,
     /// Other searches with the same number of evaluations; none with several objectives.
@@ -175,7 +175,7 @@ const MOST_OFF: f64 = 0.25;
 /// Streams of random numbers of the rivals.
 const RIVALS: [u64; 2] = [1 << 32, 1 << 33];
 
-impl Question {
+impl OptimizationProblem {
     /// The most generations of the whole study, those of the rivals among them.
     pub fn most_work(&self) -> usize {
         let rivals = if self.objectives.len() == 1 { 2 } else { 0 };
@@ -232,7 +232,7 @@ impl Question {
         }
     }
 
-    fn run(&self, space: &Space, number: usize, watch: &Watch) -> SearchRun {
+    fn run(&self, space: &Space, number: usize, watch: &StudyObserver) -> SearchRun {
         let mut generator = generator(self.seed, number as u64);
         let mut integrated = 0;
         let mut go_on = |_| {
@@ -270,9 +270,9 @@ impl Question {
 /// [`OptimizeError`]: options that make no search, a box in which nothing rests or keeps the
 /// constraints.
 pub fn optimize(
-    question: Question,
+    question: OptimizationProblem,
     known: Vec<SearchRun>,
-    watch: &Watch,
+    watch: &StudyObserver,
 ) -> Result<Study, OptimizeError> {
     let space = question.check()?;
     let missing: Vec<usize> =
@@ -285,7 +285,7 @@ pub fn optimize(
             return None;
         }
         let run = question.run(&space, number, watch);
-        if run.stop != Stop::Interrupted {
+        if run.stop != GeneticStop::Interrupted {
             (watch.done)(&run);
         }
         Some(run)
@@ -299,7 +299,7 @@ pub fn optimize(
         return Err(OptimizeError::Stopped);
     }
     let complete =
-        runs.len() == question.runs && runs.iter().all(|run| run.stop != Stop::Interrupted);
+        runs.len() == question.runs && runs.iter().all(|run| run.stop != GeneticStop::Interrupted);
     if runs.iter().all(|run| run.found.is_empty()) {
         return Err(nothing(&question, &space, watch, complete));
     }
@@ -317,8 +317,10 @@ pub fn optimize(
     // All of the default design, also what is held fixed here.
     let default_design = question.default_point().and_then(|point| {
         let mut usual = question.clone();
-        usual.case.design =
-            hertz::Design { gravity: question.case.design.gravity, ..hertz::Design::default() };
+        usual.case.design = hertz::StiffnessDesign {
+            gravity: question.case.design.gravity,
+            ..hertz::StiffnessDesign::default()
+        };
         usual.follow(&point, Route::Integration, true).ok()
     });
     Ok(Study {
@@ -339,9 +341,9 @@ pub fn optimize(
 #[cfg(feature = "parallel")]
 pub fn optimize_on(
     threads: usize,
-    question: Question,
+    question: OptimizationProblem,
     known: Vec<SearchRun>,
-    watch: &Watch,
+    watch: &StudyObserver,
 ) -> Result<Study, OptimizeError> {
     crate::parallel::on_threads(threads, || optimize(question, known, watch))
 }
@@ -350,7 +352,12 @@ pub fn optimize_on(
 const ENOUGH: [usize; 2] = [60, 100];
 
 /// Why nothing was found.
-fn nothing(question: &Question, space: &Space, watch: &Watch, complete: bool) -> OptimizeError {
+fn nothing(
+    question: &OptimizationProblem,
+    space: &Space,
+    watch: &StudyObserver,
+    complete: bool,
+) -> OptimizeError {
     if !complete {
         return OptimizeError::Stopped;
     }
@@ -387,7 +394,7 @@ fn nothing(question: &Question, space: &Space, watch: &Watch, complete: bool) ->
             false => f64::INFINITY,
         })
     };
-    let mut options = Options { penalty: Penalty::Death, ..question.genetic };
+    let mut options = GeneticOptions { penalty: Penalty::Death, ..question.genetic };
     if question.main_mass.is_none() {
         // Closed forms cost little: enough of them to say that there is nothing.
         options.population = options.population.max(ENOUGH[0]);
@@ -421,7 +428,7 @@ fn nothing(question: &Question, space: &Space, watch: &Watch, complete: bool) ->
     }
 }
 
-fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
+fn finalists(question: &OptimizationProblem, runs: &[SearchRun]) -> Vec<Finalist> {
     let mut found: Vec<(usize, &Found)> = runs
         .iter()
         .flat_map(|run| run.found.iter().map(move |found| (run.number, found)))
@@ -471,7 +478,10 @@ fn finalists(question: &Question, runs: &[SearchRun]) -> Vec<Finalist> {
 
 /// The first designs that differ from those before by more than a part of the limits that nobody
 /// builds to.
-fn distinct<'a>(question: &Question, found: &[(usize, &'a Found)]) -> Vec<(usize, &'a Found)> {
+fn distinct<'a>(
+    question: &OptimizationProblem,
+    found: &[(usize, &'a Found)],
+) -> Vec<(usize, &'a Found)> {
     const SAME: f64 = 1e-6;
     let same = |one: &Found, other: &Found| {
         let ranges = question.variables.iter().map(|variable| variable.upper - variable.lower);
@@ -515,26 +525,32 @@ fn front<'a>(found: &[(usize, &'a Found)], most: usize) -> Vec<(usize, &'a Found
     left.into_iter().map(|index| found[index]).collect()
 }
 
-fn rivals(question: &Question, space: &Space, runs: &[SearchRun], watch: &Watch) -> Vec<Rival> {
-    let Options { population, constraint_tolerance, generations, .. } = question.genetic;
+fn rivals(
+    question: &OptimizationProblem,
+    space: &Space,
+    runs: &[SearchRun],
+    watch: &StudyObserver,
+) -> Vec<Rival> {
+    let GeneticOptions { population, constraint_tolerance, generations, .. } = question.genetic;
     let total: usize = runs.iter().map(|run| run.evaluations).sum();
     let evaluations = (total as f64 / runs.len() as f64).round() as usize;
-    let compete = |name: &'static str, work: &(dyn Fn(usize) -> Run + Sync)| {
+    let compete = |name: &'static str, work: &(dyn Fn(usize) -> GeneticRun + Sync)| {
         let runs = each(runs, |run| {
             // Asked to stop, it is not used.
             let run = (!(watch.stop)()).then(|| work(run.number));
             (watch.progress)(generations);
             run
         });
-        let runs: Option<Vec<Run>> = runs.into_iter().collect();
+        let runs: Option<Vec<GeneticRun>> = runs.into_iter().collect();
         let runs = runs?;
         let length = runs.iter().map(|run| run.curve.len()).min().unwrap_or(0);
         let median = |index: usize| {
             let values: Vec<f64> = runs.iter().map(|run| run.curve[index]).collect();
             Spread::of(&values).map_or(f64::INFINITY, |spread| spread.median)
         };
-        let value =
-            |run: &Run| run.best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value());
+        let value = |run: &GeneticRun| {
+            run.best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value())
+        };
         Some(Rival {
             name,
             evaluations: runs.first().map_or(0, |run| run.evaluations),

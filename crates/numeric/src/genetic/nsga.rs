@@ -8,9 +8,9 @@
 use rand::{Rng, RngExt};
 
 use super::pareto::{crowding, non_dominated, ranks};
-use super::population::{Individual, Options, Run};
+use super::population::{GeneticOptions, GeneticRun, Individual};
 use super::space::{Evaluation, Space};
-use super::stopping::Stop;
+use super::stopping::GeneticStop;
 
 /// How near to their parents the children of a crossover are: the larger the nearer.
 const CROSSOVER_INDEX: f64 = 15.0;
@@ -67,10 +67,10 @@ pub fn polynomial_mutation(parent: &[f64], space: &Space, generator: &mut impl R
 pub fn search_front(
     space: &Space,
     mut evaluate: impl FnMut(&[f64]) -> Evaluation,
-    options: &Options,
+    options: &GeneticOptions,
     generator: &mut impl Rng,
     go_on: &mut dyn FnMut(usize) -> bool,
-) -> (Vec<Individual>, Run) {
+) -> (Vec<Individual>, GeneticRun) {
     let (size, tolerance) = (options.population, options.constraint_tolerance);
     let mut evaluations = 0;
     let mut born = |point: Vec<f64>| {
@@ -84,13 +84,13 @@ pub fn search_front(
     let mut generation = 0;
     let stop = loop {
         if generation >= options.generations {
-            break Stop::Generations;
+            break GeneticStop::Generations;
         }
         if options.budget.is_some_and(|budget| evaluations + size > budget) {
-            break Stop::Budget;
+            break GeneticStop::Budget;
         }
         if !go_on(generation + 1) {
-            break Stop::Interrupted;
+            break GeneticStop::Interrupted;
         }
         let winner = |generator: &mut _| {
             let [one, other] = [0, 1].map(|_| RngExt::random_range(generator, 0..size));
@@ -128,8 +128,13 @@ pub fn search_front(
     let front = front.into_iter().map(|index| population[index].clone());
     let front: Vec<Individual> =
         front.filter(|member| member.evaluation.is_feasible(tolerance)).collect();
-    let run =
-        Run { best: front.first().cloned(), curve, generations: generation, evaluations, stop };
+    let run = GeneticRun {
+        best: front.first().cloned(),
+        curve,
+        generations: generation,
+        evaluations,
+        stop,
+    };
     (front, run)
 }
 
@@ -184,7 +189,7 @@ mod tests {
             objectives: vec![point[0].powi(2), (point[0] - 2.0).powi(2)],
             ..Evaluation::default()
         };
-        let options = Options { generations: 60, ..Options::default() };
+        let options = GeneticOptions { generations: 60, ..GeneticOptions::default() };
         let (front, run) =
             search_front(&space, schaffer, &options, &mut generator(1, 0), &mut |_| true);
         assert!(front.len() > 80 && run.evaluations == 6100, "{}", front.len());

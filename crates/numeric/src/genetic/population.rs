@@ -10,12 +10,12 @@ use super::penalty::{Multipliers, Penalty, scores};
 use super::scaling::rank_scaling;
 use super::selection::stochastic_uniform;
 use super::space::{Evaluation, Space};
-use super::stopping::{StallTest, Stop, has_stalled};
+use super::stopping::{GeneticStop, StallTest, has_stalled};
 
 /// How a population lives; the default has real numbers in place of bits, and a
 /// penalty that is one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct GeneticOptions {
     /// Individuals.
     pub population: usize,
     /// The best ones, which go on as they are.
@@ -44,7 +44,7 @@ pub struct Options {
     pub budget: Option<usize>,
 }
 
-impl Default for Options {
+impl Default for GeneticOptions {
     fn default() -> Self {
         Self {
             population: 100,
@@ -142,7 +142,7 @@ const MOST_INDIVIDUALS: usize = 100_000;
 /// The most generations.
 const MOST_GENERATIONS: usize = 1_000_000;
 
-impl Options {
+impl GeneticOptions {
     /// Refuses what makes no population.
     ///
     /// # Errors
@@ -244,7 +244,7 @@ pub struct Individual {
 
 /// What came of one run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Run {
+pub struct GeneticRun {
     /// The best of all points that break no constraint; nothing where there was none.
     pub best: Option<Individual>,
     /// Its value after the random population and after every generation; infinite while there was
@@ -255,7 +255,7 @@ pub struct Run {
     /// Points that were evaluated.
     pub evaluations: usize,
     /// Why it ended.
-    pub stop: Stop,
+    pub stop: GeneticStop,
 }
 
 /// After so many generations the multipliers of an augmented Lagrangian are corrected.
@@ -273,10 +273,10 @@ struct Member {
 pub fn search(
     space: &Space,
     mut evaluate: impl FnMut(&[f64]) -> Evaluation,
-    options: &Options,
+    options: &GeneticOptions,
     generator: &mut impl Rng,
     go_on: &mut dyn FnMut(usize) -> bool,
-) -> Run {
+) -> GeneticRun {
     let mut nursery =
         Nursery { space, options, evaluate: &mut evaluate, best: None, evaluations: 0 };
     let mut population = Vec::with_capacity(options.population);
@@ -301,7 +301,7 @@ pub fn search(
             break stop;
         }
         if !go_on(generation + 1) {
-            break Stop::Interrupted;
+            break GeneticStop::Interrupted;
         }
         let scored = score(&population, multipliers.as_ref());
         let expected = rank_scaling(&scored, 2 * crossed + mutated);
@@ -328,7 +328,7 @@ pub fn search(
             multipliers.update(evaluation, factor, options.constraint_tolerance);
         }
     };
-    Run {
+    GeneticRun {
         best: nursery.best,
         curve,
         generations: generation,
@@ -340,7 +340,7 @@ pub fn search(
 /// Where genes become members of the population; remembers the best that breaks no constraint.
 struct Nursery<'a, E> {
     space: &'a Space,
-    options: &'a Options,
+    options: &'a GeneticOptions,
     evaluate: &'a mut E,
     best: Option<Individual>,
     evaluations: usize,
@@ -369,17 +369,22 @@ impl<E: FnMut(&[f64]) -> Evaluation> Nursery<'_, E> {
 }
 
 /// Why no further generation is begun, where one of the limits is reached.
-fn ended(options: &Options, curve: &[f64], generation: usize, evaluations: usize) -> Option<Stop> {
+fn ended(
+    options: &GeneticOptions,
+    curve: &[f64],
+    generation: usize,
+    evaluations: usize,
+) -> Option<GeneticStop> {
     let (crossed, mutated) = options.children();
     if has_stalled(curve, options.stall_generations, options.function_tolerance, options.stall_test)
     {
-        return Some(Stop::Stalled);
+        return Some(GeneticStop::Stalled);
     }
     if generation >= options.generations {
-        return Some(Stop::Generations);
+        return Some(GeneticStop::Generations);
     }
     let spent = |budget: usize| evaluations + crossed + mutated > budget;
-    options.budget.is_some_and(spent).then_some(Stop::Budget)
+    options.budget.is_some_and(spent).then_some(GeneticStop::Budget)
 }
 
 /// The genes of the children: of two parents each first, then of one.
@@ -387,7 +392,7 @@ fn children(
     population: &[Member],
     scored: &[f64],
     parents: &[usize],
-    (space, options, step): (&Space, &Options, f64),
+    (space, options, step): (&Space, &GeneticOptions, f64),
     generator: &mut impl Rng,
 ) -> Vec<Vec<f64>> {
     let (crossed, mutated) = options.children();
@@ -428,22 +433,22 @@ mod tests {
     fn run(
         bounds: [f64; 2],
         evaluate: fn(&[f64]) -> Evaluation,
-        options: &Options,
+        options: &GeneticOptions,
         stream: u64,
-    ) -> Run {
+    ) -> GeneticRun {
         let space = Space::new(vec![bounds; 2]).unwrap();
         search(&space, evaluate, options, &mut generator(7, stream), &mut |_| true)
     }
 
     #[test]
     fn one_of_the_lowest_of_many_valleys_is_found() {
-        let bits = Options {
+        let bits = GeneticOptions {
             coding: Coding::Bits(16),
             crossover: Crossover::Scattered,
             mutation: Mutation::BitFlips(0.02),
-            ..Options::default()
+            ..GeneticOptions::default()
         };
-        for options in [Options::default(), bits] {
+        for options in [GeneticOptions::default(), bits] {
             let found = (0..10).filter(|stream| {
                 let run = run([-5.0, 5.5], rastrigin, &options, *stream);
                 assert!(run.curve.windows(2).all(|pair| pair[1] <= pair[0]));
@@ -462,9 +467,9 @@ mod tests {
     /// file.
     #[test]
     fn a_seed_gives_the_same_run_for_ever() {
-        let first = run([-5.0, 5.5], rastrigin, &Options::default(), 0);
-        assert_eq!(first, run([-5.0, 5.5], rastrigin, &Options::default(), 0));
-        assert_ne!(first.curve, run([-5.0, 5.5], rastrigin, &Options::default(), 1).curve);
+        let first = run([-5.0, 5.5], rastrigin, &GeneticOptions::default(), 0);
+        assert_eq!(first, run([-5.0, 5.5], rastrigin, &GeneticOptions::default(), 0));
+        assert_ne!(first.curve, run([-5.0, 5.5], rastrigin, &GeneticOptions::default(), 1).curve);
         assert_eq!(first.curve[0], GOLDEN);
     }
 
@@ -488,7 +493,7 @@ mod tests {
             (Penalty::FeasibleFirst, true),
             (lagrangian, true),
         ] {
-            let options = Options { penalty, ..Options::default() };
+            let options = GeneticOptions { penalty, ..GeneticOptions::default() };
             let evaluate = |point: &[f64]| {
                 if equality { on_a_line(point) } else { beyond(point) }
             };
@@ -504,32 +509,32 @@ mod tests {
 
     #[test]
     fn a_run_ends_where_it_is_told() {
-        let few = Options { generations: 7, ..Options::default() };
-        let run_of = |options: &Options| run([-5.0, 5.5], rastrigin, options, 0);
+        let few = GeneticOptions { generations: 7, ..GeneticOptions::default() };
+        let run_of = |options: &GeneticOptions| run([-5.0, 5.5], rastrigin, options, 0);
         let ended = run_of(&few);
-        assert_eq!((ended.stop, ended.generations), (Stop::Generations, 7));
-        let little = Options { budget: Some(450), ..Options::default() };
+        assert_eq!((ended.stop, ended.generations), (GeneticStop::Generations, 7));
+        let little = GeneticOptions { budget: Some(450), ..GeneticOptions::default() };
         let ended = run_of(&little);
-        assert_eq!((ended.stop, ended.evaluations), (Stop::Budget, 100 + 3 * 98));
+        assert_eq!((ended.stop, ended.evaluations), (GeneticStop::Budget, 100 + 3 * 98));
         let space = Space::new(vec![[-5.0, 5.5]; 2]).unwrap();
         let mut until = |generation| generation <= 4;
         let ended =
-            search(&space, rastrigin, &Options::default(), &mut generator(7, 0), &mut until);
-        assert_eq!((ended.stop, ended.generations), (Stop::Interrupted, 4));
-        let whole = run_of(&Options::default());
+            search(&space, rastrigin, &GeneticOptions::default(), &mut generator(7, 0), &mut until);
+        assert_eq!((ended.stop, ended.generations), (GeneticStop::Interrupted, 4));
+        let whole = run_of(&GeneticOptions::default());
         assert_eq!(ended.curve[..], whole.curve[..5]);
     }
 
     #[test]
     fn what_makes_no_population_is_refused_by_name() {
-        let usual = Options::default();
-        let population = Options { population: 1, ..usual };
-        let elite = Options { elite: 100, ..usual };
-        let generations = Options { generations: 0, ..usual };
-        let fraction = Options { crossover_fraction: f64::NAN, ..usual };
-        let bits = Options { coding: Coding::Bits(8), ..usual };
-        let flips = Options { mutation: Mutation::BitFlips(0.1), ..usual };
-        let budget = Options { budget: Some(99), ..usual };
+        let usual = GeneticOptions::default();
+        let population = GeneticOptions { population: 1, ..usual };
+        let elite = GeneticOptions { elite: 100, ..usual };
+        let generations = GeneticOptions { generations: 0, ..usual };
+        let fraction = GeneticOptions { crossover_fraction: f64::NAN, ..usual };
+        let bits = GeneticOptions { coding: Coding::Bits(8), ..usual };
+        let flips = GeneticOptions { mutation: Mutation::BitFlips(0.1), ..usual };
+        let budget = GeneticOptions { budget: Some(99), ..usual };
         for (options, words) in [
             (population, "population"),
             (elite, "elite"),

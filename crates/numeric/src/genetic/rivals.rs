@@ -14,12 +14,12 @@ use basin::{
 };
 use rand::Rng;
 
-use super::population::{Individual, Run};
+use super::population::{GeneticRun, Individual};
 use super::space::{Evaluation, Space};
-use super::stopping::Stop;
+use super::stopping::GeneticStop;
 
 /// The best of what was evaluated, and how it came down.
-struct Watch<F> {
+struct BestTracker<F> {
     evaluate: F,
     tolerance: f64,
     every: usize,
@@ -28,7 +28,7 @@ struct Watch<F> {
     count: usize,
 }
 
-impl<F: FnMut(&[f64]) -> Evaluation> Watch<F> {
+impl<F: FnMut(&[f64]) -> Evaluation> BestTracker<F> {
     fn new(evaluate: F, tolerance: f64, every: usize) -> Self {
         Self { evaluate, tolerance, every, best: None, curve: vec![], count: 0 }
     }
@@ -50,8 +50,8 @@ impl<F: FnMut(&[f64]) -> Evaluation> Watch<F> {
         self.best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value())
     }
 
-    fn finish(self, stop: Stop) -> Run {
-        Run {
+    fn finish(self, stop: GeneticStop) -> GeneticRun {
+        GeneticRun {
             generations: self.curve.len(),
             evaluations: self.count,
             best: self.best,
@@ -69,17 +69,17 @@ pub fn random_search(
     (evaluations, every): (usize, usize),
     tolerance: f64,
     generator: &mut impl Rng,
-) -> Run {
-    let mut watch = Watch::new(evaluate, tolerance, every.max(1));
+) -> GeneticRun {
+    let mut watch = BestTracker::new(evaluate, tolerance, every.max(1));
     for _ in 0..evaluations {
         watch.see(&space.draw(generator));
     }
-    watch.finish(Stop::Budget)
+    watch.finish(GeneticStop::Budget)
 }
 
 /// The problem as the library wants it.
 struct Boxed<F> {
-    watch: RefCell<Watch<F>>,
+    watch: RefCell<BestTracker<F>>,
     lower: Vec<f64>,
     upper: Vec<f64>,
 }
@@ -120,12 +120,15 @@ pub fn differential_evolution(
     (evaluations, every): (usize, usize),
     tolerance: f64,
     seed: u64,
-) -> Run {
+) -> GeneticRun {
     let (lower, upper): (Vec<f64>, Vec<f64>) =
         space.bounds().iter().map(|[lower, upper]| (*lower, *upper)).unzip();
     let size = De::<f64>::default_pop_size(lower.len()).min(evaluations / 2).max(4);
-    let problem =
-        Boxed { watch: RefCell::new(Watch::new(evaluate, tolerance, every.max(1))), lower, upper };
+    let problem = Boxed {
+        watch: RefCell::new(BestTracker::new(evaluate, tolerance, every.max(1))),
+        lower,
+        upper,
+    };
     // The first population is one more.
     let generations = (evaluations / size).saturating_sub(1).max(1) as u64;
     let start = PopulationProgress::<Vec<f64>>::empty();
@@ -134,7 +137,7 @@ pub fn differential_evolution(
         .max_iter(generations)
         .run();
     drop(ended);
-    problem.watch.into_inner().finish(Stop::Budget)
+    problem.watch.into_inner().finish(GeneticStop::Budget)
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ pub enum StallTest {
 
 /// Why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Stop {
+pub enum GeneticStop {
     /// The best value has ceased to change.
     Stalled,
     /// The last generation allowed.
@@ -35,7 +35,7 @@ pub enum Stop {
     Interrupted,
 }
 
-impl Stop {
+impl GeneticStop {
     /// Every reason.
     pub const ALL: [Self; 4] = [Self::Stalled, Self::Generations, Self::Budget, Self::Interrupted];
 

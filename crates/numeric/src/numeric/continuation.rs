@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector, DefaultAllocator, Dim, Dyn, LU, OVector};
 
 /// What comes of a step.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Step<Point, End> {
+pub enum ContinuationStep<Point, End> {
     /// The next point, and the ratio of the next step to this one.
     Taken(Point, f64),
     /// Nothing: the next one is half as long.
@@ -61,17 +61,17 @@ pub fn follow<Point, End>(
     first: Point,
     mut length: f64,
     longest: f64,
-    mut step: impl FnMut(&[Point], &mut f64) -> Step<Point, End>,
+    mut step: impl FnMut(&[Point], &mut f64) -> ContinuationStep<Point, End>,
 ) -> (Vec<Point>, End) {
     let mut points = vec![first];
     loop {
         match step(&points, &mut length) {
-            Step::Taken(point, ratio) => {
+            ContinuationStep::Taken(point, ratio) => {
                 points.push(point);
                 length = longest.min(ratio * length);
             }
-            Step::TooLong => length *= 0.5,
-            Step::Ended(last, end) => {
+            ContinuationStep::TooLong => length *= 0.5,
+            ContinuationStep::Ended(last, end) => {
                 points.extend(last);
                 return (points, end);
             }

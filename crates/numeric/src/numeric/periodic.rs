@@ -24,7 +24,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 use num_complex::Complex;
 
-use crate::numeric::ode::{Options, State, Trajectory, integrate};
+use crate::numeric::ode::{IntegrationOptions, State, Trajectory, integrate};
 
 /// An orbit of N states that comes back to its start after a period.
 #[derive(Clone, Debug)]
@@ -226,7 +226,10 @@ pub fn periodic_motion(
     /// A step so short is the last.
     const SETTLED: f64 = 1e-11;
     let (sizes, far) = ([size, size * (TAU / period)], f64::INFINITY);
-    let options = Options { absolute_tolerance: 1e-13 * size, ..Options::with_tolerance(1e-12) };
+    let options = IntegrationOptions {
+        absolute_tolerance: 1e-13 * size,
+        ..IntegrationOptions::with_tolerance(1e-12)
+    };
     let follow = |[x, v]: [f64; 2]| {
         let path = integrate(acceleration, State { t: 0.0, x, v }, period, &[], &options).ok()?;
         path.is_complete().then(|| ([path.end().x, path.end().v], path))
@@ -265,7 +268,7 @@ mod tests {
         };
         let (guess, period, sizes) = ([0.2; 4], TAU / omega, [1.0; 4]);
         let follow = |start: [f64; 4]| {
-            let options = Options::with_tolerance(1e-12);
+            let options = IntegrationOptions::with_tolerance(1e-12);
             let begin = Point { t: 0.0, y: start };
             let path = integrate_first_order(rates, begin, period, &[], &options).ok()?;
             Some((path.end().y, ()))
@@ -328,7 +331,7 @@ mod tests {
         };
         let (guess, sizes) = ([2.0, 2.0, 0.0, 0.0], [2.0; 4]);
         let follow = |start: [f64; 4], period: f64| {
-            let options = Options::with_tolerance(1e-12);
+            let options = IntegrationOptions::with_tolerance(1e-12);
             let in_time = |_: f64, y: &[f64; 4], out: &mut [f64; 4]| *out = rates(*y);
             let begin = Point { t: 0.0, y: start };
             let path = integrate_first_order(in_time, begin, period, &[], &options).ok()?;

@@ -18,7 +18,7 @@
 //! Lengths are measured in an amplitude and times in the linear frequency: units do not matter.
 
 use crate::numeric::ode::root::find_root;
-use crate::numeric::ode::{Event, Options, State, StopReason, Trajectory, integrate};
+use crate::numeric::ode::{Event, IntegrationOptions, State, StopReason, Trajectory, integrate};
 
 /// Tolerance per step.
 const STEP_TOLERANCE: f64 = 1e-13;
@@ -53,7 +53,7 @@ const GONE: f64 = 1e4;
 const LOST_RINGS: usize = 4;
 
 /// `x'' = acceleration(x, x')`, and what to measure it with.
-pub struct Equation<'a> {
+pub struct AutonomousEquation<'a> {
     /// The acceleration.
     pub acceleration: &'a dyn Fn(f64, f64) -> f64,
     /// Where the motion swings about.
@@ -95,7 +95,7 @@ pub enum NoLimitCycle {
 }
 
 /// A true limit cycle, from its turning point right of the equilibrium.
-pub struct LimitCycle {
+pub struct NumericalLimitCycle {
     path: Trajectory,
     attracts: bool,
     equilibrium: f64,
@@ -103,7 +103,7 @@ pub struct LimitCycle {
     frequency: f64,
 }
 
-impl LimitCycle {
+impl NumericalLimitCycle {
     /// The period.
     pub fn period(&self) -> f64 {
         self.path.end().t / self.frequency
@@ -149,9 +149,9 @@ impl LimitCycle {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn nearest_limit_cycle(
-    equation: &Equation,
+    equation: &AutonomousEquation,
     attracts: Option<bool>,
-) -> Result<LimitCycle, NoLimitCycle> {
+) -> Result<NumericalLimitCycle, NoLimitCycle> {
     let directions: &[&[bool]] = match attracts {
         Some(true) => &[&[true], &[false]],
         Some(false) => &[&[false], &[true]],
@@ -192,7 +192,10 @@ pub fn nearest_limit_cycle(
 
 /// Where the attraction is strong, as that of a relaxation oscillation, two returns are on the
 /// cycle to the last digit.
-fn at_once(equation: &Equation, attracts: bool) -> Result<Option<LimitCycle>, NoReturn> {
+fn at_once(
+    equation: &AutonomousEquation,
+    attracts: bool,
+) -> Result<Option<NumericalLimitCycle>, NoReturn> {
     let explicit = returns(ROUNDING, equation, attracts, &|start| {
         swing(equation, attracts, start, STEPS_OF_RELAXATION)
     });
@@ -207,10 +210,10 @@ fn at_once(equation: &Equation, attracts: bool) -> Result<Option<LimitCycle>, No
 /// The cycle onto which a few returns lead, to this accuracy.
 fn returns(
     rounding: f64,
-    equation: &Equation,
+    equation: &AutonomousEquation,
     attracts: bool,
     swing: &dyn Fn(f64) -> Result<Trajectory, NoReturn>,
-) -> Result<Option<LimitCycle>, NoReturn> {
+) -> Result<Option<NumericalLimitCycle>, NoReturn> {
     const RETURNS: usize = 3;
     let mut start = 1.0;
     for _ in 0..RETURNS {
@@ -225,7 +228,7 @@ fn returns(
 }
 
 /// The first ring about the amplitude in which the return map changes from growing to shrinking.
-fn by_rings(equation: &Equation, directions: &[bool]) -> Option<LimitCycle> {
+fn by_rings(equation: &AutonomousEquation, directions: &[bool]) -> Option<NumericalLimitCycle> {
     let growth = |attracts: bool, start: f64| {
         let path = swing(equation, attracts, start, STEPS_OF_SEARCH);
         path.map_or(f64::NAN, |path| path.end().x - start)
@@ -263,8 +266,8 @@ fn by_rings(equation: &Equation, directions: &[bool]) -> Option<LimitCycle> {
     None
 }
 
-fn cycle(equation: &Equation, attracts: bool, path: Trajectory) -> LimitCycle {
-    LimitCycle {
+fn cycle(equation: &AutonomousEquation, attracts: bool, path: Trajectory) -> NumericalLimitCycle {
+    NumericalLimitCycle {
         path,
         attracts,
         equilibrium: equation.equilibrium,
@@ -283,36 +286,41 @@ enum NoReturn {
 /// From rest at `start` amplitudes to the next turning point on the same side, forward in time or
 /// backward.
 fn swing(
-    equation: &Equation,
+    equation: &AutonomousEquation,
     forward: bool,
     start: f64,
     maximum_steps: usize,
 ) -> Result<Trajectory, NoReturn> {
-    let options = Options { maximum_steps, ..Options::with_tolerance(STEP_TOLERANCE) };
+    let options =
+        IntegrationOptions { maximum_steps, ..IntegrationOptions::with_tolerance(STEP_TOLERANCE) };
     follow(equation, forward, start, LONGEST, &options)
 }
 
 /// The same by an implicit method, however long it takes.
-fn stiff_swing(equation: &Equation, forward: bool, start: f64) -> Result<Trajectory, NoReturn> {
-    let options = Options {
+fn stiff_swing(
+    equation: &AutonomousEquation,
+    forward: bool,
+    start: f64,
+) -> Result<Trajectory, NoReturn> {
+    let options = IntegrationOptions {
         maximum_steps: STIFF_STEPS,
         // Between its jumps a relaxation oscillation moves at a small fraction of its largest
         // speed.
         absolute_tolerance: 1e-4 * STIFF_TOLERANCE,
         stiff: true,
-        ..Options::with_tolerance(STIFF_TOLERANCE)
+        ..IntegrationOptions::with_tolerance(STIFF_TOLERANCE)
     };
     follow(equation, forward, start, STIFF_LONGEST, &options)
 }
 
 fn follow(
-    equation: &Equation,
+    equation: &AutonomousEquation,
     forward: bool,
     start: f64,
     longest: f64,
-    options: &Options,
+    options: &IntegrationOptions,
 ) -> Result<Trajectory, NoReturn> {
-    let Equation { acceleration, equilibrium, amplitude, frequency } = equation;
+    let AutonomousEquation { acceleration, equilibrium, amplitude, frequency } = equation;
     let speed = amplitude * frequency * if forward { 1.0 } else { -1.0 };
     let unit = amplitude * frequency * frequency;
     let scaled =
@@ -347,13 +355,13 @@ mod tests {
     use super::*;
 
     /// The cycle of x'' = acceleration about zero, found from a guess.
-    fn found(acceleration: &dyn Fn(f64, f64) -> f64, guess: f64) -> LimitCycle {
+    fn found(acceleration: &dyn Fn(f64, f64) -> f64, guess: f64) -> NumericalLimitCycle {
         let equation =
-            Equation { acceleration, equilibrium: 0.0, amplitude: guess, frequency: 1.0 };
+            AutonomousEquation { acceleration, equilibrium: 0.0, amplitude: guess, frequency: 1.0 };
         nearest_limit_cycle(&equation, None).expect("a limit cycle")
     }
 
-    fn van_der_pol(mu: f64) -> LimitCycle {
+    fn van_der_pol(mu: f64) -> NumericalLimitCycle {
         found(&move |x, v| mu * (1.0 - x * x) * v - x, 2.0)
     }
 
@@ -452,7 +460,7 @@ mod tests {
     fn beyond_double_precision_there_is_no_period() {
         for mu in [1e12, 1e20, 1e30, 1e100] {
             let acceleration = move |x: f64, v: f64| mu * (1.0 - x * x) * v - x;
-            let equation = Equation {
+            let equation = AutonomousEquation {
                 acceleration: &acceleration,
                 equilibrium: 0.0,
                 amplitude: 2.0,
@@ -473,7 +481,7 @@ mod tests {
     fn the_implicit_method_agrees_with_the_explicit_one() {
         for mu in [5.0, 30.0] {
             let acceleration = |x: f64, v: f64| mu * (1.0 - x * x) * v - x;
-            let equation = Equation {
+            let equation = AutonomousEquation {
                 acceleration: &acceleration,
                 equilibrium: 0.0,
                 amplitude: 2.0,
@@ -535,7 +543,7 @@ mod tests {
                 let (x, v) = (x / length, v / (length * rate));
                 length * rate * rate * (2.0 * (1.0 - x * x) * v - x)
             };
-            let equation = Equation {
+            let equation = AutonomousEquation {
                 acceleration: &acceleration,
                 equilibrium: 0.0,
                 amplitude: 3.0 * length,
@@ -570,8 +578,12 @@ mod tests {
     fn where_there_is_none_the_search_ends() {
         let damped = |x: f64, v: f64| -0.1 * v - x;
         let search = |acceleration: &dyn Fn(f64, f64) -> f64| {
-            let equation =
-                Equation { acceleration, equilibrium: 0.0, amplitude: 2.0, frequency: 1.0 };
+            let equation = AutonomousEquation {
+                acceleration,
+                equilibrium: 0.0,
+                amplitude: 2.0,
+                frequency: 1.0,
+            };
             nearest_limit_cycle(&equation, None).err()
         };
         assert!(matches!(search(&damped), Some(NoLimitCycle::NoneBetween { .. })));

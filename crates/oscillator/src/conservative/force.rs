@@ -31,7 +31,7 @@ const DEGREE: u32 = 10;
 const DEGREE_OF_HIGHER_POWERS: u32 = 32;
 
 /// A force as a function of the distance from its equilibrium.
-pub struct Force {
+pub struct CentredForce {
     of: Rc<AtNumbers>,
     near: Option<NearRest>,
     evaluations: Cell<u64>,
@@ -77,7 +77,7 @@ impl NearRest {
     }
 }
 
-impl Force {
+impl CentredForce {
     /// `force` about `equilibrium` at these numbers, for motions of about this amplitude; `None`
     /// where a symbol has no number.
     pub fn new(
@@ -421,9 +421,9 @@ fn value_at(
 mod tests {
     use super::*;
 
-    fn force(text: &str, equilibrium: &str, amplitude: f64) -> Force {
+    fn force(text: &str, equilibrium: &str, amplitude: f64) -> CentredForce {
         let [force, equilibrium]: [Expr; 2] = [text, equilibrium].map(|text| text.parse().unwrap());
-        Force::new(&force, "x".into(), &equilibrium, &BTreeMap::new(), amplitude).unwrap()
+        CentredForce::new(&force, "x".into(), &equilibrium, &BTreeMap::new(), amplitude).unwrap()
     }
 
     #[test]

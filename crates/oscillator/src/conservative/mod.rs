@@ -25,7 +25,7 @@ pub(crate) mod power;
 pub(crate) mod projection;
 pub mod well;
 
-pub use force::Force;
+pub use force::CentredForce;
 pub use parity::is_odd;
 pub use potential::potential;
 pub use projection::cosine_coefficient;

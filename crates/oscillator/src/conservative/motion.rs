@@ -2,14 +2,14 @@
 //! from the equilibrium, so that no digits are lost near rest. The integral between the turning
 //! points is left to the caller.
 
-use super::force::Force;
+use super::force::CentredForce;
 use super::well::Well;
 use crate::decimal::rounded_to;
 use crate::exact::rational::to_f64;
 use crate::numeric::ode::energy::{self, PeriodError};
 use crate::solution::AmplitudeConvention;
 
-impl Force {
+impl CentredForce {
     /// The distance from the equilibrium of the other turning point of a motion released at the
     /// distance `start`.
     ///
@@ -27,10 +27,10 @@ impl Force {
     pub fn between_turning_points<T>(
         &self,
         start: f64,
-        run: impl FnOnce(&energy::Force, f64) -> Result<T, PeriodError>,
+        run: impl FnOnce(&energy::PiecewiseForce, f64) -> Result<T, PeriodError>,
     ) -> Result<T, PeriodError> {
         let (value, cuts) = (|y| self.at(y), |from, to| self.cuts(from, to));
-        let force = energy::Force::with_cuts(&value, &cuts);
+        let force = energy::PiecewiseForce::with_cuts(&value, &cuts);
         let no_value = |distance: f64| match self.overflow(distance) {
             Some(term) => PeriodError::Overflow { place: distance, term },
             None => PeriodError::Pole { place: distance },

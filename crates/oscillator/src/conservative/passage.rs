@@ -13,7 +13,7 @@
 //! which holds in ranges of `A`: each begins where `V` is that of the highest hilltop before, and
 //! ends at the next one.
 
-use super::force::Force;
+use super::force::CentredForce;
 use super::well::{Rim, end_of_force, rise, sign_change};
 use crate::numeric::ode::root::find_root;
 
@@ -39,7 +39,7 @@ const MOST: usize = 24;
 
 /// Whether a force pushes away from its equilibrium on both sides; `unit` is the scale of what is
 /// looked at.
-pub fn pushes_away(force: &Force, unit: f64) -> bool {
+pub fn pushes_away(force: &CentredForce, unit: f64) -> bool {
     let unit = unit.abs();
     let distances = (-DECADES..-2).map(|k| unit * 10.0_f64.powi(k));
     let felt = distances.map(|distance| [force.at(distance), -force.at(-distance)]);
@@ -50,7 +50,7 @@ pub fn pushes_away(force: &Force, unit: f64) -> bool {
 
 /// The ranges of amplitudes of an odd force, outwards, up to twenty-four equilibria or twelve
 /// decades beyond the unit.
-pub fn passages(force: &Force, unit: f64) -> Vec<Passage> {
+pub fn passages(force: &CentredForce, unit: f64) -> Vec<Passage> {
     let Some(side) = Side::new(force, unit.abs()) else {
         return vec![];
     };
@@ -93,7 +93,7 @@ pub fn passage_at(passages: &[Passage], amplitude: f64) -> Option<&Passage> {
 
 /// The first amplitude from a bottom at `begin` on at which the potential exceeds a height, before
 /// the end; zero at rest.
-fn beginning(force: &Force, begin: f64, end: Option<f64>, height: f64) -> Option<f64> {
+fn beginning(force: &CentredForce, begin: f64, end: Option<f64>, height: f64) -> Option<f64> {
     /// Of the depth: less is rounding.
     const VISIBLE: f64 = 1e-9;
     if begin == 0.0 {
@@ -138,7 +138,7 @@ struct Side {
 }
 
 impl Side {
-    fn new(force: &Force, unit: f64) -> Option<Self> {
+    fn new(force: &CentredForce, unit: f64) -> Option<Self> {
         let equilibrium = force.equilibrium();
         let value = |distance: f64| force.at(distance);
         let ends_at = |place: f64| Rim { place, separatrix: false };
@@ -217,7 +217,8 @@ mod tests {
 
     fn ranges(text: &str, unit: f64) -> Vec<(f64, f64, Option<f64>)> {
         let force: Expr = text.parse().unwrap();
-        let force = Force::new(&force, "x".into(), &Expr::zero(), &BTreeMap::new(), unit).unwrap();
+        let force =
+            CentredForce::new(&force, "x".into(), &Expr::zero(), &BTreeMap::new(), unit).unwrap();
         let found = passages(&force, unit).into_iter();
         let end = |rim: Rim| rim.place;
         found.map(|range| (range.from, range.over, range.to.map(end))).collect()
@@ -264,7 +265,7 @@ mod tests {
     fn a_hilltop_is_told_from_a_bottom() {
         let away = |text: &str, at: &str, unit: f64| {
             let [force, at]: [Expr; 2] = [text, at].map(|text| text.parse().unwrap());
-            let force = Force::new(&force, "x".into(), &at, &BTreeMap::new(), unit).unwrap();
+            let force = CentredForce::new(&force, "x".into(), &at, &BTreeMap::new(), unit).unwrap();
             pushes_away(&force, unit)
         };
         for unit in [1e-5, 1.0, 1e5] {

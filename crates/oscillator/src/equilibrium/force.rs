@@ -9,11 +9,11 @@ use std::collections::BTreeMap;
 
 use num_traits::Zero;
 
-use super::Place;
+use super::EquilibriumPosition;
 use super::inverse::inverted;
 use super::search::{Zero as SignChange, polynomial_zeros, zeros};
 use super::shift::{closed_forms, coefficients, exact_zero, linear_zeros, moved};
-use crate::conservative::force::Force as AtNumbers;
+use crate::conservative::force::CentredForce as AtNumbers;
 use crate::conservative::passage::{Passage, passages, pushes_away};
 use crate::conservative::{is_odd, potential};
 use crate::exact::Rational;
@@ -42,14 +42,14 @@ pub(super) enum Pull {
 }
 
 /// A force of the position alone.
-pub(super) struct Force<'a> {
+pub(super) struct PositionForce<'a> {
     force: &'a Expr,
     coordinate: Symbol,
     /// The force as a function, where it has no parameters.
     value: Option<CompiledFunction>,
 }
 
-impl<'a> Force<'a> {
+impl<'a> PositionForce<'a> {
     pub(super) fn new(force: &'a Expr, coordinate: Symbol) -> Self {
         Self { force, coordinate, value: CompiledFunction::new(force, &[coordinate]).ok() }
     }
@@ -216,9 +216,9 @@ impl<'a> Force<'a> {
     }
 
     /// A number with the closed form that belongs to it, where one is known.
-    pub(super) fn exact_or_rounded(&self, position: f64) -> Place {
+    pub(super) fn exact_or_rounded(&self, position: f64) -> EquilibriumPosition {
         if let Some(exact) = exact_zero(self.force, self.coordinate, position) {
-            return Place::Exact(exact);
+            return EquilibriumPosition::Exact(exact);
         }
         let belongs = |form: &Expr| {
             let value = form.evaluate(&BTreeMap::new());
@@ -226,7 +226,7 @@ impl<'a> Force<'a> {
         };
         let forms = closed_forms(self.force, self.coordinate);
         let form = forms.into_iter().find(belongs);
-        form.map_or(Place::Rounded(position), Place::Exact)
+        form.map_or(EquilibriumPosition::Rounded(position), EquilibriumPosition::Exact)
     }
 
     /// Candidates for the equilibria of a force with parameters, in closed form.
@@ -240,7 +240,7 @@ impl<'a> Force<'a> {
 
     /// The closed form of the stable equilibrium in the parameters, chosen where loads are small,
     /// and where no pole hides it if that can be.
-    pub(super) fn stable_closed_form(&self) -> Option<Place> {
+    pub(super) fn stable_closed_form(&self) -> Option<EquilibriumPosition> {
         let forms = self.forms();
         let samples = self.samples();
         let nearest = |hidden_too: bool| {
@@ -252,7 +252,7 @@ impl<'a> Force<'a> {
             })
         };
         let (_, form) = nearest(false).or_else(|| nearest(true))?;
-        Some(Place::Exact(form))
+        Some(EquilibriumPosition::Exact(form))
     }
 
     /// Whether the force has no value somewhere between zero and a position, with these numbers for

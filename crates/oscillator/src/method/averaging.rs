@@ -45,11 +45,11 @@ use num_traits::Zero;
 
 use self::pure_power::PurePower;
 use self::small_terms::SmallTerms;
-use super::limit_cycle::{AmplitudeEquation, Units};
+use super::limit_cycle::{AmplitudeEquation, FrequencyUnits};
 use super::multiple_scales::scaling::has_quadratic_terms;
 use super::secular::bounded;
 use super::{Options, Reason, Refusal, not_polynomial, transient};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::Integer;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
@@ -172,7 +172,7 @@ struct Averaged {
     release: Release,
     steady: Vec<LeadingCycle>,
     notes: Vec<Note>,
-    derivation: Vec<Line>,
+    derivation: Vec<DerivationLine>,
 }
 
 impl Averaged {
@@ -297,18 +297,23 @@ fn of_polynomial(
     let a = AmplitudeConvention::FirstHarmonic.symbol();
 
     let letters = DerivationLetters::beside(&oscillator.names());
-    let slow = Slow::new(force, &omega0, a);
+    let slow = FirstOrderAverage::new(force, &omega0, a);
     let mut derivation = vec![
-        Line::equation(oscillator.coordinate, slow.position.clone()).because("along"),
-        Line::equation(oscillator.velocity(), slow.velocity.clone()),
-        Line::equation(letters.of("g", 1), slow.force[0].clone()).because("the small terms are"),
+        DerivationLine::equation(oscillator.coordinate, slow.position.clone()).because("along"),
+        DerivationLine::equation(oscillator.velocity(), slow.velocity.clone()),
+        DerivationLine::equation(letters.of("g", 1), slow.force[0].clone())
+            .because("the small terms are"),
     ];
     let twice = Expr::from(2) * Expr::from(&omega0);
     let (rate, phase) = (Expr::from(a.derivative()), Expr::from(letters.phase.derivative()));
-    derivation
-        .push(Line::equation(&twice * &rate, &slow.secular_sine).because("what sin(θ) asks for"));
+    derivation.push(
+        DerivationLine::equation(&twice * &rate, &slow.secular_sine)
+            .because("what sin(θ) asks for"),
+    );
     let cosine = &twice * &Expr::from(a) * (&phase - &Expr::from(&omega0));
-    derivation.push(Line::equation(cosine, &slow.secular_cosine).because("what cos(θ) asks for"));
+    derivation.push(
+        DerivationLine::equation(cosine, &slow.secular_cosine).because("what cos(θ) asks for"),
+    );
     let [mut amplitude_rate, mut phase_rate] =
         [slow.first[0].clone(), omega0.clone() + slow.first[1].clone()];
     let leading = [Expr::from(&amplitude_rate), Expr::from(&phase_rate)];
@@ -319,14 +324,14 @@ fn of_polynomial(
         let [second_amplitude, second_phase] = slow.second(force);
         release = slow.release()?;
         derivation.push(
-            Line::equation(letters.of("u", 1), correction.clone())
+            DerivationLine::equation(letters.of("u", 1), correction.clone())
                 .because(format!("what {} leaves over", letters.of("g", 1))),
         );
         derivation.push(
-            Line::equation(letters.of("A", 2), &second_amplitude)
+            DerivationLine::equation(letters.of("A", 2), &second_amplitude)
                 .because("the same at second order"),
         );
-        derivation.push(Line::equation(letters.of("B", 2), &second_phase));
+        derivation.push(DerivationLine::equation(letters.of("B", 2), &second_phase));
         amplitude_rate = amplitude_rate + second_amplitude;
         phase_rate = phase_rate + second_phase;
     }
@@ -360,7 +365,7 @@ fn steady(
     delta: Symbol,
     taken: &[Symbol],
 ) -> (Vec<LeadingCycle>, Vec<Note>) {
-    let units = Units::new(force, omega0.clone());
+    let units = FrequencyUnits::new(force, omega0.clone());
     let Some(equation) = AmplitudeEquation::new(force, &units) else {
         return (vec![], vec![]);
     };
@@ -379,7 +384,7 @@ fn steady(
 }
 
 /// The first order of a polynomial force, and what the second is made of.
-struct Slow {
+struct FirstOrderAverage {
     a: Symbol,
     omega0: Polynomial,
     /// `a cos(psi)` and `-a omega0 sin(psi)`.
@@ -410,7 +415,7 @@ fn differentiated(polynomial: &Polynomial, by: Symbol) -> Polynomial {
     slope
 }
 
-impl Slow {
+impl FirstOrderAverage {
     fn new(force: &PerturbedForce, omega0: &Polynomial, a: Symbol) -> Self {
         let amplitude = constant(&Polynomial::symbol(a));
         let position = amplitude.product(&Series::cos(POLYNOMIALS, 1));
@@ -568,16 +573,17 @@ impl Projected {
         oscillator: &Oscillator,
         amplitude: &Expr,
         letters: &DerivationLetters,
-    ) -> Result<Vec<Line>, ExprError> {
+    ) -> Result<Vec<DerivationLine>, ExprError> {
         let theta = Expr::from(oscillator.phase());
         Ok(vec![
-            Line::equation(Expr::from(oscillator.coordinate), amplitude * &theta.cos()?)
+            DerivationLine::equation(Expr::from(oscillator.coordinate), amplitude * &theta.cos()?)
                 .because("along"),
-            Line::equation(
+            DerivationLine::equation(
                 Expr::from(oscillator.velocity()),
                 -(amplitude * &self.omega0 * theta.sin()?),
             ),
-            Line::equation(letters.of("g", 1), self.terms.clone()).because("the small terms are"),
+            DerivationLine::equation(letters.of("g", 1), self.terms.clone())
+                .because("the small terms are"),
         ])
     }
 }
@@ -607,8 +613,9 @@ fn by_projections(oscillator: &Oscillator, small: &SmallTerms) -> Result<Average
     let phase_rate = (&omega0 + &Expr::divide(&cosine, &(&twice * &amplitude))?).expand()?;
     let psi = Expr::from(letters.phase.derivative());
     derivation.extend([
-        Line::equation(&twice * &Expr::from(a.derivative()), sine).because("what sin(θ) asks for"),
-        Line::equation(&twice * &amplitude * (&psi - &omega0), cosine)
+        DerivationLine::equation(&twice * &Expr::from(a.derivative()), sine)
+            .because("what sin(θ) asks for"),
+        DerivationLine::equation(&twice * &amplitude * (&psi - &omega0), cosine)
             .because("what cos(θ) asks for"),
     ]);
     let steady = transient::steady(a, &amplitude_rate);

@@ -29,11 +29,11 @@ use std::rc::Rc;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::conservative::passage::{passage_at, passages, pushes_away};
 use crate::decimal::significant;
 use crate::exact::Doubles;
-use crate::numeric::continuation::Step::{Ended, Taken, TooLong};
+use crate::numeric::continuation::ContinuationStep::{Ended, Taken, TooLong};
 use crate::numeric::continuation::{self, bordered, follow};
 use crate::numeric::ode::quadrature::nodes_and_weights;
 use crate::numeric::ode::root::find_root;
@@ -41,7 +41,7 @@ use crate::series::FourierSeries;
 use crate::symbol::letters::AMPLITUDE;
 
 /// A balance solved by numbers.
-pub struct Balance {
+pub struct BalanceSolution {
     /// omega^2.
     pub frequency_squared: f64,
     /// The motion about the equilibrium.
@@ -100,7 +100,7 @@ pub enum Lost {
 /// same: the next amplitude is reached from the nearest known one below it instead of from rest.
 #[derive(Debug, Default)]
 pub struct Continuation {
-    states: RefCell<Vec<State>>,
+    states: RefCell<Vec<BalanceUnknowns>>,
     /// Refinement factor of the sums of the last solution; 0 if there is none yet.
     fineness: Cell<usize>,
     /// Number of failed continuations of motions over several wells.
@@ -109,17 +109,17 @@ pub struct Continuation {
 
 impl Continuation {
     /// The motion of the known amplitude nearest to this one, on its side.
-    fn nearest(&self, amplitude: f64) -> Option<State> {
+    fn nearest(&self, amplitude: f64) -> Option<BalanceUnknowns> {
         let goal = amplitude.abs().ln();
         let known = self.states.borrow();
-        let distance = |state: &State| (state.logarithm() - goal).abs();
+        let distance = |state: &BalanceUnknowns| (state.logarithm() - goal).abs();
         let reached = known.iter().filter(|state| state.side() == amplitude.signum());
         reached.min_by(|one, other| distance(one).total_cmp(&distance(other))).cloned()
     }
 
     /// The motion of the largest amplitude known that is no larger than this one, which is on this
     /// side.
-    fn below(&self, amplitude: f64) -> Option<State> {
+    fn below(&self, amplitude: f64) -> Option<BalanceUnknowns> {
         let goal = amplitude.abs().ln();
         let known = self.states.borrow();
         let reached = known
@@ -135,16 +135,17 @@ impl Continuation {
 /// # Errors
 /// [`Lost`].
 pub fn balance(
-    force: &Force,
+    force: &CentredForce,
     degree: Option<u32>,
     harmonics: &[usize],
     amplitude: f64,
     known: &Continuation,
-) -> Result<Balance, Lost> {
+) -> Result<BalanceSolution, Lost> {
     /// Narrow places on the way, such as the waves of a sine: a few harmonics say nothing of more,
     /// and take long.
     const MOST_CUTS: usize = 600;
-    let mut problem = Problem::new(force, degree, harmonics, amplitude).ok_or(Lost::NoStart)?;
+    let mut problem =
+        BalanceProblem::new(force, degree, harmonics, amplitude).ok_or(Lost::NoStart)?;
     problem.fineness = known.fineness.get().max(1);
     if problem.cuts.len() > MOST_CUTS {
         return Err(Lost::Unsettled);
@@ -165,7 +166,7 @@ pub fn balance(
     {
         return Err(Lost::Gap { place });
     }
-    Ok(Balance {
+    Ok(BalanceSolution {
         frequency_squared: state.frequency_squared(),
         motion,
         rest_ends_at,
@@ -174,7 +175,7 @@ pub fn balance(
 }
 
 /// The last of these motions up to which, from the first on, nothing changes.
-fn settled<'s>(motions: &[&'s (State, f64)]) -> Option<&'s (State, f64)> {
+fn settled<'s>(motions: &[&'s (BalanceUnknowns, f64)]) -> Option<&'s (BalanceUnknowns, f64)> {
     let first = motions.first()?.1;
     let same = motions.iter().take_while(|entry| (entry.1 - first).abs() <= 1e-6);
     same.last().copied()
@@ -182,9 +183,9 @@ fn settled<'s>(motions: &[&'s (State, f64)]) -> Option<&'s (State, f64)> {
 
 /// `ln w`, `b_k`, `ln alpha`.
 #[derive(Clone, Debug)]
-struct State(DVector<f64>);
+struct BalanceUnknowns(DVector<f64>);
 
-impl State {
+impl BalanceUnknowns {
     fn frequency_squared(&self) -> f64 {
         self.0[0].exp()
     }
@@ -203,8 +204,8 @@ impl State {
     }
 }
 
-struct Problem<'a> {
-    force: &'a Force,
+struct BalanceProblem<'a> {
+    force: &'a CentredForce,
     harmonics: &'a [usize],
     count: usize,
     /// Index of the first harmonic.
@@ -231,9 +232,9 @@ struct Nodes {
     jumps: Vec<Option<f64>>,
 }
 
-impl<'a> Problem<'a> {
+impl<'a> BalanceProblem<'a> {
     fn new(
-        force: &'a Force,
+        force: &'a CentredForce,
         degree: Option<u32>,
         harmonics: &'a [usize],
         amplitude: f64,
@@ -265,7 +266,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The smallest and the largest distance from the equilibrium along a motion.
-    fn range(&self, state: &State) -> (f64, f64) {
+    fn range(&self, state: &BalanceUnknowns) -> (f64, f64) {
         const SAMPLES: usize = 256;
         let alpha = state.logarithm().exp();
         let value = |i: usize| alpha * self.displacement(state, PI * i as f64 / SAMPLES as f64);
@@ -275,19 +276,19 @@ impl<'a> Problem<'a> {
     }
 
     /// `sum b_k cos(k theta)`.
-    fn displacement(&self, state: &State, theta: f64) -> f64 {
+    fn displacement(&self, state: &BalanceUnknowns, theta: f64) -> f64 {
         let wave = |(j, &k): (usize, &usize)| state.0[j + 1] * (k as f64 * theta).cos();
         self.harmonics.iter().enumerate().map(wave).sum()
     }
 
-    fn velocity(&self, state: &State, theta: f64) -> f64 {
+    fn velocity(&self, state: &BalanceUnknowns, theta: f64) -> f64 {
         let wave =
             |(j, &k): (usize, &usize)| -(k as f64) * state.0[j + 1] * (k as f64 * theta).sin();
         self.harmonics.iter().enumerate().map(wave).sum()
     }
 
     /// The points for sums along this motion, `finer` times as many as this problem has them.
-    fn nodes(&self, state: &State, finer: usize) -> Rc<Nodes> {
+    fn nodes(&self, state: &BalanceUnknowns, finer: usize) -> Rc<Nodes> {
         let once = finer == 1;
         let finer = finer * self.fineness;
         let cuts = if self.polynomial {
@@ -335,7 +336,7 @@ impl<'a> Problem<'a> {
     /// instants themselves.
     fn between_crossings(
         &self,
-        state: &State,
+        state: &BalanceUnknowns,
         cuts: &[f64],
         finer: usize,
     ) -> (Vec<f64>, Vec<f64>, Vec<Option<f64>>) {
@@ -392,7 +393,11 @@ impl<'a> Problem<'a> {
     }
 
     /// The equations and their derivatives by all unknowns, in units of `w`.
-    fn equations(&self, state: &State, nodes: &Nodes) -> Option<(DVector<f64>, DMatrix<f64>)> {
+    fn equations(
+        &self,
+        state: &BalanceUnknowns,
+        nodes: &Nodes,
+    ) -> Option<(DVector<f64>, DMatrix<f64>)> {
         let count = self.count;
         let (w, alpha) = (state.frequency_squared(), state.logarithm().exp());
         let shape = state.shape(count);
@@ -443,11 +448,11 @@ impl<'a> Problem<'a> {
     /// Newton's iteration from `start`, every step at right angles to `direction`.
     fn corrected(
         &self,
-        start: &State,
+        start: &BalanceUnknowns,
         direction: &DVector<f64>,
         finer: usize,
         iterations: usize,
-    ) -> Option<State> {
+    ) -> Option<BalanceUnknowns> {
         let mut state = start.clone();
         let mut last = f64::INFINITY;
         for _ in 0..iterations {
@@ -468,7 +473,7 @@ impl<'a> Problem<'a> {
     }
 
     /// At fixed amplitude.
-    fn at_amplitude(&self, start: &State, finer: usize) -> Option<State> {
+    fn at_amplitude(&self, start: &BalanceUnknowns, finer: usize) -> Option<BalanceUnknowns> {
         const ITERATIONS: usize = 40;
         let mut direction = DVector::zeros(self.count + 2);
         direction[self.count + 1] = 1.0;
@@ -476,8 +481,8 @@ impl<'a> Problem<'a> {
     }
 
     /// The motion of one term, and how large its first corrections are.
-    fn of_one_term(&self, amplitude: f64) -> Option<(State, f64)> {
-        let mut state = State(DVector::zeros(self.count + 2));
+    fn of_one_term(&self, amplitude: f64) -> Option<(BalanceUnknowns, f64)> {
+        let mut state = BalanceUnknowns(DVector::zeros(self.count + 2));
         state.0[self.first + 1] = self.side();
         state.0[self.count + 1] = amplitude.abs().ln();
         let nodes = self.nodes(&state, 1);
@@ -500,12 +505,12 @@ impl<'a> Problem<'a> {
     /// A motion of small amplitude: the nearest that has the linear frequency and nearly is its
     /// first harmonic alone, or, where the force has no linear part, the nearest below which
     /// nothing changes any more, as for a power of x.
-    fn at_rest(&self) -> Option<State> {
+    fn at_rest(&self) -> Option<BalanceUnknowns> {
         /// Corrections so small, and a frequency so close, that the branch is that of rest.
         const NEARLY_ALONE: f64 = 0.01;
         const NEARLY_LINEAR: f64 = 0.05;
         let linear = self.force.slope(0.0);
-        let mut tried: Vec<(State, f64)> = Vec::new();
+        let mut tried: Vec<(BalanceUnknowns, f64)> = Vec::new();
         for halving in (0..25).chain([30, 40, 60, 100]) {
             let amplitude = self.amplitude * 0.5_f64.powi(halving);
             let Some((alone, corrections)) = self.of_one_term(amplitude) else {
@@ -519,31 +524,31 @@ impl<'a> Problem<'a> {
             }
             tried.push((alone, corrections));
         }
-        let upwards: Vec<&(State, f64)> = tried.iter().rev().collect();
+        let upwards: Vec<&(BalanceUnknowns, f64)> = tried.iter().rev().collect();
         self.near(&settled(&upwards)?.0, 0.5)
     }
 
     /// A motion of an amplitude so large that nothing changes any more beyond it.
-    fn at_large(&self) -> Option<State> {
+    fn at_large(&self) -> Option<BalanceUnknowns> {
         const DOUBLINGS: i32 = 40;
-        let tried: Vec<Option<(State, f64)>> = (0..=DOUBLINGS)
+        let tried: Vec<Option<(BalanceUnknowns, f64)>> = (0..=DOUBLINGS)
             .map(|doubling| self.of_one_term(self.amplitude * 2.0_f64.powi(doubling)))
             .collect();
         // Far out the force may overflow.
         let felt = tried.iter().rposition(Option::is_some)?;
-        let downwards: Vec<&(State, f64)> =
+        let downwards: Vec<&(BalanceUnknowns, f64)> =
             tried[..=felt].iter().rev().map_while(Option::as_ref).collect();
         self.near(&settled(&downwards)?.0, 0.5)
     }
 
     /// A solution close to a guess.
-    fn near(&self, guess: &State, distance: f64) -> Option<State> {
+    fn near(&self, guess: &BalanceUnknowns, distance: f64) -> Option<BalanceUnknowns> {
         self.at_amplitude(guess, 1).filter(|found| (&found.0 - &guess.0).amax() <= distance)
     }
 
     /// The branch from rest to the amplitude, or that from large amplitudes and where the one from
     /// rest ends. Where it is the sums that are too coarse to go on, they are made finer.
-    fn followed(&mut self, known: &Continuation) -> Result<(State, Option<f64>), Lost> {
+    fn followed(&mut self, known: &Continuation) -> Result<(BalanceUnknowns, Option<f64>), Lost> {
         if pushes_away(self.force, self.amplitude) {
             return self.over_the_hilltop(known).map(|found| (found, None));
         }
@@ -567,7 +572,7 @@ impl<'a> Problem<'a> {
         };
         let amplitude = end.logarithm().exp() * self.side();
         // A true motion that stays in one of several wells is none about all of them.
-        let fits = |found: &State| {
+        let fits = |found: &BalanceUnknowns| {
             let (low, high) = self.range(found);
             self.is_pulled_back(low, high) || self.runs_over_several_wells()
         };
@@ -579,7 +584,7 @@ impl<'a> Problem<'a> {
 
     /// The branch of motions through an unstable equilibrium, over the wells on both sides, from
     /// what is known of it or from an amplitude nearby at which one term is nearly all.
-    fn over_the_hilltop(&self, known: &Continuation) -> Result<State, Lost> {
+    fn over_the_hilltop(&self, known: &Continuation) -> Result<BalanceUnknowns, Lost> {
         /// Starts that are tried, and how far they are from the amplitude: to four times, where
         /// there is no end before.
         const STARTS: usize = 6;
@@ -591,7 +596,7 @@ impl<'a> Problem<'a> {
         let range = passage_at(&passages, self.amplitude).ok_or(Lost::NoStart)?;
         let end = range.to.map_or(f64::INFINITY, |rim| rim.place);
         let goal = self.amplitude.abs().ln();
-        let reached = |start: State| {
+        let reached = |start: BalanceUnknowns| {
             let way = (goal - start.logarithm()).signum();
             let mut passed = Vec::new();
             let found = self.followed_from(start, way, &mut passed);
@@ -608,12 +613,12 @@ impl<'a> Problem<'a> {
         let sizes = (-3 * PER_DOUBLING..=2 * PER_DOUBLING)
             .map(|k| 2.0_f64.powf(f64::from(k) / f64::from(PER_DOUBLING)));
         let sizes = sizes.map(|factor| factor * self.amplitude.abs());
-        let mut alone: Vec<(State, f64)> = sizes
+        let mut alone: Vec<(BalanceUnknowns, f64)> = sizes
             .filter(|&size| size > range.from && size < end)
             .filter_map(|size| self.of_one_term(size * self.side()))
             .collect();
         // Nearly of one term, and not far.
-        let merit = |(state, corrections): &(State, f64)| {
+        let merit = |(state, corrections): &(BalanceUnknowns, f64)| {
             corrections + 0.1 * (state.logarithm() - goal).abs()
         };
         alone.sort_by(|one, other| merit(one).total_cmp(&merit(other)));
@@ -637,7 +642,10 @@ impl<'a> Problem<'a> {
 
     /// The branch from rest, or from what is known of it, to the amplitude; or its end. Nothing
     /// where there is no motion at rest.
-    fn up_from_rest(&self, known: &Continuation) -> Option<Result<State, State>> {
+    fn up_from_rest(
+        &self,
+        known: &Continuation,
+    ) -> Option<Result<BalanceUnknowns, BalanceUnknowns>> {
         let mut passed = Vec::new();
         // By the sums of this problem, which may be finer than those that it was found with.
         let nearest = known.below(self.amplitude);
@@ -658,7 +666,7 @@ impl<'a> Problem<'a> {
 
     /// Whether the force waves more often than the sums can follow: finer ones say that this is no
     /// solution.
-    fn is_too_coarse(&self, state: &State) -> bool {
+    fn is_too_coarse(&self, state: &BalanceUnknowns) -> bool {
         const FINER: usize = 4;
         const AGREEING: f64 = 1e-7;
         let residual =
@@ -703,10 +711,10 @@ impl<'a> Problem<'a> {
     /// The last motion, where the branch does not reach the amplitude.
     fn followed_from(
         &self,
-        start: State,
+        start: BalanceUnknowns,
         way: f64,
-        passed: &mut Vec<State>,
-    ) -> Result<State, State> {
+        passed: &mut Vec<BalanceUnknowns>,
+    ) -> Result<BalanceUnknowns, BalanceUnknowns> {
         const LONGEST: f64 = 0.5;
         const SHORTEST: f64 = 1e-6;
         const STEPS: usize = 3000;
@@ -717,7 +725,7 @@ impl<'a> Problem<'a> {
         let (amplitude, mut steps) = (self.count + 1, 0);
         let mut direction = DVector::zeros(amplitude + 1);
         direction[amplitude] = way;
-        let step = |passed: &[State], length: &mut f64| {
+        let step = |passed: &[BalanceUnknowns], length: &mut f64| {
             let state = &passed[passed.len() - 1];
             let left = goal - state.logarithm();
             steps += 1;
@@ -735,14 +743,15 @@ impl<'a> Problem<'a> {
             let left = left / tangent[amplitude];
             let last = left <= *length;
             *length = length.min(left);
-            let mut predicted = State(&state.0 + *length * &tangent);
+            let mut predicted = BalanceUnknowns(&state.0 + *length * &tangent);
             let found = if last {
                 predicted.0[amplitude] = goal;
                 self.at_amplitude(&predicted, 1)
             } else {
                 self.corrected(&predicted, &tangent, 1, 12)
             };
-            let near = |found: &State| (&found.0 - &predicted.0).norm() <= SHARE * length.abs();
+            let near =
+                |found: &BalanceUnknowns| (&found.0 - &predicted.0).norm() <= SHARE * length.abs();
             match found.filter(near) {
                 Some(found) if last => Ended(Some(found), true),
                 Some(found) => {
@@ -760,7 +769,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The direction of the branch, forward.
-    fn tangent(&self, state: &State, before: &DVector<f64>) -> Option<DVector<f64>> {
+    fn tangent(&self, state: &BalanceUnknowns, before: &DVector<f64>) -> Option<DVector<f64>> {
         let (_, jacobian) = self.equations(state, &self.nodes(state, 1))?;
         let tangent = continuation::tangent(&bordered(&jacobian, before).lu())?;
         let norm = tangent.norm();
@@ -768,7 +777,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Repeats the solution with finer and finer sums until two of them agree.
-    fn refined(&self, mut state: State) -> Result<State, Lost> {
+    fn refined(&self, mut state: BalanceUnknowns) -> Result<BalanceUnknowns, Lost> {
         const MOST_POINTS: usize = 1 << 17;
         /// Largest change from one refinement to the next that is accepted: the digits that a user
         /// sees.

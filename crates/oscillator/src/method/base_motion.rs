@@ -10,7 +10,7 @@
 
 use std::collections::BTreeMap;
 
-use super::drive::{Quadrature, Wave};
+use super::drive::{HarmonicExcitation, Quadrature};
 use super::{Options, Reason, Refusal, solve_in_its_coordinate};
 use crate::expr::{Equation, Expr, ExprError, Typed};
 use crate::oscillator::Oscillator;
@@ -121,7 +121,7 @@ fn beside(sum: &Expr, name: Symbol, own: [Symbol; 2]) -> Result<Option<Expr>, Ex
 fn integrated(speed: &Expr) -> Result<Expr, Refusal> {
     let mut motion = vec![];
     for term in speed.terms() {
-        let wave = Wave::new(term, Method::MultipleScales)?;
+        let wave = HarmonicExcitation::new(term, Method::MultipleScales)?;
         let angle = &(&wave.rate * &Expr::symbol("t")) + &wave.phase;
         let along = match wave.quadrature {
             Quadrature::Cosine => angle.sin()?,

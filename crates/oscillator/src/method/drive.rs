@@ -121,8 +121,10 @@ impl Drive {
             definitions: vec![],
         };
         let terms = parts.forcing.terms();
-        let waves: Vec<Wave> =
-            terms.iter().map(|term| Wave::new(term, method)).collect::<Result<_, _>>()?;
+        let waves: Vec<HarmonicExcitation> = terms
+            .iter()
+            .map(|term| HarmonicExcitation::new(term, method))
+            .collect::<Result<_, _>>()?;
         let Some(first) = waves.first() else {
             return Ok(drive);
         };
@@ -237,7 +239,7 @@ impl Drive {
 
     fn add(
         &mut self,
-        wave: Wave,
+        wave: HarmonicExcitation,
         multiple: u32,
         term: &Expr,
         taken: &[Symbol],
@@ -282,14 +284,14 @@ fn named(value: Expr, letter: &str, definitions: &mut Vec<Definition>, taken: &[
 }
 
 /// One term: `factor cos(rate t + phase)` or the sine of that, the rate without a minus.
-pub(super) struct Wave {
+pub(super) struct HarmonicExcitation {
     pub(super) factor: Expr,
     pub(super) rate: Expr,
     pub(super) phase: Expr,
     pub(super) quadrature: Quadrature,
 }
 
-impl Wave {
+impl HarmonicExcitation {
     /// # Errors
     /// A term that is no single wave, by name.
     pub(super) fn new(term: &Expr, method: Method) -> Result<Self, Refusal> {

@@ -2,7 +2,7 @@
 //! all have alike.
 
 use super::drive::Drive;
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::{POLYNOMIALS, Polynomial};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
@@ -32,7 +32,7 @@ pub(super) struct DrivenMotion<'a> {
     pub(super) detuning: Definition,
     pub(super) response: Response,
     pub(super) validity: Vec<Note>,
-    pub(super) derivation: Vec<Line>,
+    pub(super) derivation: Vec<DerivationLine>,
 }
 
 impl DrivenMotion<'_> {

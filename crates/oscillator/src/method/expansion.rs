@@ -10,7 +10,7 @@ use num_integer::Integer as _;
 use num_traits::{One, ToPrimitive, Zero};
 
 use super::secular::{
-    Amplitude, Expansion, Extent, Factored, ForceTerm, Scheme, SecularError,
+    AmplitudeKind, ExpansionScope, Factored, ForceTerm, Scheme, SecularError, SecularExpansion,
     expand_numbers_supervised, expand_polynomials_supervised, expand_supervised,
 };
 use crate::derivation::{AmplitudeCondition, Condition, Step};
@@ -74,7 +74,7 @@ pub fn expand_exactly(
     scheme: &Scheme,
     delta: Option<Symbol>,
     inverse_slope: Option<&Polynomial>,
-    (taken, extent): (&[Symbol], Extent),
+    (taken, extent): (&[Symbol], ExpansionScope),
     supervision: Supervision,
 ) -> Result<ExactSeries, SecularError> {
     let scales = scales(terms);
@@ -128,7 +128,7 @@ pub fn expand_exactly(
                         Some(inverse),
                         supervision,
                     )?;
-                    if extent == Extent::Frequency {
+                    if extent == ExpansionScope::Frequency {
                         expansion.forget_motion();
                     }
                     expansion
@@ -226,7 +226,7 @@ fn without(coefficient: &Polynomial, scales: &[(Symbol, Rational)]) -> Polynomia
 /// Orders `0, 1, ...` put together as polynomials in the small parameter and the symbols that were
 /// scaled away.
 fn collect<'a, R: Ring, P: Fn(&R::Element) -> Polynomial>(
-    expansion: &'a Expansion<R>,
+    expansion: &'a SecularExpansion<R>,
     scheme: &Scheme,
     over: impl Fn(&'a Integer) -> P,
     restore: impl Fn(usize) -> Monomial,
@@ -285,13 +285,15 @@ fn collect<'a, R: Ring, P: Fn(&R::Element) -> Polynomial>(
 fn conditions(n: usize, scheme: &Scheme) -> Vec<Condition> {
     match (n, scheme.normalisation, scheme.amplitude) {
         (0, ..) => vec![Condition::Position(1), Condition::AtRest],
-        (_, AmplitudeConvention::Initial, Amplitude::Free) => {
+        (_, AmplitudeConvention::Initial, AmplitudeKind::Free) => {
             vec![Condition::Position(0), Condition::AtRest]
         }
-        (_, AmplitudeConvention::Initial, Amplitude::Determined) => vec![Condition::AtRest],
-        (_, AmplitudeConvention::FirstHarmonic, Amplitude::Free) => {
+        (_, AmplitudeConvention::Initial, AmplitudeKind::Determined) => vec![Condition::AtRest],
+        (_, AmplitudeConvention::FirstHarmonic, AmplitudeKind::Free) => {
             vec![Condition::NoCosine, Condition::NoSine]
         }
-        (_, AmplitudeConvention::FirstHarmonic, Amplitude::Determined) => vec![Condition::NoSine],
+        (_, AmplitudeConvention::FirstHarmonic, AmplitudeKind::Determined) => {
+            vec![Condition::NoSine]
+        }
     }
 }

@@ -25,7 +25,7 @@ use num_traits::Zero;
 
 use super::one_term::{integral_law, note_even_part, set_law, shared_integral, unsolved};
 use super::{Options, Reason, Refusal, Refuser, not_polynomial};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::Rational;
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, Parts, SmallParameter};
@@ -76,7 +76,7 @@ pub(super) fn solve(
         vec![Note::Cut(Cut::FirstOrderOnly { small }), Note::MotionAtLeadingOrder { small }];
     note_even_part(&mut solution, oscillator, &force)?;
     solution.derivation = vec![
-        Line::equation(oscillator.coordinate, solution.displacement.clone())
+        DerivationLine::equation(oscillator.coordinate, solution.displacement.clone())
             .because(format!("at {small}^0")),
     ];
     let law = integral_law(oscillator, &force, &solution)?;

@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 
 use num_traits::{One as _, Zero as _};
 
-use super::drive::{Quadrature, Wave};
+use super::drive::{HarmonicExcitation, Quadrature};
 use super::multiple_scales::scaling::has_quadratic_terms;
 use super::resonance::{RESONANCES, ratio_of};
 use super::{Options, solve_by};
@@ -30,7 +30,7 @@ use crate::symbol::{Symbol, fresh};
 
 /// A drive far from resonance, and the letters of the motion that it holds.
 struct Forced {
-    wave: Wave,
+    wave: HarmonicExcitation,
     /// `Lambda`.
     size: Definition,
     /// The cosine and the sine of its phase, and its frequency, which stand for themselves while
@@ -53,7 +53,7 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Soluti
         return None;
     };
     let parts = oscillator.parts().ok()?;
-    let waves: Option<Vec<Wave>> =
+    let waves: Option<Vec<HarmonicExcitation>> =
         parts.forcing.terms().iter().map(|term| plain(term, oscillator)).collect();
     let waves = waves?;
     let mut free = oscillator.clone();
@@ -70,11 +70,11 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Soluti
         return None;
     }
     let near = nearest(&waves, small, &stiffness);
-    let (kept, others): (Vec<Wave>, Vec<Wave>) = waves
+    let (kept, others): (Vec<HarmonicExcitation>, Vec<HarmonicExcitation>) = waves
         .into_iter()
         .partition(|wave| number_between(&wave.rate, &near).is_some_and(|number| number.is_one()));
     // Waves of other frequencies that have ratios among them act together.
-    let alone = |(k, wave): (usize, &Wave)| {
+    let alone = |(k, wave): (usize, &HarmonicExcitation)| {
         let mut rest = kept.iter().chain(&others[k + 1..]);
         !rest.any(|other| number_between(&wave.rate, &other.rate).is_some())
             && is_far(&wave.rate, &stiffness)
@@ -138,8 +138,8 @@ fn of_the_whole(
 }
 
 /// A drive that is a force free of the motion; `None` for any other.
-fn plain(term: &Expr, oscillator: &Oscillator) -> Option<Wave> {
-    let wave = Wave::new(term, Method::MultipleScales).ok()?;
+fn plain(term: &Expr, oscillator: &Oscillator) -> Option<HarmonicExcitation> {
+    let wave = HarmonicExcitation::new(term, Method::MultipleScales).ok()?;
     let own = [oscillator.coordinate, oscillator.velocity()];
     let moves = |part: &Expr| own.iter().any(|name| part.contains(*name));
     (!moves(&wave.factor) && !moves(&wave.phase) && !moves(&wave.rate)).then_some(wave)
@@ -147,7 +147,7 @@ fn plain(term: &Expr, oscillator: &Oscillator) -> Option<Wave> {
 
 /// The frequency that is taken to be near the linear one: the nearest, where all are numbers; else
 /// that of the drive which the small letter makes as small as the damping; else the first.
-fn nearest(waves: &[Wave], small: Symbol, stiffness: &Expr) -> Expr {
+fn nearest(waves: &[HarmonicExcitation], small: Symbol, stiffness: &Expr) -> Expr {
     let distances: Option<Vec<f64>> = waves
         .iter()
         .map(|wave| ratio_of(&wave.rate, stiffness).map(|ratio| ratio.ln().abs()))
@@ -178,13 +178,13 @@ fn number_between(one: &Expr, other: &Expr) -> Option<Rational> {
     quotient.as_number().cloned()
 }
 
-fn carrier(wave: &Wave) -> Option<[Expr; 2]> {
+fn carrier(wave: &HarmonicExcitation) -> Option<[Expr; 2]> {
     let angle = &(&wave.rate * &Expr::symbol("t")) + &wave.phase;
     Some([angle.cos().ok()?, angle.sin().ok()?])
 }
 
 /// The term of the left side.
-fn wave_term(wave: &Wave) -> Option<Expr> {
+fn wave_term(wave: &HarmonicExcitation) -> Option<Expr> {
     let [cosine, sine] = carrier(wave)?;
     Some(match wave.quadrature {
         Quadrature::Cosine => &wave.factor * &cosine,
@@ -192,7 +192,11 @@ fn wave_term(wave: &Wave) -> Option<Expr> {
     })
 }
 
-fn forced(waves: Vec<Wave>, stiffness: &Expr, oscillator: &Oscillator) -> Option<Vec<Forced>> {
+fn forced(
+    waves: Vec<HarmonicExcitation>,
+    stiffness: &Expr,
+    oscillator: &Oscillator,
+) -> Option<Vec<Forced>> {
     let mut taken = oscillator.names();
     let mut name = |wanted: &str| {
         let name = fresh(wanted, &taken);

@@ -30,13 +30,13 @@ use super::one_term::{conservative_force, integral_law, set_law, shared_integral
 use super::{Options, Reason, Refusal};
 use crate::conservative::is_odd;
 use crate::conservative::projection::cosine_coefficient;
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
-use crate::solution::{Law, Method, Note, Solution, System, note::FirstStep};
+use crate::solution::{AlgebraicSystem, Law, Method, Note, Solution, note::FirstStep};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 const METHOD: Method = Method::HarmonicBalance;
@@ -66,7 +66,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     {
         set_law(&mut solution, &law)?;
         solution.derivation =
-            vec![Line::equation(oscillator.coordinate, solution.displacement.clone())];
+            vec![DerivationLine::equation(oscillator.coordinate, solution.displacement.clone())];
         let law = integral_law(oscillator, &force, &solution)?;
         solution.derivation.extend(law);
         solution.validity.push(Note::FirstStep(FirstStep::Harmonic));
@@ -89,7 +89,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
                 solution.validity.push(Note::ArcsFor { positive: first });
             }
             let unknowns = std::iter::once(Symbol::new("omega")).chain(names).collect();
-            solution.law = Law::System(System { unknowns, equations });
+            solution.law = Law::System(AlgebraicSystem { unknowns, equations });
         }
         None => {
             solution.law = Law::Quadrature(solution.derivation.clone());
@@ -106,21 +106,21 @@ fn projections(
     harmonics: &[usize],
     names: &[Symbol],
     motion: &FourierSeries<Polynomials>,
-) -> Result<Vec<Line>, Refusal> {
+) -> Result<Vec<DerivationLine>, Refusal> {
     /// Beyond so many harmonics one line stands for all.
     const MOST_LINES: usize = 8;
     let omega = Expr::symbol("omega").integer_power(2)?;
-    let balance = |k: Expr, name: Expr, factor: i64| -> Result<Line, Refusal> {
-        let integral = Formula::Integral {
+    let balance = |k: Expr, name: Expr, factor: i64| -> Result<DerivationLine, Refusal> {
+        let integral = DerivationFormula::Integral {
             factor: Expr::divide(&Expr::from(factor), &Expr::pi())?,
             from: Expr::zero(),
             to: Expr::pi(),
             integrand: Box::new((force * &(&k * &Expr::from(oscillator.phase())).cos()?).into()),
             variable: oscillator.phase(),
         };
-        Ok(Line::equation(k.integer_power(2)? * &omega * name, integral))
+        Ok(DerivationLine::equation(k.integer_power(2)? * &omega * name, integral))
     };
-    let mut lines = vec![Line::equation(oscillator.coordinate, motion.clone())];
+    let mut lines = vec![DerivationLine::equation(oscillator.coordinate, motion.clone())];
     if harmonics.len() <= MOST_LINES {
         for (&k, &name) in harmonics.iter().zip(names) {
             let factor = if k == 0 { 1 } else { 2 };
@@ -140,7 +140,8 @@ fn projections(
                 .because(format!("harmonics {k} = {}", kept.join(", "))),
         );
     }
-    lines.push(Line::equation("A", Expr::sum(names.iter().map(|name| Expr::from(*name)))));
+    lines
+        .push(DerivationLine::equation("A", Expr::sum(names.iter().map(|name| Expr::from(*name)))));
     Ok(lines)
 }
 

@@ -42,7 +42,7 @@ use num_traits::{One, Signed, Zero};
 
 use super::power_series::{CONSTANT, Resummed, STOPPED, TOO_LONG, has_values};
 use super::{Options, Reason, Refusal};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::big_float::BigFloat;
 use crate::exact::zero_clusters::{Cluster, clusters};
 use crate::exact::{Integer, Monomial, Polynomial, Rational, convergent, to_f64};
@@ -130,7 +130,7 @@ fn of_degrees(
         .chain([Note::MotionOfSeries])
         .collect();
     let derivation = match resummed.long {
-        true => vec![Line::words(format!(
+        true => vec![DerivationLine::words(format!(
             "the {} linear equations for P, Q and R are solved modulo many primes, and put together",
             order + 1
         ))],
@@ -418,7 +418,7 @@ impl Words {
         &self,
         series: &[Rational],
         quadratic: &Quadratic,
-    ) -> Result<Vec<Line>, ExprError> {
+    ) -> Result<Vec<DerivationLine>, ExprError> {
         let [s, f] = self.short;
         let power = |k: usize| Expr::from(s).integer_power(k as i64);
         let in_powers = |numbers: &[Rational]| -> Result<Expr, ExprError> {
@@ -433,9 +433,10 @@ impl Words {
         let variable = Expr::from(&Polynomial::term(self.variable.clone(), Rational::one()));
         let name = |list: usize, k: usize| Expr::symbol(&format!("{}{k}", self.stems[list]));
         let mut lines = vec![
-            Line::equation(s, variable).because("the series runs in"),
-            Line::equation(f, in_powers(series)?).because("over its first coefficient it begins"),
-            Line::equation(Expr::from(f).integer_power(2)?, in_powers(&square)?),
+            DerivationLine::equation(s, variable).because("the series runs in"),
+            DerivationLine::equation(f, in_powers(series)?)
+                .because("over its first coefficient it begins"),
+            DerivationLine::equation(Expr::from(f).integer_power(2)?, in_powers(&square)?),
         ];
         let [p, q, r] = [0, 1, 2].map(|list| {
             let terms = 0..quadratic.lists[list].len();
@@ -444,7 +445,7 @@ impl Words {
         });
         let [upper, middle, lower] = self.letters.first_chunk::<3>().copied().unwrap_or([s; 3]);
         for (letter, sum) in [(upper, p?), (middle, q?), (lower, r?)] {
-            lines.push(Line::equation(letter, sum));
+            lines.push(DerivationLine::equation(letter, sum));
         }
         for n in 0..series.len() {
             let mut terms = vec![];
@@ -459,7 +460,7 @@ impl Words {
                 }
                 _ => String::new(),
             };
-            lines.push(Line::equation(Expr::sum(terms), Expr::zero()).because(words));
+            lines.push(DerivationLine::equation(Expr::sum(terms), Expr::zero()).because(words));
         }
         for (list, numbers) in quadratic.lists.iter().enumerate() {
             for (k, number) in numbers.iter().enumerate() {
@@ -468,7 +469,7 @@ impl Words {
                     _ => "",
                 };
                 let value = Expr::number(Rational::from_integer(number.clone()));
-                lines.push(Line::equation(name(list, k), value).because(words));
+                lines.push(DerivationLine::equation(name(list, k), value).because(words));
             }
         }
         Ok(lines)

@@ -31,7 +31,7 @@ use num_traits::{One, ToPrimitive};
 use super::one_term::{conservative_force, cosine, unsolved};
 use super::secular::SecularError;
 use super::{Options, Reason, Refusal};
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, Node};
@@ -145,15 +145,15 @@ struct HomotopyExpansion<'a> {
     accelerations: Vec<FourierSeries<Polynomials>>,
     /// The powers of the displacement that stand in the force.
     products: Convolutions<Polynomials>,
-    motion: convolution::Node,
-    powers: Vec<convolution::Node>,
+    motion: convolution::SeriesNode,
+    powers: Vec<convolution::SeriesNode>,
     squares: Squares,
     hbar: FourierSeries<Polynomials>,
     /// `1/w_0`.
     inverse: FourierSeries<Polynomials>,
     /// The linear stiffness, with `w_0` in place of what cancels.
     linear: Polynomial,
-    lines: Vec<Line>,
+    lines: Vec<DerivationLine>,
     /// The letters of displacements, frequencies and residuals.
     letters: [String; 3],
     /// The name of `w_0`.
@@ -179,7 +179,7 @@ impl<'a> HomotopyExpansion<'a> {
         let mut products = Convolutions::new(POLYNOMIALS);
         let motion = products.leaf();
         let terms = force.terms.iter();
-        let powers: Vec<convolution::Node> =
+        let powers: Vec<convolution::SeriesNode> =
             terms.map(|term| products.power(motion, term.position)).collect();
         powers.iter().for_each(|&power| products.require(power, order - 1));
         let names = solution.names();
@@ -194,7 +194,7 @@ impl<'a> HomotopyExpansion<'a> {
             hbar: constant_series(hbar),
             inverse: FourierSeries::zero(POLYNOMIALS),
             linear: force.linear.clone(),
-            lines: vec![Line::equation(numbered(&letters[0], 0), start.clone())],
+            lines: vec![DerivationLine::equation(numbered(&letters[0], 0), start.clone())],
             series: HomotopySeries { frequency: vec![], displacement: vec![start] },
             first_frequency_name: numbered(&letters[1], 0),
             letters,
@@ -319,15 +319,15 @@ impl<'a> HomotopyExpansion<'a> {
         let (control, first_frequency) =
             (convergence_control(self.solution), self.first_frequency_name);
         let driven = next.sum(&next.derivative().derivative());
-        let left = Formula::Oscillator { of: name, square: Expr::one() };
+        let left = DerivationFormula::Oscillator { of: name, square: Expr::one() };
         let change = format!("{control}*{residual}/{first_frequency}^2");
-        self.lines.push(Line::equal([left, driven.into()]).because(match m {
+        self.lines.push(DerivationLine::equal([left, driven.into()]).because(match m {
             1 => format!("{name}'' + {name} = {change}"),
             _ => format!("{name}'' + {name} = {before}'' + {before} + {change}"),
         }));
-        let start = |derivatives| Formula::AtZero { of: name, derivatives };
-        self.lines.push(Line::equal([start(0), start(1), Expr::zero().into()]));
-        self.lines.push(Line::equation(name, next.clone()));
+        let start = |derivatives| DerivationFormula::AtZero { of: name, derivatives };
+        self.lines.push(DerivationLine::equal([start(0), start(1), Expr::zero().into()]));
+        self.lines.push(DerivationLine::equation(name, next.clone()));
         self.series.displacement.push(next);
         Ok(())
     }
@@ -339,12 +339,12 @@ fn secular_lines(
     residual: &FourierSeries<Polynomials>,
     unknown: Expr,
     value: &Polynomial,
-) -> Vec<Line> {
+) -> Vec<DerivationLine> {
     let secular = residual.cosine(1).constant_term();
     vec![
-        Line::equation(name, residual.clone()),
-        Line::equation(&secular, Expr::zero()).because(format!("no cos(θ) in {name}")),
-        Line::equation(unknown, value),
+        DerivationLine::equation(name, residual.clone()),
+        DerivationLine::equation(&secular, Expr::zero()).because(format!("no cos(θ) in {name}")),
+        DerivationLine::equation(unknown, value),
     ]
 }
 
@@ -379,8 +379,8 @@ fn within_reach(
 /// `w^2` order by order: each order but the last of `w`, which is not known yet.
 struct Squares {
     products: Convolutions<Polynomials>,
-    frequency: convolution::Node,
-    square: convolution::Node,
+    frequency: convolution::SeriesNode,
+    square: convolution::SeriesNode,
 }
 
 impl Squares {

@@ -31,9 +31,9 @@ use num_traits::{One, Zero};
 use super::expansion::expand_exactly;
 use super::inertia::VariableMass;
 use super::one_term::conservative_force;
-use super::secular::{Amplitude, Detuning, Extent, Scheme};
+use super::secular::{AmplitudeKind, Detuning, ExpansionScope, Scheme};
 use super::{Options, Reason, Refusal};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
@@ -94,7 +94,7 @@ fn with_stiffness(
     let terms = embedded(&force.terms, amplitude, omega);
     let scheme = Scheme {
         normalisation: AmplitudeConvention::Initial,
-        amplitude: Amplitude::Free,
+        amplitude: AmplitudeKind::Free,
         detuning: Detuning::Displacement,
     };
     let series = expand_exactly(
@@ -103,7 +103,7 @@ fn with_stiffness(
         &scheme,
         None,
         None,
-        (&oscillator.names(), Extent::Motion),
+        (&oscillator.names(), ExpansionScope::Motion),
         Supervision::default(),
     )?;
 
@@ -148,7 +148,7 @@ fn with_stiffness(
         convergence: None,
         validity,
         steps: series.steps,
-        derivation: vec![Line::equation(
+        derivation: vec![DerivationLine::equation(
             Expr::from(oscillator.linear_frequency_name(&force.linear)).integer_power(2)?,
             &force.linear,
         )],

@@ -29,17 +29,17 @@ use nalgebra::{DMatrix, DVector};
 use num_traits::Zero;
 
 use super::energy_balance::positive_amplitude;
-use super::exact::Energy;
+use super::exact::EnergyIntegral;
 use super::exact_motion::weighted_motion;
 use super::harmonic_balance::{coefficient_names, harmonics};
 use super::one_term::{compiled, first_order_only, require_odd, set_law, unsolved};
-use super::table::Entry;
+use super::table::MethodEntry;
 use super::{Options, Reason, Refusal};
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::conservative::is_odd;
 use crate::conservative::potential::potential;
 use crate::conservative::projection::cosine_coefficient;
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::rational::ratio;
 use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
@@ -50,7 +50,7 @@ use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
 use crate::series::taylor::taylor;
 use crate::solution::{
-    AmplitudeConvention, Law, Method, Note, Solution, System,
+    AlgebraicSystem, AmplitudeConvention, Law, Method, Note, Solution,
     note::{ExactBy, FirstStep, Instant},
 };
 use crate::symbol::letters::{AMPLITUDE, FREQUENCY};
@@ -214,7 +214,7 @@ pub(super) const HARMONIC_BALANCE: Approach =
 /// # Errors
 /// As for the method on any other equation.
 pub(super) fn solve(
-    entry: &Entry,
+    entry: &MethodEntry,
     oscillator: &Oscillator,
     options: &Options,
 ) -> Result<Option<Solution>, Refusal> {
@@ -244,14 +244,17 @@ fn mass_name(oscillator: &Oscillator) -> Symbol {
     named("M", oscillator)
 }
 
-fn mass_lines(moving: &VariableMass, oscillator: &Oscillator) -> Result<Vec<Line>, Refusal> {
+fn mass_lines(
+    moving: &VariableMass,
+    oscillator: &Oscillator,
+) -> Result<Vec<DerivationLine>, Refusal> {
     let (x, velocity) = (oscillator.coordinate, Expr::from(oscillator.velocity()));
     let (name, potential) = (mass_name(oscillator), named("U", oscillator));
     let mass = match &moving.mass {
-        Some(mass) => Line::equation(name, mass),
+        Some(mass) => DerivationLine::equation(name, mass),
         None => {
             let variable = named("u", oscillator);
-            let exponent = Formula::Integral {
+            let exponent = DerivationFormula::Integral {
                 factor: Expr::from(2),
                 from: Expr::zero(),
                 to: x.into(),
@@ -259,18 +262,18 @@ fn mass_lines(moving: &VariableMass, oscillator: &Oscillator) -> Result<Vec<Line
                 variable,
             };
             let logarithm = Expr::function(Function::Log, vec![name.into()])?;
-            Line::equation(logarithm, exponent)
+            DerivationLine::equation(logarithm, exponent)
         }
     };
     let kinetic = Expr::from(name) * velocity.integer_power(2)?;
     let energy = Expr::divide(&kinetic, &Expr::from(2))? + Expr::from(potential);
-    let slope = Formula::Slope { factor: Expr::one(), of: potential, by: x };
+    let slope = DerivationFormula::Slope { factor: Expr::one(), of: potential, by: x };
     let weighted = moving.weighted_force();
     let weighted = weighted.unwrap_or_else(|| Expr::from(name) * &moving.force);
     Ok(vec![
         mass.because(format!("times {name} the equation has an energy")),
-        Line::equation(named("E", oscillator), energy),
-        Line::equation(slope, weighted),
+        DerivationLine::equation(named("E", oscillator), energy),
+        DerivationLine::equation(slope, weighted),
     ])
 }
 
@@ -289,13 +292,13 @@ fn exact(
     let named_mass = Expr::from(mass_name(oscillator));
     let named_force = &named_mass * &moving.force;
     let energy = match &closed {
-        Some((root, force)) => Energy {
+        Some((root, force)) => EnergyIntegral {
             force,
             potential: potential(force, x),
             root_of_mass: root.clone(),
             is_odd: moving.is_odd(oscillator)?,
         },
-        None => Energy {
+        None => EnergyIntegral {
             force: &named_force,
             potential: None,
             root_of_mass: named_mass.sqrt()?,
@@ -350,10 +353,10 @@ fn energy_balance(
         Some((rise, inertia, law)) => {
             let kinetic = &quarter * &squared * &inertia;
             solution.derivation.push(
-                Line::equation(kinetic, rise)
+                DerivationLine::equation(kinetic, rise)
                     .because(format!("the energy of {AMPLITUDE}*cos(θ) at θ = pi/4")),
             );
-            solution.derivation.push(Line::equation(squared, &law));
+            solution.derivation.push(DerivationLine::equation(squared, &law));
             set_law(&mut solution, &law)?;
         }
         None => {
@@ -370,14 +373,14 @@ fn energy_balance(
                     "the energy of {AMPLITUDE}*cos(θ) at θ = pi/4, {there} the value of {name} there"
                 ),
             };
-            let work = Formula::Integral {
+            let work = DerivationFormula::Integral {
                 factor: Expr::one(),
                 from: eighth,
                 to: amplitude,
                 integrand: Box::new(weighted.into()),
                 variable: x,
             };
-            let line = Line::equation(quarter * squared * mass, work).because(words);
+            let line = DerivationLine::equation(quarter * squared * mass, work).because(words);
             solution.derivation.push(line);
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
@@ -418,15 +421,16 @@ fn hamiltonian(
     match law() {
         Some((kinetic, potential, law)) => {
             let [k, p] = ["K", "P"].map(|name| named(name, oscillator));
-            let slope = |of: Symbol, factor: Expr| Formula::Slope { factor, of, by: "A".into() };
+            let slope =
+                |of: Symbol, factor: Expr| DerivationFormula::Slope { factor, of, by: "A".into() };
             solution.derivation.extend([
-                Line::equation(k, kinetic).because(format!(
+                DerivationLine::equation(k, kinetic).because(format!(
                     "mean kinetic energy of {AMPLITUDE}*cos(θ) over {FREQUENCY}^2"
                 )),
-                Line::equation(p, potential).because("mean potential energy"),
-                Line::equal([slope(k, squared.clone()), slope(p, Expr::one())])
+                DerivationLine::equation(p, potential).because("mean potential energy"),
+                DerivationLine::equal([slope(k, squared.clone()), slope(p, Expr::one())])
                     .because(format!("stationary in {AMPLITUDE}")),
-                Line::equation(squared, &law),
+                DerivationLine::equation(squared, &law),
             ]);
             set_law(&mut solution, &law)?;
         }
@@ -440,7 +444,7 @@ fn hamiltonian(
             };
             let (growth, force) =
                 (moving.growth.substitute(x, &along)?, moving.force.substitute(x, &along)?);
-            let over_half = |factor: Expr, integrand: Expr| Formula::Integral {
+            let over_half = |factor: Expr, integrand: Expr| DerivationFormula::Integral {
                 factor,
                 from: Expr::zero(),
                 to: Expr::pi(),
@@ -449,7 +453,7 @@ fn hamiltonian(
             };
             let bracket = &amplitude * &cosine.integer_power(2)?
                 - amplitude.integer_power(2)? * growth * sine.integer_power(2)? * &cosine;
-            let line = Line::equal([
+            let line = DerivationLine::equal([
                 over_half(squared, &mass * &bracket),
                 over_half(Expr::one(), mass * force * cosine),
             ]);
@@ -509,10 +513,10 @@ fn harmonic_balance(
         cosine[k] = Polynomial::symbol(name);
     }
     solution.displacement = FourierSeries::from_parts(POLYNOMIALS, cosine, vec![]);
-    let typed = Line::equal([(&oscillator.residual).into(), Expr::zero().into()]);
+    let typed = DerivationLine::equal([(&oscillator.residual).into(), Expr::zero().into()]);
     solution.derivation = vec![
         typed.because("balanced as it stands"),
-        Line::equation(x, solution.displacement.clone()),
+        DerivationLine::equation(x, solution.displacement.clone()),
     ];
     match (balances(oscillator, &solution.displacement, &harmonics)?, names.as_slice()) {
         (Some(balances), [_]) => one_balance(&mut solution, &balances[0])?,
@@ -568,18 +572,18 @@ fn one_balance(solution: &mut Solution, balance: &Polynomial) -> Result<(), Refu
         &Expr::divide(&still, &amplitude)?.expand()?,
         &Expr::divide(&inertia, &amplitude)?.expand()?,
     )?;
-    let condition = Line::equation(balance, Expr::zero()).because("the cos(θ) part");
-    solution.derivation.extend([condition, Line::equation(squared, &law)]);
+    let condition = DerivationLine::equation(balance, Expr::zero()).because("the cos(θ) part");
+    solution.derivation.extend([condition, DerivationLine::equation(squared, &law)]);
     set_law(solution, &law)
 }
 
 /// The balances of several harmonics, whose coefficients add up to the amplitude.
-fn system(balances: &[Polynomial], names: &[Symbol]) -> Result<System, Refusal> {
+fn system(balances: &[Polynomial], names: &[Symbol]) -> Result<AlgebraicSystem, Refusal> {
     let sum = Expr::sum(names.iter().map(|name| Expr::from(*name)));
     let mut equations: Vec<Expr> = balances.iter().map(Expr::from).collect();
     equations.push((sum - Expr::symbol("A")).expand()?);
     let omega = std::iter::once(Symbol::new("omega"));
-    Ok(System { unknowns: omega.chain(names.iter().copied()).collect(), equations })
+    Ok(AlgebraicSystem { unknowns: omega.chain(names.iter().copied()).collect(), equations })
 }
 
 /// The balances as integrals, where they are not written out.
@@ -587,10 +591,10 @@ fn projections(
     oscillator: &Oscillator,
     harmonics: &[usize],
     names: &[Symbol],
-) -> Result<Vec<Line>, Refusal> {
+) -> Result<Vec<DerivationLine>, Refusal> {
     let kept: Vec<String> = harmonics.iter().map(ToString::to_string).collect();
     let k = named("k", oscillator);
-    let projection = Formula::Integral {
+    let projection = DerivationFormula::Integral {
         factor: Expr::one(),
         from: Expr::zero(),
         to: Expr::pi(),
@@ -600,11 +604,11 @@ fn projections(
         ),
         variable: oscillator.phase(),
     };
-    let line = Line::equal([projection, Expr::zero().into()]);
+    let line = DerivationLine::equal([projection, Expr::zero().into()]);
     let mut lines = vec![line.because(format!("for {k} = {}", kept.join(", ")))];
     if names.len() > 1 {
         let sum = Expr::sum(names.iter().map(|name| Expr::from(*name)));
-        lines.push(Line::equation("A", sum));
+        lines.push(DerivationLine::equation("A", sum));
     }
     Ok(lines)
 }
@@ -627,8 +631,8 @@ pub(super) fn at_numbers(
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
     let mass = moving.mass_at(oscillator, numbers, amplitude)?;
     let force =
-        Force::new(&moving.force, oscillator.coordinate, &Expr::zero(), numbers, amplitude)?;
-    let approach = Entry::of(solution.method).inertia.as_ref()?;
+        CentredForce::new(&moving.force, oscillator.coordinate, &Expr::zero(), numbers, amplitude)?;
+    let approach = MethodEntry::of(solution.method).inertia.as_ref()?;
     (approach.numbers)(&EquationAtNumbers {
         moving: &moving,
         oscillator,
@@ -648,7 +652,7 @@ struct EquationAtNumbers<'a> {
     numbers: &'a BTreeMap<Symbol, f64>,
     amplitude: f64,
     mass: &'a dyn Fn(f64) -> f64,
-    force: &'a Force,
+    force: &'a CentredForce,
 }
 
 impl EquationAtNumbers<'_> {
@@ -665,7 +669,7 @@ impl EquationAtNumbers<'_> {
 
 fn exact_at(question: &EquationAtNumbers) -> Option<AtNumbers> {
     let (mass, weighted) = (question.mass, |x| question.weighted(x));
-    let force = energy::Force::smooth(&weighted);
+    let force = energy::PiecewiseForce::smooth(&weighted);
     let (period, cosine) =
         weighted_motion(&force, &|x| mass(x).sqrt(), 0.0, question.amplitude).ok()?;
     let frequency = std::f64::consts::TAU / period;

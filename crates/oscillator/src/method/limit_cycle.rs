@@ -60,12 +60,12 @@ pub(super) struct Cycle {
     pub inverse_slope: Option<Polynomial>,
     /// A remark on the amplitude.
     pub remark: Option<Note>,
-    relation: Option<Relation>,
+    relation: Option<PowerRelation>,
 }
 
 /// `symbol^degree = value`, with lower powers of the symbol in `value`.
 #[derive(Clone)]
-struct Relation {
+struct PowerRelation {
     symbol: Symbol,
     degree: i32,
     value: Polynomial,
@@ -73,7 +73,7 @@ struct Relation {
 
 impl AmplitudeEquation {
     /// `None` where the first order has no secular sine at any amplitude: the amplitude is free.
-    pub fn new(force: &PerturbedForce, units: &Units) -> Option<Self> {
+    pub fn new(force: &PerturbedForce, units: &FrequencyUnits) -> Option<Self> {
         let equation = coefficients(force, units);
         let lowest = equation.iter().position(|coefficient| !coefficient.is_zero())?;
         let factor = common_monomial(&equation);
@@ -209,7 +209,11 @@ impl AmplitudeEquation {
             inverse_slope: inverse
                 .map(|list| in_name(&list).times_monomial(&self.factor.power(-1))),
             remark,
-            relation: Some(Relation { symbol: name, degree: 2 * degree, value: in_name(&lower) }),
+            relation: Some(PowerRelation {
+                symbol: name,
+                degree: 2 * degree,
+                value: in_name(&lower),
+            }),
         }
     }
 
@@ -278,7 +282,7 @@ impl AmplitudeEquation {
             definition,
             inverse_slope: None,
             remark: None,
-            relation: exact.is_none().then(|| Relation {
+            relation: exact.is_none().then(|| PowerRelation {
                 symbol: name,
                 degree: 2 * m,
                 value: squared,
@@ -291,7 +295,7 @@ impl AmplitudeEquation {
 impl Cycle {
     /// A polynomial with the powers of `a0` that can be expressed by lower ones so expressed.
     pub fn reduced(&self, polynomial: &Polynomial) -> Polynomial {
-        let Some(Relation { symbol, degree, value }) = &self.relation else {
+        let Some(PowerRelation { symbol, degree, value }) = &self.relation else {
             return polynomial.clone();
         };
         let mut reduced = polynomial.clone();
@@ -340,7 +344,7 @@ impl Cycle {
 }
 
 /// The linear frequency, in whose powers the terms are measured.
-pub(super) struct Units {
+pub(super) struct FrequencyUnits {
     /// The linear frequency, a single term.
     pub frequency: Polynomial,
     /// Its square, where even powers are better written with it: `x'` and `x'^3` then have like
@@ -348,7 +352,7 @@ pub(super) struct Units {
     square: Option<Polynomial>,
 }
 
-impl Units {
+impl FrequencyUnits {
     /// The square takes the place of even powers where it is a number, so that a letter such as
     /// `omega0 = sqrt(2)` stays out of the expansion, and where the equation for the amplitude has
     /// sums without it.
@@ -418,7 +422,7 @@ pub(super) fn amplitude_of(
 }
 
 /// `g_k`, the coefficients of `z^k` in the secular sine over the amplitude.
-fn coefficients(force: &PerturbedForce, units: &Units) -> Vec<Polynomial> {
+fn coefficients(force: &PerturbedForce, units: &FrequencyUnits) -> Vec<Polynomial> {
     let mut equation: Vec<Polynomial> = vec![];
     let first = force.terms.iter().filter(|term| term.order == 1 && term.velocity % 2 == 1);
     for term in first {

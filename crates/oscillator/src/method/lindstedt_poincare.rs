@@ -34,11 +34,11 @@ use num_traits::{One, Zero};
 
 use super::expansion::{ExactSeries, expand_exactly};
 use super::joint_expansion::expand_jointly;
-use super::limit_cycle::{AmplitudeEquation, Cycle, Units, amplitude_of, chosen};
+use super::limit_cycle::{AmplitudeEquation, Cycle, FrequencyUnits, amplitude_of, chosen};
 use super::linear::is_free_and_linear;
-use super::secular::{Amplitude, Detuning, Extent, Scheme, SecularError, bounded};
+use super::secular::{AmplitudeKind, Detuning, ExpansionScope, Scheme, SecularError, bounded};
 use super::{Options, Reason, Refusal, Refuser, first_order, first_term};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::Expr;
@@ -74,7 +74,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let LinearPart { frequency: linear_frequency, root, mut definitions, taken } =
         LinearPart::of(force, oscillator);
 
-    let units = Units::new(force, linear_frequency.clone());
+    let units = FrequencyUnits::new(force, linear_frequency.clone());
     let excited = self_excitation(&perturbation, &units, &parts, options.cycle, &taken)?;
     let cycle = excited.as_ref().map(SelfExcitation::cycle);
     let convention = options.amplitude.unwrap_or(match cycle {
@@ -85,8 +85,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     definitions.extend(of_cycle.clone());
     definitions.extend(perturbation.bookkeeping.clone());
     let extent = match options.frequency_alone {
-        true => Extent::Frequency,
-        false => Extent::Motion,
+        true => ExpansionScope::Frequency,
+        false => ExpansionScope::Motion,
     };
     let names = (taken.as_slice(), extent);
     let supervision = options.supervision;
@@ -112,9 +112,9 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     // In powers of the amplitude, the small parameter is the symbol that stands for it.
     let small = perturbation.marker.map_or(convention.symbol(), |_| perturbation.small);
     let amplitude = match extent {
-        Extent::Motion => amplitude_of(&displacement, convention),
+        ExpansionScope::Motion => amplitude_of(&displacement, convention),
         // To leading order: the rest of it belongs to the motion.
-        Extent::Frequency => in_numbers(unit.clone()),
+        ExpansionScope::Frequency => in_numbers(unit.clone()),
     };
     let limit_cycle =
         excited.as_ref().map(|excited| excited.limit_cycle(&perturbation, small, amplitude));
@@ -155,7 +155,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         convergence: None,
         validity,
         steps: series.steps,
-        derivation: vec![Line::equation(
+        derivation: vec![DerivationLine::equation(
             Expr::from(oscillator.linear_frequency_name(&force.linear)).integer_power(2)?,
             &force.linear,
         )],
@@ -228,7 +228,7 @@ impl SelfExcitation {
 /// The limit cycles and the one that is asked for, where the equation determines its amplitude.
 fn self_excitation(
     perturbation: &Perturbation,
-    units: &Units,
+    units: &FrequencyUnits,
     parts: &Parts,
     asked: Option<u32>,
     taken: &[Symbol],
@@ -276,17 +276,17 @@ fn reduced(cycle: Option<&Cycle>, polynomial: Polynomial) -> Polynomial {
 fn expanded(
     perturbation: &Perturbation,
     excited: Option<&SelfExcitation>,
-    units: &Units,
+    units: &FrequencyUnits,
     parts: &Parts,
     convention: AmplitudeConvention,
-    (names, supervision): ((&[Symbol], Extent), Supervision),
+    (names, supervision): ((&[Symbol], ExpansionScope), Supervision),
 ) -> Result<ExactSeries, Refusal> {
     let cycle = excited.map(SelfExcitation::cycle);
     let scheme = Scheme {
         normalisation: convention,
         amplitude: match cycle {
-            Some(_) => Amplitude::Determined,
-            None => Amplitude::Free,
+            Some(_) => AmplitudeKind::Determined,
+            None => AmplitudeKind::Free,
         },
         detuning: Detuning::Acceleration,
     };
@@ -494,7 +494,7 @@ pub(super) fn may_balance(force: &PerturbedForce) -> bool {
 }
 
 fn drift(force: &PerturbedForce) -> Option<AmplitudeEquation> {
-    AmplitudeEquation::new(force, &Units::new(force, force.linear_frequency(&[]).0))
+    AmplitudeEquation::new(force, &FrequencyUnits::new(force, force.linear_frequency(&[]).0))
 }
 
 fn damped(parts: &Parts) -> Refusal {
@@ -516,7 +516,7 @@ fn amplitude_not_free(parts: &Parts) -> Refusal {
 
 /// The terms in `y = x / unit` and the time of the linear frequency: `C_j` in the head of this
 /// file.
-fn scaled_terms(terms: &[Term], unit: &Polynomial, units: &Units) -> Vec<Term> {
+fn scaled_terms(terms: &[Term], unit: &Polynomial, units: &FrequencyUnits) -> Vec<Term> {
     let scale = |term: &Term| {
         let exponent = (term.position + term.velocity) as i32 - 1;
         let unit = unit.power(exponent).unwrap_or_else(Polynomial::zero);

@@ -58,13 +58,13 @@ pub use refusal::{Reason, Refusal, Refuser};
 
 pub use resonance::with_resonance_at;
 
-pub use crate::conservative::{Force, cosine_coefficient, is_odd, is_smooth, potential};
+pub use crate::conservative::{CentredForce, cosine_coefficient, is_odd, is_smooth, potential};
 pub use crate::equilibrium::with_numbers_where_needed;
 
 use std::collections::BTreeMap;
 
 use num_traits::Zero;
-use table::{Choice, Entry};
+use table::{Choice, MethodEntry};
 
 use crate::equilibrium::{Centred, centred, stable_elsewhere};
 use crate::exact::{POLYNOMIALS, Polynomial};
@@ -272,7 +272,7 @@ fn solve_by(
     oscillator: &Oscillator,
     options: &Options,
 ) -> Result<Solution, Refusal> {
-    let entry = Entry::of(method);
+    let entry = MethodEntry::of(method);
     refuse_what_it_does_not_take(entry, options)?;
     // Every method works about x = 0: the equation is seen from its equilibrium, and the answer
     // moved back.
@@ -327,7 +327,7 @@ fn solve_by(
 }
 
 /// An option that a method has no use for is a mistake, and never ignored.
-fn refuse_what_it_does_not_take(entry: &Entry, options: &Options) -> Result<(), Refusal> {
+fn refuse_what_it_does_not_take(entry: &MethodEntry, options: &Options) -> Result<(), Refusal> {
     let given = [
         (Choice::Order, options.order.is_some()),
         (Choice::Degrees, options.degrees.is_some()),

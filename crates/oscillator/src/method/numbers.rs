@@ -10,9 +10,9 @@ use std::collections::BTreeMap;
 use num_traits::Zero as _;
 
 use super::exact_motion::{cosines, motion_about};
-use super::table::{Choice, Entry, Motion};
+use super::table::{Choice, MethodEntry, MotionEvaluation};
 use super::{balance, first_order, harmonic_balance, homotopy_analysis, inertia, one_term};
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::conservative::is_odd;
 use crate::decimal::significant;
 use crate::exact::{Doubles, Polynomial};
@@ -63,23 +63,23 @@ pub struct SymbolValues {
 /// Results shared between amplitudes, all else being the same: a balance continues from its last
 /// solution, and the force at rest is analysed once.
 #[derive(Default)]
-pub struct Known {
+pub struct NumbersCache {
     balance: balance::Continuation,
-    force: OnceCell<Option<Force>>,
+    force: OnceCell<Option<CentredForce>>,
 }
 
-impl Known {
+impl NumbersCache {
     /// The force about the equilibrium of an answer; `None` where a symbol of it has no number.
     fn force(
         &self,
         oscillator: &Oscillator,
         solution: &Solution,
         numbers: &BTreeMap<Symbol, f64>,
-    ) -> Option<Force> {
+    ) -> Option<CentredForce> {
         let amplitude = amplitude_of(solution, numbers);
         let known = self.force.get_or_init(|| {
             let (force, coordinate) = (&oscillator.force, oscillator.coordinate);
-            Force::new(force, coordinate, &solution.equilibrium, numbers, amplitude)
+            CentredForce::new(force, coordinate, &solution.equilibrium, numbers, amplitude)
         });
         Some(known.as_ref()?.with_amplitude(amplitude))
     }
@@ -208,7 +208,7 @@ pub fn evaluate(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<Numbers, NoNumbers> {
-    let known = &Known::default();
+    let known = &NumbersCache::default();
     let mut chosen = Vec::new();
     let mut numbers = in_own_amplitude(solution, numbers);
     if let Some(hbar) = open_hbar(solution, &numbers) {
@@ -230,13 +230,13 @@ pub fn evaluate(
     if rounding > NO_DIGITS && squared != 0.0 {
         return Err(NoNumbers::Cancels { rounding });
     }
-    let motion = match Entry::of(solution.method).motion {
-        Motion::Exact if squared > 0.0 => {
+    let motion = match MethodEntry::of(solution.method).motion {
+        MotionEvaluation::Exact if squared > 0.0 => {
             exact_motion(oscillator, solution, &numbers, known).ok().map(|found| found.1)
         }
-        Motion::Exact => None,
+        MotionEvaluation::Exact => None,
         // The frequency alone.
-        Motion::Formula if solution.displacement.is_zero() => None,
+        MotionEvaluation::Formula if solution.displacement.is_zero() => None,
         _ => formula_motion(oscillator, solution, &numbers, squared),
     };
     Ok(Numbers { frequency_squared: squared, rounding, motion, chosen, remark: None })
@@ -263,7 +263,7 @@ pub fn frequency_squared_of(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<f64, NoNumbers> {
-    frequency_squared_along(oscillator, solution, numbers, &Known::default())
+    frequency_squared_along(oscillator, solution, numbers, &NumbersCache::default())
 }
 
 /// As [`frequency_squared_of`] for one amplitude after the other, all else being the same: a
@@ -275,7 +275,7 @@ pub fn frequency_squared_along(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Result<f64, NoNumbers> {
     let mut numbers = in_own_amplitude(solution, numbers);
     if let Some(hbar) = open_hbar(solution, &numbers) {
@@ -355,7 +355,7 @@ fn solved_as_series(first: f64, beside: &[(i32, i32, f64)], order: u32) -> f64 {
 /// The symbol of homotopy analysis that is to be chosen, where there is one.
 fn open_hbar(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Symbol> {
     let hbar = homotopy_analysis::convergence_control(solution);
-    let open = Entry::of(solution.method).takes(Choice::Hbar) && !numbers.contains_key(&hbar);
+    let open = MethodEntry::of(solution.method).takes(Choice::Hbar) && !numbers.contains_key(&hbar);
     (open && contains(solution, hbar)).then_some(hbar)
 }
 
@@ -365,7 +365,7 @@ fn balanced(
     motion: &FourierSeries<Doubles>,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Vec<(Symbol, f64)> {
-    if Entry::of(solution.method).motion != Motion::Balance {
+    if MethodEntry::of(solution.method).motion != MotionEvaluation::Balance {
         return vec![];
     }
     let equilibrium = solution.equilibrium.evaluate(numbers).unwrap_or(0.0);
@@ -386,7 +386,7 @@ fn contains(solution: &Solution, symbol: Symbol) -> bool {
 fn by_size(solution: &Solution) -> bool {
     solution.law.relation().is_none()
         && solution.amplitude == AmplitudeConvention::Initial
-        && !Entry::of(solution.method).signed
+        && !MethodEntry::of(solution.method).signed
         || is_first_order(solution)
 }
 
@@ -410,7 +410,7 @@ fn is_first_order(solution: &Solution) -> bool {
 
 /// Whether the law is that of the true motion.
 fn is_exact(solution: &Solution) -> bool {
-    Entry::of(solution.method).motion == Motion::Exact
+    MethodEntry::of(solution.method).motion == MotionEvaluation::Exact
 }
 
 /// Whether the law is that of a motion `A cos(theta)`.
@@ -446,7 +446,7 @@ fn frequency_squared(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Result<(f64, f64), NoNumbers> {
     let symbol = solution.amplitude.symbol();
     if of_one_term(solution) {
@@ -532,7 +532,7 @@ fn stays_defined(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Result<(), NoNumbers> {
     if matches!(oscillator.polynomial_degree(), Ok(Some(_))) {
         return Ok(());
@@ -556,7 +556,7 @@ fn overflow(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Option<NoNumbers> {
     let force = known.force(oscillator, solution, numbers)?;
     let amplitude = amplitude_of(solution, numbers);
@@ -573,7 +573,7 @@ fn by_definition(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Option<(f64, f64)> {
     let size = numbers.get(&solution.amplitude.symbol())?.abs();
     if is_exact(solution) {
@@ -581,11 +581,11 @@ fn by_definition(
     }
     let force = if is_first_order(solution) {
         let force = first_order::truncated(oscillator, solution.small_parameter)?;
-        Force::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, size)?
+        CentredForce::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, size)?
     } else {
         known.force(oscillator, solution, numbers)?
     };
-    let definition = Entry::of(solution.method).definition?;
+    let definition = MethodEntry::of(solution.method).definition?;
     definition(&force, size).filter(|law| law.0.is_finite())
 }
 
@@ -602,7 +602,7 @@ pub fn error_of_integral(
         return None;
     }
     let amplitude = numbers.get(&solution.amplitude.symbol())?.abs();
-    let force = Known::default().force(oscillator, solution, numbers)?;
+    let force = NumbersCache::default().force(oscillator, solution, numbers)?;
     let (value, change) = one_term::coefficient_by_quadrature(&|y| force.at(y), amplitude, 1);
     Some((change / value).abs().max(1e-15))
 }
@@ -778,7 +778,9 @@ fn lost_projections(
     numbers: &BTreeMap<Symbol, f64>,
     squared: f64,
 ) -> Option<Vec<(usize, f64)>> {
-    if Entry::of(solution.method).motion != Motion::Iterate || solution.law.relation().is_some() {
+    if MethodEntry::of(solution.method).motion != MotionEvaluation::Iterate
+        || solution.law.relation().is_some()
+    {
         return None;
     }
     let symbol = solution.amplitude.symbol();
@@ -797,7 +799,7 @@ fn lost_projections(
     if kept {
         return None;
     }
-    let force = Known::default().force(oscillator, solution, numbers)?;
+    let force = NumbersCache::default().force(oscillator, solution, numbers)?;
     let harmonics = solution.displacement.harmonics().into_iter();
     let projections = harmonics.filter(|entry| entry.0 != 1);
     Some(projections.map(|(k, ..)| (k, one_term::coefficient(&force, amplitude, k).0)).collect())
@@ -809,7 +811,7 @@ fn solve(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Result<(f64, FourierSeries<Doubles>, Option<String>), NoNumbers> {
     if oscillator.force.contains(oscillator.velocity()) {
         let found = || {
@@ -830,7 +832,7 @@ fn solve(
     };
     let (equilibrium, amplitude, force) = given().ok_or(NoNumbers::NoValue)?;
     let shift = FourierSeries::constant(Doubles, equilibrium);
-    if Entry::of(solution.method).motion == Motion::Balance {
+    if MethodEntry::of(solution.method).motion == MotionEvaluation::Balance {
         let odd = solution.balanced_harmonics().iter().all(|entry| entry.0 % 2 == 1);
         let harmonics = harmonic_balance::harmonics(solution.order, odd);
         let degree = oscillator.polynomial_degree().ok().flatten();
@@ -861,7 +863,7 @@ fn exact_motion(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Result<(f64, FourierSeries<Doubles>), NoNumbers> {
     let force = known.force(oscillator, solution, numbers).ok_or(NoNumbers::NoValue)?;
     let start = amplitude_of(solution, numbers);
@@ -905,7 +907,7 @@ fn best_hbar(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
     hbar: Symbol,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Result<f64, NoNumbers> {
     const TRIALS: usize = 40;
     const SAMPLES: usize = 64;

@@ -29,7 +29,7 @@ use num_traits::{One, Zero};
 
 use super::power_series::{CONSTANT, PowerSeries, Resummed, STOPPED, TOO_LONG, has_values, scaled};
 use super::{Options, Reason, Refusal};
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::big_float::BigFloat;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::to_f64;
@@ -81,7 +81,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     let letters = ["p", "q"].map(|letter| fresh_stem(letter, &resummed.names()));
     let derivation = match resummed.long {
         // Equations by the dozen, with coefficients of thousands of digits.
-        true => vec![Line::words(format!(
+        true => vec![DerivationLine::words(format!(
             "the {denominator_degree} linear equations for the denominator are solved modulo many primes, and put together"
         ))],
         false => linear_system(series, &quotient, &letters),
@@ -155,7 +155,7 @@ fn linear_system(
     series: &PowerSeries,
     Quotient { above, below }: &Quotient,
     [p, q]: &[String; 2],
-) -> Vec<Line> {
+) -> Vec<DerivationLine> {
     let (l, m) = (above.len() as i64 - 1, below.len() - 1);
     let name = |letter: &str, index: usize| Symbol::new(&format!("{letter}{index}"));
     let unknown = |j: usize| match j {
@@ -180,30 +180,31 @@ fn linear_system(
     let denominator: Vec<Polynomial> = (0..=m).map(unknown).collect();
     let [numerator, denominator] =
         [numerator, denominator].map(|names| Expr::from(&series.with_powers(&names)));
-    let mut lines =
-        vec![Line::equation(squared.clone(), &series.law).because("the exact series begins")];
+    let mut lines = vec![
+        DerivationLine::equation(squared.clone(), &series.law).because("the exact series begins"),
+    ];
     if let Ok(quotient) = Expr::divide(&numerator, &denominator) {
-        lines.push(Line::equation(squared, quotient).because("agrees with"));
+        lines.push(DerivationLine::equation(squared, quotient).because("agrees with"));
     }
     for k in 1..=m {
         let words = match k {
             1 => "multiplied out, the powers beyond the numerator vanish",
             _ => "",
         };
-        lines.push(Line::equation(&sum(l + k as i64, m), Expr::zero()).because(words));
+        lines.push(DerivationLine::equation(&sum(l + k as i64, m), Expr::zero()).because(words));
     }
     for (j, coefficient) in below.iter().enumerate().skip(1) {
         let words = if j == 1 { "the denominator" } else { "" };
-        lines.push(Line::equation(name(q, j), value(coefficient)).because(words));
+        lines.push(DerivationLine::equation(name(q, j), value(coefficient)).because(words));
     }
     for (i, coefficient) in above.iter().enumerate() {
         let words = if i == 0 { "the numerator" } else { "" };
         let (combination, value) = (Expr::from(&sum(i as i64, i.min(m))), value(coefficient));
-        let mut equal: Vec<Formula> = vec![name(p, i).into(), combination.clone().into()];
+        let mut equal: Vec<DerivationFormula> = vec![name(p, i).into(), combination.clone().into()];
         if combination != value {
             equal.push(value.into());
         }
-        lines.push(Line::equal(equal).because(words));
+        lines.push(DerivationLine::equal(equal).because(words));
     }
     lines
 }

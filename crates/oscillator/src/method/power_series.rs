@@ -4,7 +4,7 @@
 use num_traits::{One, Zero};
 
 use super::{Options, Reason, Refusal, lindstedt_poincare};
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::Expr;
@@ -199,7 +199,7 @@ impl Resummed {
         self,
         degrees: Degrees,
         (value, definitions): (Expr, Vec<Definition>),
-        (validity, derivation): (Vec<Note>, Vec<Line>),
+        (validity, derivation): (Vec<Note>, Vec<DerivationLine>),
     ) -> Solution {
         let mut solution = self.solution;
         let harmonics = solution.displacement.harmonics();

@@ -9,16 +9,16 @@ use super::{
     iteration_perturbation, lindstedt_poincare, max_min, multiple_scales, one_term, pade,
     parameter_expansion, variational_iteration,
 };
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::oscillator::Oscillator;
 use crate::solution::{Degrees, Method, Solution};
 
 /// omega^2 of a motion `A cos(theta)` by what defines it, in numbers: of the force about the
 /// equilibrium and the size of the amplitude. With a bound of its error, relative.
-pub type Definition = fn(&Force, f64) -> Option<(f64, f64)>;
+pub type Definition = fn(&CentredForce, f64) -> Option<(f64, f64)>;
 
 /// A row of [`METHODS`].
-pub struct Entry {
+pub struct MethodEntry {
     /// The method.
     pub method: Method,
     /// Derives its answer for an oscillator that swings about zero.
@@ -38,7 +38,7 @@ pub struct Entry {
     /// ones.
     pub signed: bool,
     /// The way in which its motion is evaluated numerically.
-    pub motion: Motion,
+    pub motion: MotionEvaluation,
     /// Its treatment of equations with a position-dependent inertia; `None` if it has none of its
     /// own.
     pub inertia: Option<inertia::Approach>,
@@ -46,7 +46,7 @@ pub struct Entry {
 
 /// The way in which a motion is evaluated numerically.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Motion {
+pub enum MotionEvaluation {
     /// By its formula.
     Formula,
     /// By the formula of an iterate, whose projections of the force may be taken by quadrature.
@@ -58,7 +58,7 @@ pub enum Motion {
 }
 
 /// A method whose omega^2 is the projection of the force on the first harmonic, over the amplitude.
-const OF_THE_SHARED_INTEGRAL: Entry = Entry {
+const OF_THE_SHARED_INTEGRAL: MethodEntry = MethodEntry {
     method: Method::Hamiltonian,
     solve: hamiltonian::solve,
     takes: &[Choice::Order],
@@ -66,7 +66,7 @@ const OF_THE_SHARED_INTEGRAL: Entry = Entry {
     rounded_degree: |_, _| None,
     definition: Some(one_term::first_projection_over_amplitude),
     signed: false,
-    motion: Motion::Formula,
+    motion: MotionEvaluation::Formula,
     inertia: None,
 };
 
@@ -116,8 +116,8 @@ pub enum Sees {
 }
 
 /// Every method, in the order of [`Method::ALL`].
-pub const METHODS: [Entry; Method::ALL.len()] = [
-    Entry {
+pub const METHODS: [MethodEntry; Method::ALL.len()] = [
+    MethodEntry {
         method: Method::LindstedtPoincare,
         solve: lindstedt_poincare::solve,
         takes: &[Choice::Order, Choice::Cycle, Choice::FrequencyAlone],
@@ -126,7 +126,7 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::HomotopyPerturbation,
         solve: homotopy_perturbation::solve,
         takes: &[Choice::Order, Choice::Taylor],
@@ -138,7 +138,7 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::HomotopyAnalysis,
         solve: homotopy_analysis::solve,
         takes: &[Choice::Order, Choice::Taylor, Choice::Hbar],
@@ -150,16 +150,16 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::IterationPerturbation,
         solve: iteration_perturbation::solve,
         rounded_degree: |options, polynomial| {
             (polynomial && options.order.is_some_and(|order| order > 1)).then_some(0)
         },
-        motion: Motion::Iterate,
+        motion: MotionEvaluation::Iterate,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::ParameterExpansion,
         solve: parameter_expansion::solve,
         takes: &[Choice::Order, Choice::Taylor],
@@ -169,41 +169,41 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         },
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::HarmonicBalance,
         solve: harmonic_balance::solve,
-        motion: Motion::Balance,
+        motion: MotionEvaluation::Balance,
         inertia: Some(inertia::HARMONIC_BALANCE),
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::EnergyBalance,
         solve: energy_balance::solve,
         definition: Some(energy_balance::by_quadrature),
         inertia: Some(inertia::ENERGY_BALANCE),
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry { method: Method::MaxMin, solve: max_min::solve, ..OF_THE_SHARED_INTEGRAL },
-    Entry {
+    MethodEntry { method: Method::MaxMin, solve: max_min::solve, ..OF_THE_SHARED_INTEGRAL },
+    MethodEntry {
         method: Method::AmplitudeFrequency,
         solve: amplitude_frequency::solve,
         definition: Some(amplitude_frequency::by_definition),
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry { inertia: Some(inertia::HAMILTONIAN), ..OF_THE_SHARED_INTEGRAL },
-    Entry {
+    MethodEntry { inertia: Some(inertia::HAMILTONIAN), ..OF_THE_SHARED_INTEGRAL },
+    MethodEntry {
         method: Method::VariationalIteration,
         solve: variational_iteration::solve,
-        motion: Motion::Iterate,
+        motion: MotionEvaluation::Iterate,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::FrequencyFormula,
         solve: frequency_formula::solve,
         definition: Some(frequency_formula::by_definition),
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::Averaging,
         solve: averaging::solve,
         takes: &[Choice::Order, Choice::Resonance],
@@ -212,7 +212,7 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::Pade,
         solve: pade::solve,
         takes: &[Choice::Degrees, Choice::Cycle],
@@ -225,7 +225,7 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::HermitePade,
         solve: hermite_pade::solve,
         takes: &[Choice::Degrees, Choice::Cycle],
@@ -237,7 +237,7 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::MultipleScales,
         solve: multiple_scales::solve,
         takes: &[Choice::Order, Choice::Cycle, Choice::Resonance],
@@ -247,18 +247,18 @@ pub const METHODS: [Entry; Method::ALL.len()] = [
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
     },
-    Entry {
+    MethodEntry {
         method: Method::Exact,
         solve: exact::solve,
         takes: &[],
         definition: None,
-        motion: Motion::Exact,
+        motion: MotionEvaluation::Exact,
         inertia: Some(inertia::EXACT),
         ..OF_THE_SHARED_INTEGRAL
     },
 ];
 
-impl Entry {
+impl MethodEntry {
     /// The row of a method.
     pub fn of(method: Method) -> &'static Self {
         // The order is that of `Method::ALL`, which is that of the variants; a test holds it.
@@ -309,7 +309,7 @@ mod tests {
     #[test]
     fn every_method_has_its_row() {
         for method in Method::ALL {
-            assert_eq!(Entry::of(method).method, method);
+            assert_eq!(MethodEntry::of(method).method, method);
         }
         assert_eq!(that_take(Choice::Hbar), "homotopy-analysis");
         assert_eq!(

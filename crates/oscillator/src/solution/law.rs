@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::{Polynomial, Rational};
 use crate::expr::Expr;
 use crate::symbol::Symbol;
@@ -33,9 +33,9 @@ pub enum Law {
     /// An expression that is no polynomial.
     Closed(ClosedForm),
     /// A law that only numbers solve: `omega^2 = (2/(pi*A)) int_0^pi ...`; the lines say which.
-    Quadrature(Vec<Line>),
+    Quadrature(Vec<DerivationLine>),
     /// The equations of a balance of several harmonics, solved by numbers.
-    System(System),
+    System(AlgebraicSystem),
 }
 
 /// A relation solved for omega^2.
@@ -58,7 +58,7 @@ pub struct ClosedForm {
 
 /// Algebraic equations that determine frequency and coefficients together, solved by numbers alone.
 #[derive(Clone, Debug, PartialEq)]
-pub struct System {
+pub struct AlgebraicSystem {
     /// The unknowns: `omega` and the coefficients of the motion.
     pub unknowns: Vec<Symbol>,
     /// Each is equal to zero.
@@ -108,7 +108,7 @@ impl Law {
     }
 
     /// The lines of a law that only numbers solve.
-    pub fn quadrature(&self) -> Option<&[Line]> {
+    pub fn quadrature(&self) -> Option<&[DerivationLine]> {
         match self {
             Self::Quadrature(lines) => Some(lines),
             _ => None,
@@ -116,7 +116,7 @@ impl Law {
     }
 
     /// The equations of a balance.
-    pub fn system(&self) -> Option<&System> {
+    pub fn system(&self) -> Option<&AlgebraicSystem> {
         match self {
             Self::System(system) => Some(system),
             _ => None,
@@ -165,7 +165,7 @@ impl Law {
             Self::Quadrature(lines) => {
                 Self::Quadrature(lines.iter().map(|line| line.with_numbers(change)).collect())
             }
-            Self::System(system) => Self::System(System {
+            Self::System(system) => Self::System(AlgebraicSystem {
                 equations: system.equations.iter().map(changed).collect(),
                 ..system
             }),
@@ -207,9 +207,9 @@ pub enum Shown<'a> {
     /// An expression that is no polynomial.
     Closed(&'a ClosedForm),
     /// Integrals.
-    Quadrature(&'a [Line]),
+    Quadrature(&'a [DerivationLine]),
     /// Equations for numbers.
-    System(&'a System),
+    System(&'a AlgebraicSystem),
 }
 
 impl Law {
@@ -256,7 +256,7 @@ impl Shown<'_> {
                 law.symbols().into_iter().collect()
             }
             Self::Closed(form) => form.value.symbols(),
-            Self::Quadrature(lines) => lines.iter().flat_map(Line::symbols).collect(),
+            Self::Quadrature(lines) => lines.iter().flat_map(DerivationLine::symbols).collect(),
             Self::System(_) => BTreeSet::new(),
         }
     }

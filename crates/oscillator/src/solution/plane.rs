@@ -110,12 +110,12 @@ impl PlanePolynomial {
 /// A polynomial in the amplitude, the constant first, and the same with the sizes of all that was
 /// added up.
 #[derive(Clone, Default)]
-struct Powers {
+struct AmplitudePolynomial {
     coefficients: Vec<f64>,
     sizes: Vec<f64>,
 }
 
-impl Powers {
+impl AmplitudePolynomial {
     fn add(&mut self, power: usize, value: f64) {
         if self.coefficients.len() <= power {
             self.coefficients.resize(power + 1, 0.0);
@@ -165,16 +165,16 @@ impl Powers {
 }
 
 /// One wave of the phase, `P + P_c cos(g theta) + P_s sin(g theta)`, in powers of the amplitude.
-type PhaseWave = [Powers; 3];
+type PhaseWave = [AmplitudePolynomial; 3];
 
 /// Slow equations in the plane at numbers.
-pub(super) struct Field {
+pub(super) struct PlaneField {
     rates: [PlanePolynomial; 2],
     /// `p`: the phase of the slow equations in terms of the angle in the plane.
     times: f64,
 }
 
-impl Field {
+impl PlaneField {
     /// `None` where a value is missing.
     pub(super) fn new(
         solution: &Solution,
@@ -230,8 +230,8 @@ impl Field {
 
     /// `a'` and `a theta'` by harmonics of the angle in the plane: the coefficients of cosine and
     /// sine in powers of the amplitude.
-    fn harmonics(&self) -> BTreeMap<i32, [[Powers; 2]; 2]> {
-        let mut found: BTreeMap<i32, [[Powers; 2]; 2]> = BTreeMap::new();
+    fn harmonics(&self) -> BTreeMap<i32, [[AmplitudePolynomial; 2]; 2]> {
+        let mut found: BTreeMap<i32, [[AmplitudePolynomial; 2]; 2]> = BTreeMap::new();
         for (rate, polynomial) in self.rates.iter().enumerate() {
             for (factor, [i, j]) in &polynomial.0 {
                 let power = (i + j).unsigned_abs() as usize;
@@ -261,7 +261,7 @@ impl Field {
         }
         found
             .into_iter()
-            .map(|(m, rates)| (m, rates.map(|waves| waves.map(Powers::cleaned))))
+            .map(|(m, rates)| (m, rates.map(|waves| waves.map(AmplitudePolynomial::cleaned))))
             .collect()
     }
 
@@ -269,7 +269,9 @@ impl Field {
     /// wave of the phase, or one that tells nothing of it.
     fn on_one_wave(&self) -> Option<Vec<[f64; 2]>> {
         let mut harmonics = self.harmonics();
-        harmonics.retain(|m, rates| *m == 0 || !rates.iter().flatten().all(Powers::is_zero));
+        harmonics.retain(|m, rates| {
+            *m == 0 || !rates.iter().flatten().all(AmplitudePolynomial::is_zero)
+        });
         let still = harmonics.remove(&0).unwrap_or_default();
         let common = harmonics.keys().fold(0, |common: i32, m| common.gcd(m));
         if common == 0 {
@@ -490,7 +492,7 @@ enum Look {
 /// `D`, `D cos(g theta)` and `D sin(g theta)`.
 fn solved(
     [[rate, rate_cos, rate_sin], [turn, turn_cos, turn_sin]]: &[PhaseWave; 2],
-) -> [Powers; 3] {
+) -> [AmplitudePolynomial; 3] {
     [
         rate_cos.product(turn_sin).minus(&rate_sin.product(turn_cos)),
         rate_sin.product(turn).minus(&rate.product(turn_sin)),

@@ -8,7 +8,7 @@
 //! steady motion with the eigenvalues that decide its stability.
 
 use super::Solution;
-use super::plane::Field;
+use super::plane::PlaneField;
 use super::spurious::Orders;
 use crate::exact::Polynomial;
 use crate::expr::Expr;
@@ -158,7 +158,7 @@ impl Solution {
         let Some(plane) = &response.plane else {
             return super::polar::steady_states(self, modulation, times, value_of);
         };
-        let field = Field::new(self, plane, times, value_of)?;
+        let field = PlaneField::new(self, plane, times, value_of)?;
         let state = |[u, v]: [f64; 2]| SteadyState {
             amplitude: u.hypot(v),
             phase: wrapped(times * (-v).atan2(u)),

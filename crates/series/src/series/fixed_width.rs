@@ -18,7 +18,7 @@ const BOUND: f64 = (1_u128 << 126) as f64;
 pub struct ShortSeries {
     /// Cosines or sines; a sine of harmonic zero has the numerator zero.
     pub wave: Wave,
-    harmonics: Harmonics,
+    harmonics: HarmonicParity,
     denominator: i128,
     numerators: Vec<i128>,
     /// The largest numerator, without its sign, rounded.
@@ -27,7 +27,7 @@ pub struct ShortSeries {
 
 /// Which harmonics stand side by side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Harmonics {
+pub enum HarmonicParity {
     /// `0, 1, 2, ...`
     All,
     /// `0, 2, 4, ...`
@@ -36,7 +36,7 @@ pub enum Harmonics {
     Odd,
 }
 
-impl Harmonics {
+impl HarmonicParity {
     /// The harmonic at a place.
     pub fn at(self, index: usize) -> usize {
         match self {
@@ -60,7 +60,7 @@ impl ShortSeries {
     /// From numerators over a positive denominator; `None` where they are too long.
     pub fn new(
         wave: Wave,
-        harmonics: Harmonics,
+        harmonics: HarmonicParity,
         denominator: i128,
         numerators: Vec<i128>,
     ) -> Option<Self> {
@@ -76,7 +76,7 @@ impl ShortSeries {
     }
 
     /// A number; `harmonics` are all or the even ones.
-    pub fn constant(harmonics: Harmonics, numerator: i128, denominator: i128) -> Option<Self> {
+    pub fn constant(harmonics: HarmonicParity, numerator: i128, denominator: i128) -> Option<Self> {
         Self::new(Wave::Cosine, harmonics, denominator, vec![numerator])
     }
 
@@ -86,7 +86,7 @@ impl ShortSeries {
     }
 
     /// Which harmonics stand side by side.
-    pub fn harmonics(&self) -> Harmonics {
+    pub fn harmonics(&self) -> HarmonicParity {
         self.harmonics
     }
 
@@ -108,8 +108,8 @@ impl ShortSeries {
     /// The number at a place as a constant series.
     pub fn coefficient(&self, index: usize) -> Option<Self> {
         let harmonics = match self.harmonics {
-            Harmonics::All => Harmonics::All,
-            Harmonics::Even | Harmonics::Odd => Harmonics::Even,
+            HarmonicParity::All => HarmonicParity::All,
+            HarmonicParity::Even | HarmonicParity::Odd => HarmonicParity::Even,
         };
         Self::constant(harmonics, self.numerator(index), self.denominator).map(Self::reduced)
     }
@@ -299,7 +299,7 @@ fn sum_of_products<'a>(
 ) -> Option<ShortSeries> {
     let mut common = 1;
     let mut length = 1;
-    let mut kind = (Wave::Cosine, Harmonics::Even);
+    let mut kind = (Wave::Cosine, HarmonicParity::Even);
     for (_, left, right) in terms.clone() {
         common = least_common_multiple(common, left.denominator.checked_mul(right.denominator)?)?;
         length = length.max(left.numerators.len() + right.numerators.len());
@@ -320,7 +320,7 @@ fn sum_of_products<'a>(
         }
         // The odd harmonics first.
         let (first, second) = match (left.harmonics, right.harmonics) {
-            (Harmonics::Even, Harmonics::Odd) => (right, left),
+            (HarmonicParity::Even, HarmonicParity::Odd) => (right, left),
             _ => (left, right),
         };
         // Where both factors are words, their product is a single instruction.
@@ -334,7 +334,7 @@ fn sum_of_products<'a>(
             false => add_doubled_product(sums, factor, (first, second), i128::wrapping_mul),
         }
     }
-    if kind.0 == Wave::Sine && kind.1 != Harmonics::Odd {
+    if kind.0 == Wave::Sine && kind.1 != HarmonicParity::Odd {
         sums[0] = 0;
     }
     while sums.len() > 1 && sums.last() == Some(&0) {
@@ -350,7 +350,7 @@ fn add_doubled_product(
     (left, right): (&ShortSeries, &ShortSeries),
     multiply: impl Fn(i128, i128) -> i128,
 ) {
-    let both_odd = left.harmonics == Harmonics::Odd && right.harmonics == Harmonics::Odd;
+    let both_odd = left.harmonics == HarmonicParity::Odd && right.harmonics == HarmonicParity::Odd;
     let apart = usize::from(left.harmonics != right.harmonics);
     let upper_is_negative = left.wave == Wave::Sine && right.wave == Wave::Sine;
     // Of the sine of a difference, the sign of the difference.
@@ -406,11 +406,11 @@ mod tests {
     fn examples() -> Vec<ShortSeries> {
         let mut examples = vec![];
         for wave in [Wave::Cosine, Wave::Sine] {
-            for harmonics in [Harmonics::All, Harmonics::Even, Harmonics::Odd] {
+            for harmonics in [HarmonicParity::All, HarmonicParity::Even, HarmonicParity::Odd] {
                 for (length, denominator) in [(1, 3), (4, 32), (7, 90)] {
                     let mut numerators: Vec<i128> =
                         (0..length).map(|k| k * k * k - 9 * k + 5).collect();
-                    if wave == Wave::Sine && harmonics != Harmonics::Odd {
+                    if wave == Wave::Sine && harmonics != HarmonicParity::Odd {
                         numerators[0] = 0;
                     }
                     examples.push(
@@ -434,8 +434,8 @@ mod tests {
             let solution = left.without_resonance_over_divisors().expect("short");
             assert_eq!(long(&solution), long(&left).solve_oscillator().0);
             for right in examples() {
-                let mixed =
-                    (left.harmonics == Harmonics::All) != (right.harmonics == Harmonics::All);
+                let mixed = (left.harmonics == HarmonicParity::All)
+                    != (right.harmonics == HarmonicParity::All);
                 if mixed {
                     continue;
                 }
@@ -475,15 +475,15 @@ mod tests {
     #[test]
     fn what_does_not_fit_is_no_series() {
         let half = 1 << 63;
-        let long = ShortSeries::new(Wave::Cosine, Harmonics::Odd, 1, vec![half, half])
+        let long = ShortSeries::new(Wave::Cosine, HarmonicParity::Odd, 1, vec![half, half])
             .expect("half of it");
         assert!(square(std::slice::from_ref(&long)).is_none());
         assert!(combination(&[(half, 1, &long)]).is_none());
         assert!(combination(&[(1, half, &long), (1, half - 1, &long)]).is_none());
-        assert!(ShortSeries::new(Wave::Cosine, Harmonics::Odd, 1, vec![i128::MIN]).is_none());
+        assert!(ShortSeries::new(Wave::Cosine, HarmonicParity::Odd, 1, vec![i128::MIN]).is_none());
         let prime = (1 << 61) - 1;
         let far =
-            ShortSeries::new(Wave::Cosine, Harmonics::All, 1, vec![prime; 60]).expect("short");
+            ShortSeries::new(Wave::Cosine, HarmonicParity::All, 1, vec![prime; 60]).expect("short");
         assert!(far.without_resonance_over_divisors().is_none());
     }
 }

@@ -36,7 +36,7 @@ pub struct FourierSeries<R: Ring> {
 /// The part of a right-hand side at the natural frequency: `cosine cos theta + sine sin theta`,
 /// each a constant series.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Resonance<R: Ring> {
+pub struct ResonantPart<R: Ring> {
     /// The coefficient of `cos theta`.
     pub cosine: FourierSeries<R>,
     /// The coefficient of `sin theta`.
@@ -252,8 +252,8 @@ impl<R: Ring> FourierSeries<R> {
 
     /// The periodic solution of `u'' + u = self` without first harmonic, and the resonant part left
     /// over: `u_k = r_k / (1 - k^2)` for `k != 1`.
-    pub fn solve_oscillator(&self) -> (Self, Resonance<R>) {
-        let resonance = Resonance { cosine: self.cosine(1), sine: self.sine(1) };
+    pub fn solve_oscillator(&self) -> (Self, ResonantPart<R>) {
+        let resonance = ResonantPart { cosine: self.cosine(1), sine: self.sine(1) };
         let mut solution = self.clone();
         for part in [&mut solution.cosine, &mut solution.sine] {
             if let Some(resonant) = part.get_mut(1) {

@@ -91,7 +91,7 @@ pub fn nearest(coefficients: &[Rational]) -> Option<Singularity> {
         .zip(coefficients)
         .map(|(k, value)| BigFloat::of_fraction(value, bits).shifted(growth.unit * k))
         .collect();
-    let find = |kind: &Kind| followed(*kind, &scaled, &growth);
+    let find = |kind: &ApproximantKind| followed(*kind, &scaled, &growth);
     let found = each(&KINDS, find).into_iter().flatten().collect();
     singularity(found, &growth, bits)
 }
@@ -222,16 +222,17 @@ fn steepens_evenly(coefficients: &[Rational]) -> bool {
 
 /// Which equation an approximant solves.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
+enum ApproximantKind {
     Quadratic,
     Differential,
     /// Differential, of `f^(-1/2)`.
     OfInverseRoot,
 }
 
-const KINDS: [Kind; 3] = [Kind::Quadratic, Kind::Differential, Kind::OfInverseRoot];
+const KINDS: [ApproximantKind; 3] =
+    [ApproximantKind::Quadratic, ApproximantKind::Differential, ApproximantKind::OfInverseRoot];
 
-impl Kind {
+impl ApproximantKind {
     /// How many equations so many coefficients give.
     fn length(self, coefficients: usize) -> usize {
         match self {
@@ -342,7 +343,7 @@ struct Approximant {
 
 /// The approximants to orders so far below the highest.
 fn approximants(
-    kind: Kind,
+    kind: ApproximantKind,
     coefficients: &[BigFloat],
     below: &[usize],
 ) -> Vec<(usize, Approximant)> {
@@ -352,12 +353,12 @@ fn approximants(
     let mut constant = vec![BigFloat::zero(bits); length];
     constant[0] = field.one();
     let mut own = match kind {
-        Kind::Quadratic | Kind::Differential => coefficients.to_vec(),
-        Kind::OfInverseRoot => inverse_root(coefficients),
+        ApproximantKind::Quadratic | ApproximantKind::Differential => coefficients.to_vec(),
+        ApproximantKind::OfInverseRoot => inverse_root(coefficients),
     };
     let last = match kind {
-        Kind::Quadratic => product(&own, &own, length),
-        Kind::Differential | Kind::OfInverseRoot => {
+        ApproximantKind::Quadratic => product(&own, &own, length),
+        ApproximantKind::Differential | ApproximantKind::OfInverseRoot => {
             (1..=length).map(|k| &own[k] * &BigFloat::of_f64(k as f64, bits)).collect()
         }
     };
@@ -371,7 +372,7 @@ fn approximants(
                 continue;
             };
             let approximant = match kind {
-                Kind::Quadratic => {
+                ApproximantKind::Quadratic => {
                     let all = usize::MAX;
                     let mut zero = product(q, q, all);
                     let four = BigFloat::of_f64(4.0, bits);
@@ -381,7 +382,7 @@ fn approximants(
                     }
                     Approximant { zero, beside: vec![] }
                 }
-                Kind::Differential | Kind::OfInverseRoot => {
+                ApproximantKind::Differential | ApproximantKind::OfInverseRoot => {
                     Approximant { zero: r.clone(), beside: q.clone() }
                 }
             };
@@ -424,22 +425,22 @@ fn product(left: &[BigFloat], right: &[BigFloat], most: usize) -> Vec<BigFloat> 
 }
 
 /// A zero that stays from one approximant to the next.
-struct Followed {
-    kind: Kind,
+struct PersistentZero {
+    kind: ApproximantKind,
     place: Complex,
     error: f64,
     /// Of a differential approximant, with its error.
     exponent: Option<(f64, f64)>,
 }
 
-impl Followed {
+impl PersistentZero {
     /// The power of the distance with which f is singular there; `None` where it is not known.
     fn power_of_function(&self) -> Option<f64> {
         match (self.kind, self.exponent) {
-            (Kind::Quadratic, _) => Some(0.5),
-            (Kind::Differential, Some((value, _))) => Some(value),
-            (Kind::OfInverseRoot, Some((value, _))) if value < 0.0 => Some(-2.0 * value),
-            (Kind::OfInverseRoot, Some((value, _))) => Some(value),
+            (ApproximantKind::Quadratic, _) => Some(0.5),
+            (ApproximantKind::Differential, Some((value, _))) => Some(value),
+            (ApproximantKind::OfInverseRoot, Some((value, _))) if value < 0.0 => Some(-2.0 * value),
+            (ApproximantKind::OfInverseRoot, Some((value, _))) => Some(value),
             (_, None) => None,
         }
     }
@@ -447,7 +448,8 @@ impl Followed {
     /// The order of a zero of f: there `f^(-1/2)` has the power -1/2, -1, ... and the motion takes
     /// for ever, but omega^2 goes through.
     fn order_of_zero(&self) -> Option<f64> {
-        let (value, error) = self.exponent.filter(|_| self.kind == Kind::OfInverseRoot)?;
+        let (value, error) =
+            self.exponent.filter(|_| self.kind == ApproximantKind::OfInverseRoot)?;
         let order = (-2.0 * value).round();
         (order >= 1.0 && (-2.0 * value - order).abs() <= (4.0 * error).max(WORST_POWER))
             .then_some(order)
@@ -456,12 +458,12 @@ impl Followed {
     /// Whether f is regular there, as far as this approximant and the zeros of f can tell.
     fn is_regular(&self, zeros: &[(Complex64, f64)]) -> bool {
         match (self.kind, self.exponent) {
-            (Kind::OfInverseRoot, Some((_, error))) => {
+            (ApproximantKind::OfInverseRoot, Some((_, error))) => {
                 error > WORST_POWER || self.order_of_zero().is_some()
             }
-            (Kind::OfInverseRoot, None) => true,
+            (ApproximantKind::OfInverseRoot, None) => true,
             // The power of the zero itself; what is singular at a zero has another one.
-            (Kind::Differential, Some((value, _))) => {
+            (ApproximantKind::Differential, Some((value, _))) => {
                 let place = self.place.to_f64();
                 let here =
                     |zero: &&(Complex64, f64)| (zero.0 - place).norm() <= MOVES * place.norm();
@@ -482,7 +484,11 @@ struct Zero {
 }
 
 /// The zeros that all approximants share, or all but a few.
-fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Vec<Followed> {
+fn followed(
+    kind: ApproximantKind,
+    coefficients: &[BigFloat],
+    growth: &Growth,
+) -> Vec<PersistentZero> {
     /// So many coefficients show in doubles where to look.
     const FIRST: usize = 48;
     let length = kind.length(coefficients.len());
@@ -492,7 +498,7 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Vec<Follo
     let wanted: Vec<usize> = starts.into_iter().chain(0..=2 * window).collect();
     let all = approximants(kind, coefficients, &wanted);
     let at = |below: usize| all.iter().find(|own| own.0 == below).map(|own| &own.1);
-    let follow = |start: Complex64| -> Option<Followed> {
+    let follow = |start: Complex64| -> Option<PersistentZero> {
         /// Of so many approximants one may lack the zero.
         const LACKING: usize = 6;
         let mut near = Complex::of(start, coefficients[0].bits());
@@ -532,7 +538,7 @@ fn followed(kind: Kind, coefficients: &[BigFloat], growth: &Growth) -> Vec<Follo
             };
             (value.re, error_of(&distance).max(value.im.abs()))
         });
-        Some(Followed {
+        Some(PersistentZero {
             kind,
             error: error_of(&|one, other| one.place.distance(&other.place)),
             place: end.place,
@@ -678,27 +684,27 @@ fn candidates_of(polynomial: &[BigFloat], growth: &Growth) -> Vec<Complex64> {
 /// Whether every kind of approximant has found one place, the same within their errors, and the
 /// power there may be that of a square root, which all kinds meet; `seen` are the places and errors
 /// of those of `f^(-1/2)`, whose power may not be known yet.
-fn all_agree(found: &[Followed], seen: &[(Complex, f64)]) -> bool {
-    let has = |kind: Kind| found.iter().any(|own| own.kind == kind);
-    let is_root = |own: &Followed| match (own.kind, own.exponent) {
-        (Kind::Differential, Some((value, error))) => {
+fn all_agree(found: &[PersistentZero], seen: &[(Complex, f64)]) -> bool {
+    let has = |kind: ApproximantKind| found.iter().any(|own| own.kind == kind);
+    let is_root = |own: &PersistentZero| match (own.kind, own.exponent) {
+        (ApproximantKind::Differential, Some((value, error))) => {
             error <= WORST_POWER && (value - 0.5).abs() <= error
         }
         _ => true,
     };
-    let together = |one: &Followed| {
+    let together = |one: &PersistentZero| {
         let near = |place: &Complex, error: f64| one.place.distance(place) <= one.error + error;
         found.iter().all(|other| near(&other.place, other.error))
             && seen.iter().any(|other| near(&other.0, other.1))
     };
-    has(Kind::Quadratic)
-        && has(Kind::Differential)
+    has(ApproximantKind::Quadratic)
+        && has(ApproximantKind::Differential)
         && found.iter().all(|own| is_root(own) && together(own))
 }
 
 /// The nearest singularity of those that the kinds of approximants have found, with an error that
 /// covers what they differ by.
-fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Singularity> {
+fn singularity(found: Vec<PersistentZero>, growth: &Growth, bits: usize) -> Option<Singularity> {
     /// An exponent with more error is not worth saying.
     const WORST_EXPONENT: f64 = 0.02;
     /// A place with more error, relatively, is none.
@@ -709,23 +715,24 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
     const SMALL_POWER: f64 = 0.2;
     /// The factor on the error there.
     const SLOWEST: f64 = 10.0;
-    let size_of = |own: &Followed| own.place.to_f64().norm();
+    let size_of = |own: &PersistentZero| own.place.to_f64().norm();
     // By how much the coefficients grow faster than those of the singularity, over what that may be
     // off: as a power of their number.
-    let excess = |own: &Followed| {
+    let excess = |own: &PersistentZero| {
         let power = own.power_of_function()? + 1.0;
         Some((growth.power(size_of(own))? + power) / (1.25 + 0.25 * power.abs()))
     };
-    let zero = |own: &Followed| Some((own.place.to_f64(), own.order_of_zero()?));
+    let zero = |own: &PersistentZero| Some((own.place.to_f64(), own.order_of_zero()?));
     let zeros: Vec<(Complex64, f64)> = found.iter().filter_map(zero).collect();
-    let of_inverse_root = found.iter().filter(|own| own.kind == Kind::OfInverseRoot);
+    let of_inverse_root = found.iter().filter(|own| own.kind == ApproximantKind::OfInverseRoot);
     let seen: Vec<(Complex, f64)> = of_inverse_root
         .filter(|own| own.order_of_zero().is_none() && own.error <= WORST * size_of(own))
         .map(|own| (own.place.clone(), own.error))
         .collect();
-    let singular = |own: &Followed| !own.is_regular(&zeros) && own.error <= WORST * size_of(own);
+    let singular =
+        |own: &PersistentZero| !own.is_regular(&zeros) && own.error <= WORST * size_of(own);
     // What would make larger coefficients than there are is none.
-    let found: Vec<(Followed, f64)> = found
+    let found: Vec<(PersistentZero, f64)> = found
         .into_iter()
         .filter(singular)
         .filter_map(|own| excess(&own).map(|excess| (own, excess)))
@@ -737,16 +744,16 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
     }
     let nearest =
         found.iter().map(|(own, _)| size_of(own) + own.error).fold(f64::INFINITY, f64::min);
-    let on_circle = |own: &Followed| size_of(own) - own.error <= nearest * (1.0 + MOVES);
-    let mut found: Vec<Followed> =
+    let on_circle = |own: &PersistentZero| size_of(own) - own.error <= nearest * (1.0 + MOVES);
+    let mut found: Vec<PersistentZero> =
         found.into_iter().map(|(own, _)| own).filter(on_circle).collect();
-    let exponent_by = |found: &[Followed], wanted: Kind| {
+    let exponent_by = |found: &[PersistentZero], wanted: ApproximantKind| {
         let own = found.iter().filter(|own| own.kind == wanted);
         let best = own.min_by(|a, b| a.error.total_cmp(&b.error))?;
         best.exponent.filter(|(_, error)| *error < WORST_EXPONENT)
     };
-    let exponent = exponent_by(&found, Kind::OfInverseRoot);
-    let power = exponent_by(&found, Kind::Differential);
+    let exponent = exponent_by(&found, ApproximantKind::OfInverseRoot);
+    let power = exponent_by(&found, ApproximantKind::Differential);
     // What is no square root the quadratic approximants do not meet, nor those of omega^2 what is a
     // logarithm of the period.
     if [exponent, power]
@@ -754,11 +761,11 @@ fn singularity(found: Vec<Followed>, growth: &Growth, bits: usize) -> Option<Sin
         .flatten()
         .any(|(value, error)| (value - 0.5).abs() > 2.0 * error)
     {
-        let others = found.iter().any(|own| own.kind != Kind::Quadratic);
-        found.retain(|own| own.kind != Kind::Quadratic || !others);
+        let others = found.iter().any(|own| own.kind != ApproximantKind::Quadratic);
+        found.retain(|own| own.kind != ApproximantKind::Quadratic || !others);
     }
     if exponent.is_some_and(|(value, error)| value.abs() <= error) {
-        found.retain(|own| own.kind != Kind::Differential);
+        found.retain(|own| own.kind != ApproximantKind::Differential);
     }
     let best = found.iter().min_by(|a, b| a.error.total_cmp(&b.error))?;
     let size = best.place.to_f64().norm();

@@ -350,18 +350,18 @@ impl<const L: usize> Tape<L> {
     /// Computes the coefficients of everything from the values of the variables; those of the first
     /// variables grow by the rates at these places.
     pub fn expand(&mut self, rates: &[usize]) {
-        Arch::new().dispatch(Expansion { tape: self, rates });
+        Arch::new().dispatch(TapeExpansion { tape: self, rates });
     }
 }
 
 /// All orders of a tape; always compiled into its caller, so that it gets the widest registers
 /// there are.
-struct Expansion<'a, const L: usize> {
+struct TapeExpansion<'a, const L: usize> {
     tape: &'a mut Tape<L>,
     rates: &'a [usize],
 }
 
-impl<const L: usize> WithSimd for Expansion<'_, L> {
+impl<const L: usize> WithSimd for TapeExpansion<'_, L> {
     type Output = ();
 
     #[inline(always)]

@@ -172,7 +172,7 @@ impl Waves {
         coefficients: &[Lanes],
         values: &mut [Lanes],
     ) {
-        let work = Values(self, residues, wave, coefficients, values);
+        let work = EvaluateWaves(self, residues, wave, coefficients, values);
         residues.arithmetic.vectorize(work);
     }
 
@@ -186,7 +186,7 @@ impl Waves {
         values: &mut [Lanes],
         out: &mut [Lanes],
     ) {
-        let work = Coefficients(self, residues, wave, values, out);
+        let work = RecoverCoefficients(self, residues, wave, values, out);
         residues.arithmetic.vectorize(work);
     }
 
@@ -228,9 +228,9 @@ fn cosine_sums<A: Arithmetic>(
     (residues.reduce(of_left_sum), residues.reduce(of_right_sum))
 }
 
-struct Values<'a, A>(&'a mut Waves, &'a Residues<A>, Wave, &'a [Lanes], &'a mut [Lanes]);
+struct EvaluateWaves<'a, A>(&'a mut Waves, &'a Residues<A>, Wave, &'a [Lanes], &'a mut [Lanes]);
 
-impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
+impl<A: Arithmetic> NullaryFnOnce for EvaluateWaves<'_, A> {
     type Output = ();
 
     #[inline(always)]
@@ -319,9 +319,15 @@ impl<A: Arithmetic> NullaryFnOnce for Values<'_, A> {
     }
 }
 
-struct Coefficients<'a, A>(&'a mut Waves, &'a Residues<A>, Wave, &'a mut [Lanes], &'a mut [Lanes]);
+struct RecoverCoefficients<'a, A>(
+    &'a mut Waves,
+    &'a Residues<A>,
+    Wave,
+    &'a mut [Lanes],
+    &'a mut [Lanes],
+);
 
-impl<A: Arithmetic> NullaryFnOnce for Coefficients<'_, A> {
+impl<A: Arithmetic> NullaryFnOnce for RecoverCoefficients<'_, A> {
     type Output = ();
 
     #[inline(always)]

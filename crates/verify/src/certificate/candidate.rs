@@ -217,7 +217,7 @@ fn certified_motion(
     with_formula: bool,
 ) -> Result<(Certificate, Certified), NotCertified> {
     let _letters = oscillator.letters().in_force();
-    let question = Question::of(oscillator, solution, at)?;
+    let question = ProofTarget::of(oscillator, solution, at)?;
     let judged = match with_formula {
         true => Some(judged(solution, at, BITS)?),
         false => None,
@@ -263,13 +263,13 @@ pub(super) fn blocks(seen: usize) -> impl Iterator<Item = usize> {
 }
 
 /// The motion to be proved: `x'' + force = 0` from rest at `start`.
-struct Question {
+struct ProofTarget {
     force: Expr,
     start: Rational,
     odd: bool,
 }
 
-impl Question {
+impl ProofTarget {
     fn of(oscillator: &Oscillator, solution: &Solution, at: &Values) -> Result<Self, NotCertified> {
         let parts = oscillator.parts()?;
         for part in [parts.damping, parts.inertia, parts.forcing] {
@@ -389,7 +389,7 @@ pub(super) fn unclaimed([cosines, sines]: [&[f64]; 2], bits: usize) -> JudgedFor
 pub(super) const NOISE: f64 = 1e-11;
 
 /// `1/omega^2` and the cosine coefficients of one period.
-fn from_samples(samples: &[verify::Sample], odd: bool) -> (f64, Vec<f64>) {
+fn from_samples(samples: &[verify::TimedState], odd: bool) -> (f64, Vec<f64>) {
     let count = samples.len() - 1;
     let period = samples[count].0;
     let places: Vec<f64> = samples[..count].iter().map(|(_, x, _)| *x).collect();
@@ -429,7 +429,7 @@ pub(super) fn claim_errors(formula: Option<&mut JudgedFormula>, certified: &Cert
     let Some((formula, errors)) = formula.zip(certified.formula.as_ref()) else {
         return;
     };
-    let both = |range: formula::Range| {
+    let both = |range: formula::SizeBounds| {
         let ([lower, _], [_, upper]) = (claimed(range.lower), claimed(range.upper));
         [lower, upper]
     };

@@ -44,15 +44,15 @@ impl Enclosure {
 
     /// The relative error of a number that stands for what is enclosed, `|number/truth - 1|`; all
     /// that is known where it is no number.
-    pub fn relative_error(&self, number: f64) -> Range {
+    pub fn relative_error(&self, number: f64) -> SizeBounds {
         let Some(exact) = from_f64(number) else {
-            return Range { lower: 0.0, upper: f64::INFINITY };
+            return SizeBounds { lower: 0.0, upper: f64::INFINITY };
         };
         let (truth, radius) = (Bound::of_fraction(&self.middle), self.radius);
         let apart = Bound::of_fraction(&(exact - &self.middle));
         let (closest, farthest) =
             ((below(apart) - radius.value()).next_down().max(0.0), apart + radius);
-        Range {
+        SizeBounds {
             lower: (closest / (truth + radius).value()).next_down().max(0.0),
             upper: farthest.over((below(truth) - radius.value()).next_down()).value(),
         }
@@ -66,7 +66,7 @@ const fn below(bound: Bound) -> f64 {
 
 /// The ends between which a size is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Range {
+pub struct SizeBounds {
     /// No less.
     pub lower: f64,
     /// No more.
@@ -138,15 +138,15 @@ pub struct JudgedFormula {
 pub struct Errors {
     /// `max |X - X~|`, both at the same phase, in the unit of the coordinate; of the nearest of the
     /// [copies](Certified::copies) of X.
-    pub deviation: Range,
+    pub deviation: SizeBounds,
     /// `|omega - omega~|`.
-    pub frequency: Range,
+    pub frequency: SizeBounds,
     /// `|omega~/omega - 1|`; of a driven motion, whose frequency is known, `|a~/a - 1|`.
-    pub relative: Range,
+    pub relative: SizeBounds,
     /// `max |X~'| |omega - omega~|`: what is added to the deviation at most in a unit of time.
-    pub drift: Range,
+    pub drift: SizeBounds,
     /// Of a driven motion `|a - a~|`, the amplitudes of its own harmonic.
-    pub amplitude: Option<Range>,
+    pub amplitude: Option<SizeBounds>,
 }
 
 impl JudgedFormula {
@@ -237,7 +237,7 @@ pub(super) fn certified(certificate: &Certificate, proof: Proof) -> Result<Certi
 
 impl Truth<'_> {
     /// `max |X - X~|` of the nearest copy.
-    fn deviation(&self, own_motion: &FourierSeries) -> Range {
+    fn deviation(&self, own_motion: &FourierSeries) -> SizeBounds {
         let apart = |copy: &FourierSeries| {
             let difference = copy.difference(own_motion);
             (below_mean(&difference), difference)
@@ -254,7 +254,7 @@ impl Truth<'_> {
             lower = lower.min(below);
             upper = if above < upper { above } else { upper };
         }
-        Range {
+        SizeBounds {
             lower: (lower - self.radius.value()).next_down().max(0.0),
             upper: (upper + self.radius).value(),
         }
@@ -270,9 +270,9 @@ impl Truth<'_> {
         let (amplitude, relative) = apart(own, truth);
         Errors {
             deviation: self.deviation(own_motion),
-            frequency: Range::default(),
+            frequency: SizeBounds::default(),
             relative,
-            drift: Range::default(),
+            drift: SizeBounds::default(),
             amplitude: Some(amplitude),
         }
     }
@@ -285,7 +285,7 @@ impl Truth<'_> {
             deviation: self.deviation(own_motion),
             relative,
             amplitude: None,
-            drift: Range {
+            drift: SizeBounds {
                 lower: (flattest * frequency_error.lower).next_down().max(0.0),
                 upper: (steepest * Bound::exactly(frequency_error.upper)).value(),
             },
@@ -295,14 +295,14 @@ impl Truth<'_> {
 }
 
 /// Absolute and relative error of a number, each between two bounds.
-fn apart(own: &Ball, truth: &Ball) -> (Range, Range) {
+fn apart(own: &Ball, truth: &Ball) -> (SizeBounds, SizeBounds) {
     let off = WORKING.difference(own, truth);
-    let error = Range {
+    let error = SizeBounds {
         lower: WORKING.distance_from_zero(&off).max(0.0),
         upper: WORKING.magnitude(&off).value(),
     };
     let smallest = WORKING.distance_from_zero(truth);
-    let relative = Range {
+    let relative = SizeBounds {
         lower: (error.lower / WORKING.magnitude(truth).value()).next_down().max(0.0),
         upper: match smallest > 0.0 {
             true => Bound::exactly(error.upper).over(smallest).value(),

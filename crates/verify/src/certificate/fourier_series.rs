@@ -47,12 +47,12 @@ const MOST_TERMS: u32 = 28;
 
 /// One of the functions that a series consists of, by its harmonic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Wave {
+pub(super) enum BasisFunction {
     Cosine(usize),
     Sine(usize),
 }
 
-impl Wave {
+impl BasisFunction {
     /// Its harmonic.
     pub(super) const fn harmonic(self) -> usize {
         match self {
@@ -156,10 +156,10 @@ impl FourierSeries {
     }
 
     /// The coefficient of a wave.
-    pub(super) fn coefficient(&self, wave: Wave) -> Ball {
+    pub(super) fn coefficient(&self, wave: BasisFunction) -> Ball {
         match wave {
-            Wave::Cosine(harmonic) => self.cosine(harmonic),
-            Wave::Sine(harmonic) => self.sine(harmonic),
+            BasisFunction::Cosine(harmonic) => self.cosine(harmonic),
+            BasisFunction::Sine(harmonic) => self.sine(harmonic),
         }
     }
 

@@ -36,7 +36,7 @@ pub use candidate::{NotCertified, certify, certify_motion};
 pub use damped::{
     DampedCertificate, Drive, certify_cycle, certify_cycle_motion, certify_driven, check_damped,
 };
-pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, Range};
+pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, SizeBounds};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
 pub use radii_polynomial::{NotProved, Proof};
 pub use validity::{Beyond, Validity, validity};

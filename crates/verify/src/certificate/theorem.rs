@@ -110,7 +110,7 @@ impl Direction {
 
 /// The bounds of a certificate that its proofs are made of.
 struct Theorem<'a> {
-    system: System<'a>,
+    system: BoundData<'a>,
     /// f' and f''.
     derivatives: [Expr; 2],
     slope: Slope,
@@ -123,7 +123,7 @@ impl<'a> Theorem<'a> {
         if certificate.odd && !certificate.is_odd()? {
             return Err(NotProved::NotOdd);
         }
-        let system = System::of(certificate)?;
+        let system = BoundData::of(certificate)?;
         let first = certificate.force.differentiate(coordinate())?;
         let second = first.differentiate(coordinate())?;
         let slope = Slope::of(along(&first, &system.motion)?);
@@ -155,7 +155,7 @@ impl<'a> Theorem<'a> {
 /// # Errors
 /// As [`prove`].
 pub(super) fn correction(certificate: &Certificate) -> Result<Correction<usize>, NotProved> {
-    Ok(System::of(certificate)?.correction())
+    Ok(BoundData::of(certificate)?.correction())
 }
 
 /// `f'(c)`, by which the derivative multiplies.
@@ -185,7 +185,7 @@ impl Slope {
 }
 
 /// The quantities from which the bounds Y0, Z1 and Z2 are computed.
-struct System<'a> {
+struct BoundData<'a> {
     certificate: &'a Certificate,
     inverse: Inverse,
     motion: FourierSeries,
@@ -200,7 +200,7 @@ struct System<'a> {
     size: Bound,
 }
 
-impl<'a> System<'a> {
+impl<'a> BoundData<'a> {
     fn of(certificate: &'a Certificate) -> Result<Self, NotProved> {
         let motion = certificate.motion();
         let force = along(&certificate.force, &motion)?;

@@ -66,7 +66,7 @@ pub(super) fn of_tongue(
     let matrix = effective_matrix(hill, tongue, order);
     let [[cosine, upper_right], [lower_left, _]] = &matrix;
     if tongue == 0 {
-        let middle = Powers { hill, order }.solved(cosine, tongue);
+        let middle = TruncatedPowers { hill, order }.solved(cosine, tongue);
         let mut curve = of_waves("a", tongue, middle);
         if !is_even(hill) {
             curve.motion = WavesOfMotion::Both;
@@ -110,7 +110,7 @@ fn separate(
     order: u32,
     matrix: &[[Polynomial; 2]; 2],
 ) -> Vec<TransitionCurve> {
-    let power = Powers { hill, order };
+    let power = TruncatedPowers { hill, order };
     let [[cosine, _], [_, sine]] = matrix;
     let mut pair = vec![
         of_waves("a", tongue, power.solved(cosine, tongue)),
@@ -141,7 +141,7 @@ fn mixed(hill: &Hill, tongue: usize, order: u32) -> Vec<TransitionCurve> {
     // The terms that open the tongue enter the radicand Q squared, with the power 2 n.
     let beyond = order.max(2 * tongue as u32);
     let further = effective_matrix(hill, tongue, beyond);
-    let power = Powers { hill, order: beyond };
+    let power = TruncatedPowers { hill, order: beyond };
     let (middle, root) = middle_and_square(&power, tongue, &further);
     let middle = power.cut(&middle, order.into());
     let shown = i64::from(order.max(beyond - 1)) + 1;
@@ -169,7 +169,7 @@ fn mixed(hill: &Hill, tongue: usize, order: u32) -> Vec<TransitionCurve> {
 /// The mean of the diagonal of H, and the square of what the curves lie beside it, for the unknown
 /// that is solved for.
 fn middle_and_square(
-    power: &Powers,
+    power: &TruncatedPowers,
     tongue: usize,
     matrix: &[[Polynomial; 2]; 2],
 ) -> (Polynomial, Polynomial) {
@@ -289,12 +289,12 @@ impl Combined for Polynomial {
 
 /// Power series in what is small, cut after an order.
 #[derive(Clone, Copy)]
-struct Powers<'a> {
+struct TruncatedPowers<'a> {
     hill: &'a Hill,
     order: u32,
 }
 
-impl Powers<'_> {
+impl TruncatedPowers<'_> {
     fn degree(&self, monomial: &Monomial) -> i64 {
         self.hill.small.iter().map(|name| i64::from(monomial.exponent(*name))).sum()
     }
@@ -359,7 +359,7 @@ impl Powers<'_> {
                 let rest = self.kept(eigenvalue, |degree| degree > 0);
                 // Each round is right to one order more, and keeps no other.
                 for order in 1..=self.order {
-                    let round = Powers { order, ..*self };
+                    let round = TruncatedPowers { order, ..*self };
                     let rest = round.with_square(&rest, name, &square);
                     square =
                         self.cut(&scale.product(&self.hill.constant.less(&rest)), order.into());
@@ -503,7 +503,7 @@ impl Powers<'_> {
             highest_harmonic: self.hill.highest_harmonic,
         };
         let highest = i64::from(self.order) + 2;
-        let power = Powers { hill: &extended, order: self.order };
+        let power = TruncatedPowers { hill: &extended, order: self.order };
         let square = first.sum_with(&Polynomial::symbol(v));
         let distance = self.hill.constant.less(&power.with_square(middle, name, &square));
         let function = power

@@ -41,7 +41,7 @@ pub const MOST_TONGUES: usize = 20;
 
 /// Order, number of tongues and unknowns of a derivation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Options {
+pub struct HillOptions {
     /// Highest power of the small parameters, all together, that is kept.
     pub order: u32,
     /// The tongues 0, 1, ... up to this one.
@@ -53,7 +53,7 @@ pub struct Options {
     pub solve_for: Option<String>,
 }
 
-impl Default for Options {
+impl Default for HillOptions {
     /// Order 6, the tongues 0 to 3.
     fn default() -> Self {
         Self { order: 6, tongues: 3, small: vec![], solve_for: None }
@@ -309,7 +309,7 @@ struct Hill {
 /// ```
 pub fn transition_curves(
     oscillator: &Oscillator,
-    options: &Options,
+    options: &HillOptions,
 ) -> Result<TransitionCurves, HillError> {
     if options.order == 0 || options.order > HIGHEST_ORDER || options.tongues > MOST_TONGUES {
         return Err(HillError::Limits);
@@ -425,7 +425,7 @@ impl Hill {
         oscillator: &Oscillator,
         [damping, stiffness]: [&Expr; 2],
         time_scale: Option<Symbol>,
-        options: &Options,
+        options: &HillOptions,
     ) -> Result<Self, HillError> {
         let not_periodic = |part: Expr| {
             let meant = |typed: &Expr| typed.unique_nodes().any(|node| *node == part);
@@ -591,7 +591,7 @@ fn small(
     oscillator: &Oscillator,
     [damping, stiffness]: [&FourierSeries<Polynomials>; 2],
     frequency: &Frequency,
-    options: &Options,
+    options: &HillOptions,
 ) -> Result<Vec<Symbol>, HillError> {
     if !options.small.is_empty() {
         let names = options.small.iter().map(|name| Symbol::new(name));

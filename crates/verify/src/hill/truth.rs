@@ -21,7 +21,7 @@ use super::{TransitionCurve, TransitionCurves, Unknown, WavesOfMotion};
 use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::ode::root::find_root;
 use crate::symbol::Symbol;
-use crate::system::{Options, System};
+use crate::system::{System, SystemOptions};
 use crate::values::Values;
 
 /// Harmonics beyond those that the coefficients ask for.
@@ -251,7 +251,7 @@ fn true_value(
                     slope.evaluate(&with(reference)).map_err(|_| TruthError::Coefficients)?;
                 let slope = by_letter / (f64::from(power) * reference.powi(power - 1));
                 let above = is_upper(curves, curve, numbers) == (slope > 0.0);
-                let coefficients = Coefficients::of(curves, &with(reference))?;
+                let coefficients = SampledCoefficients::of(curves, &with(reference))?;
                 let mu = coefficients.eigenvalue(curve, above)?;
                 // A value below the rounding error is zero.
                 let rounding = ROUNDING * coefficients.frequency.powi(2);
@@ -275,7 +275,7 @@ fn true_value(
         return Ok(None);
     };
     let numbers = with(value);
-    let coefficients = Coefficients::of(curves, &numbers)?;
+    let coefficients = SampledCoefficients::of(curves, &numbers)?;
     match coefficients.defect(curves, curve, &numbers) {
         Some(defect) if defect <= MULTIPLIER_TOLERANCE => Ok(Some(value)),
         _ => Err(TruthError::NotConfirmed(curve.name.clone())),
@@ -290,9 +290,11 @@ fn frequency_without_remainder(
 ) -> Result<Option<f64>, TruthError> {
     let upper = is_upper(curves, curve, &with(1.0));
     // mu grows with the frequency: the larger of two comes to zero first.
-    let mu = |frequency: f64| Coefficients::of(curves, &with(frequency))?.eigenvalue(curve, !upper);
+    let mu = |frequency: f64| {
+        SampledCoefficients::of(curves, &with(frequency))?.eigenvalue(curve, !upper)
+    };
     // Without variation of the coefficients mu is n^2 Omega^2/4 less the mean stiffness.
-    let unit = Coefficients::of(curves, &with(1.0))?;
+    let unit = SampledCoefficients::of(curves, &with(1.0))?;
     let count = curve.tongue as f64 * unit.frequency;
     let mean = unit.mean_stiffness();
     if !(mean > 0.0 && count > 0.0) {
@@ -325,7 +327,7 @@ struct Eigenvalue {
 }
 
 /// `c` and `k` at equally spaced phases, in numbers.
-struct Coefficients {
+struct SampledCoefficients {
     /// Of the coefficients.
     frequency: f64,
     /// `(c, k)` over two periods.
@@ -333,7 +335,7 @@ struct Coefficients {
     harmonics: usize,
 }
 
-impl Coefficients {
+impl SampledCoefficients {
     fn of(curves: &TransitionCurves, numbers: &BTreeMap<Symbol, f64>) -> Result<Self, TruthError> {
         let value_of = |name: Symbol| numbers.get(&name).copied();
         let frequency = curves.frequency.polynomial().evaluate(value_of).unwrap_or(f64::NAN);
@@ -450,7 +452,7 @@ impl Coefficients {
         let system = System::new(&names, "t".into(), &[v, rate], numbers).ok()?;
         let period = TAU / self.frequency;
         let column = |start: [f64; 2]| {
-            let path = system.solve(0.0, &start, period, &[], &Options::default()).ok()?;
+            let path = system.solve(0.0, &start, period, &[], &SystemOptions::default()).ok()?;
             path.at(period)
         };
         let (first, second) = (column([1.0, 0.0])?, column([0.0, 1.0])?);

@@ -40,7 +40,7 @@ const CORNERED: [usize; 2] = [32, 512];
 
 /// The equations for so many harmonics.
 #[derive(Clone, Debug)]
-pub struct Balance<'a> {
+pub struct HarmonicBalance<'a> {
     /// The equation.
     pub driven: &'a Driven,
     /// H: the highest harmonic.
@@ -62,12 +62,12 @@ pub struct Linearised {
 
 /// A part of the force and of its derivatives by position, velocity, parameter and frequency, at a
 /// phase.
-struct Part {
+struct ForceAtPhase {
     phase: f64,
     values: [f64; 5],
 }
 
-impl<'a> Balance<'a> {
+impl<'a> HarmonicBalance<'a> {
     /// The equations of `harmonics` harmonics, one at least.
     pub fn new(driven: &'a Driven, harmonics: usize) -> Self {
         let harmonics = harmonics.max(1);
@@ -260,7 +260,7 @@ impl<'a> Balance<'a> {
         parameter: f64,
         omega: f64,
         motion: &[[f64; 3]],
-    ) -> Vec<Part> {
+    ) -> Vec<ForceAtPhase> {
         let driven = self.driven;
         let Some(speed) = driven.jump_speed(parameter) else {
             return vec![];
@@ -278,7 +278,7 @@ impl<'a> Balance<'a> {
             find_root(|phase| at(phase)[1] - speed, from, to).unwrap_or(from)
         };
         let mut phases: Vec<f64> = passes.map(passed).collect();
-        let mut parts: Vec<Part> = Vec::new();
+        let mut parts: Vec<ForceAtPhase> = Vec::new();
         for phase in &phases {
             let here = at(*phase);
             let [above, below] = [1.0, -1.0].map(|side| driven.force_on(&here, &[side]));
@@ -287,7 +287,7 @@ impl<'a> Balance<'a> {
             let by_frequency = by_velocity * here[1] / omega;
             let by_parameter =
                 omega_slope * by_frequency - by_velocity * driven.jump_speed_slope(parameter);
-            parts.push(Part {
+            parts.push(ForceAtPhase {
                 phase: *phase,
                 values: [0.0, 0.0, by_velocity, by_parameter, by_frequency],
             });
@@ -313,7 +313,7 @@ impl<'a> Balance<'a> {
                     let by_frequency = by_velocity * here[1] / omega;
                     let force =
                         weight * (driven.force_on(&here, &[1.0]) - driven.force_on(&here, &[-1.0]));
-                    parts.push(Part {
+                    parts.push(ForceAtPhase {
                         phase,
                         values: [
                             force,

@@ -14,8 +14,8 @@
 //! branch with what is known there. Out: the point between them, by the root of the quantity that
 //! changes its sign.
 
-use super::balance::Balance;
-use super::continuation::Node;
+use super::balance::HarmonicBalance;
+use super::continuation::BranchNode;
 use super::stability::Floquet;
 use crate::numeric::ode::root::{Until, find_root, try_bisect};
 
@@ -64,7 +64,7 @@ impl BifurcationKind {
 
 /// The test function of a kind of bifurcation, which changes its sign there; `None` if it has no
 /// value at this point.
-fn test(kind: BifurcationKind, node: &Node, floquet: Option<Floquet>) -> Option<f64> {
+fn test(kind: BifurcationKind, node: &BranchNode, floquet: Option<Floquet>) -> Option<f64> {
     let (trace, determinant) = match floquet {
         Some(floquet) => (floquet.monodromy.trace(), floquet.monodromy.determinant()),
         None => (f64::NAN, f64::NAN),
@@ -84,11 +84,11 @@ fn test(kind: BifurcationKind, node: &Node, floquet: Option<Floquet>) -> Option<
 /// The bifurcations between two neighbouring points, each at its place on the branch. `between`
 /// finds the point at a part of the way, `floquet` the multipliers of a point.
 pub fn between(
-    balance: &Balance,
-    [from, to]: [(&Node, Option<Floquet>); 2],
-    between: &impl Fn(f64) -> Option<Node>,
-    floquet: &impl Fn(&Node) -> Option<Floquet>,
-) -> Vec<(BifurcationKind, Node)> {
+    balance: &HarmonicBalance,
+    [from, to]: [(&BranchNode, Option<Floquet>); 2],
+    between: &impl Fn(f64) -> Option<BranchNode>,
+    floquet: &impl Fn(&BranchNode) -> Option<Floquet>,
+) -> Vec<(BifurcationKind, BranchNode)> {
     use BifurcationKind::{BranchPoint, Fold, NeimarkSacker, PeriodDoubling};
     /// A determinant that stays this close to 1 is that of a motion without damping.
     const CONSERVED: f64 = 1e-6;

@@ -13,16 +13,16 @@
 
 use nalgebra::{DVector, Dyn, LU};
 
-use super::balance::{Balance, CONVERGED, Linearised};
+use super::balance::{CONVERGED, HarmonicBalance, Linearised};
 use super::hopf;
 use super::stability::TrueMotion;
 use crate::interrupt::Interrupt;
-use crate::numeric::continuation::Step::{Ended, Taken, TooLong};
+use crate::numeric::continuation::ContinuationStep::{Ended, Taken, TooLong};
 use crate::numeric::continuation::{bordered, follow, passes, tangent};
 
 /// A point of a branch.
 #[derive(Clone, Debug)]
-pub struct Node {
+pub struct BranchNode {
     /// The coefficients of the motion.
     pub coefficients: DVector<f64>,
     /// The parameter.
@@ -36,7 +36,7 @@ pub struct Node {
     pub truth: Option<TrueMotion>,
 }
 
-impl Node {
+impl BranchNode {
     /// Fraction, from zero to one, of the way to the next node at which the parameter has this
     /// value; `None` if it lies outside.
     pub fn part_of_way(&self, next: &Self, parameter: f64) -> Option<f64> {
@@ -46,7 +46,7 @@ impl Node {
     }
 
     /// Position and velocity at phase zero.
-    pub fn begins(&self, balance: &Balance) -> [f64; 2] {
+    pub fn begins(&self, balance: &HarmonicBalance) -> [f64; 2] {
         self.truth
             .map_or_else(|| balance.start(&self.coefficients, self.parameter), |truth| truth.start)
     }
@@ -88,9 +88,9 @@ pub enum BranchEnd {
 
 /// The points of a branch in order, and why it ends at either end.
 #[derive(Clone, Debug)]
-pub struct Path {
+pub struct BranchPath {
     /// The points.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<BranchNode>,
     /// Why it ends before the first point, and behind the last.
     pub ends: [BranchEnd; 2],
     /// Whether its mirror image, -x half a period of the drive later, is another branch.
@@ -151,10 +151,10 @@ impl Weights {
     /// A point with its tangent, which goes on in this direction.
     fn node(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         point: DVector<f64>,
         direction: &DVector<f64>,
-    ) -> Option<Node> {
+    ) -> Option<BranchNode> {
         let jacobian = linearised(balance, &point)?.jacobian;
         self.node_of(&bordered(&jacobian, &self.row(direction)).lu(), point)
     }
@@ -162,11 +162,11 @@ impl Weights {
     /// A point with its tangent, from the factors of the bordered equations there. Their
     /// determinant has the same sign whatever direction stands in the last row, as long as the
     /// tangent goes the same way.
-    fn node_of(&self, factors: &LU<f64, Dyn, Dyn>, point: DVector<f64>) -> Option<Node> {
+    fn node_of(&self, factors: &LU<f64, Dyn, Dyn>, point: DVector<f64>) -> Option<BranchNode> {
         let tangent = tangent(factors)?;
         let length = self.norm(&tangent);
         let size = point.len() - 1;
-        (length > 0.0 && length.is_finite()).then(|| Node {
+        (length > 0.0 && length.is_finite()).then(|| BranchNode {
             coefficients: point.rows(0, size).into_owned(),
             parameter: point[size],
             tangent: tangent / length,
@@ -183,7 +183,7 @@ impl Weights {
 }
 
 /// The equations at coefficients and a parameter that are one vector.
-fn linearised(balance: &Balance, point: &DVector<f64>) -> Option<Linearised> {
+fn linearised(balance: &HarmonicBalance, point: &DVector<f64>) -> Option<Linearised> {
     let size = balance.size();
     balance.linearised(&point.rows(0, size).into_owned(), point[size])
 }
@@ -196,8 +196,8 @@ fn joined(coefficients: &DVector<f64>, parameter: f64) -> DVector<f64> {
 /// The size of the largest motion of these, that of one in the middle where they grow without
 /// bound: what is measured in an enormous size passes over a resonance as if it were nothing.
 pub(super) fn largest<const ENDS: usize>(
-    balance: &Balance,
-    nodes: &[Node],
+    balance: &HarmonicBalance,
+    nodes: &[BranchNode],
     ends: [BranchEnd; ENDS],
 ) -> f64 {
     let mut sizes: Vec<f64> = nodes.iter().map(|node| balance.extent(&node.coefficients)).collect();
@@ -210,7 +210,7 @@ pub(super) fn largest<const ENDS: usize>(
 }
 
 impl Walk {
-    fn weights(&self, balance: &Balance, coefficients: &DVector<f64>) -> Weights {
+    fn weights(&self, balance: &HarmonicBalance, coefficients: &DVector<f64>) -> Weights {
         /// The smallest size that counts, in parts of the largest.
         const SMALLEST: f64 = 0.1;
         let own = balance.extent(coefficients).max(1e-3 * coefficients[0].abs());
@@ -226,11 +226,11 @@ impl Walk {
     /// `direction`, and the number of iterations.
     fn corrected(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         guess: &DVector<f64>,
         direction: &DVector<f64>,
         weights: Weights,
-    ) -> Option<(Node, usize)> {
+    ) -> Option<(BranchNode, usize)> {
         const MOST: usize = 12;
         let row = weights.row(direction);
         let mut point = guess.clone();
@@ -252,7 +252,13 @@ impl Walk {
     }
 
     /// A point between two of a branch, at this part of the way.
-    pub fn between(&self, balance: &Balance, from: &Node, to: &Node, part: f64) -> Option<Node> {
+    pub fn between(
+        &self,
+        balance: &HarmonicBalance,
+        from: &BranchNode,
+        to: &BranchNode,
+        part: f64,
+    ) -> Option<BranchNode> {
         let weights = self.weights(balance, &from.coefficients);
         let (start, end) =
             (joined(&from.coefficients, from.parameter), joined(&to.coefficients, to.parameter));
@@ -268,10 +274,10 @@ impl Walk {
     /// The whole branch through a motion at a parameter.
     pub fn through(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         coefficients: &DVector<f64>,
         parameter: f64,
-    ) -> Option<Path> {
+    ) -> Option<BranchPath> {
         let mut direction = DVector::zeros(balance.size() + 1);
         direction[balance.size()] = self.range[1] - self.range[0];
         self.along(balance, coefficients, parameter, &direction)
@@ -280,11 +286,11 @@ impl Walk {
     /// The whole branch through a motion, its first direction given.
     pub fn along(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         coefficients: &DVector<f64>,
         parameter: f64,
         direction: &DVector<f64>,
-    ) -> Option<Path> {
+    ) -> Option<BranchPath> {
         let weights = self.weights(balance, coefficients);
         let direction = direction / weights.norm(direction);
         let start = weights.node(balance, joined(coefficients, parameter), &direction)?;
@@ -294,7 +300,7 @@ impl Walk {
         backward.orientation *= -1.0;
         let (mut nodes, end) = self.follow(balance, start);
         if end == BranchEnd::Closed {
-            return Some(Path { nodes, ends: [end, end], mirrored: false });
+            return Some(BranchPath { nodes, ends: [end, end], mirrored: false });
         }
         let largest = largest(balance, &nodes, [end]).max(self.size);
         let (before, first_end) = Self { size: largest, ..*self }.follow(balance, backward);
@@ -303,10 +309,10 @@ impl Walk {
             node.orientation *= -1.0;
             node
         });
-        let mut all: Vec<Node> = turned.collect();
+        let mut all: Vec<BranchNode> = turned.collect();
         all.reverse();
         all.append(&mut nodes);
-        Some(Path { nodes: all, ends: [first_end, end], mirrored: false })
+        Some(BranchPath { nodes: all, ends: [first_end, end], mirrored: false })
     }
 
     /// The motions by which a branch that ends with the range comes back to it, where it is
@@ -314,14 +320,16 @@ impl Walk {
     /// branches inside, and one of them may be hard to come by otherwise.
     pub(super) fn returns(
         &self,
-        balance: &Balance,
-        path: &Path,
+        balance: &HarmonicBalance,
+        path: &BranchPath,
         wide: [f64; 2],
     ) -> Vec<(DVector<f64>, f64)> {
         /// Points beyond the range.
         const MOST: usize = 200;
-        let outward =
-            |(node, turn): (&Node, f64)| Node { tangent: &node.tangent * turn, ..node.clone() };
+        let outward = |(node, turn): (&BranchNode, f64)| BranchNode {
+            tangent: &node.tangent * turn,
+            ..node.clone()
+        };
         let ends = [
             path.nodes.first().map(|node| (node, -1.0)),
             path.nodes.last().map(|node| (node, 1.0)),
@@ -329,7 +337,7 @@ impl Walk {
         let ends = ends.into_iter().zip(path.ends).filter(|(_, end)| *end == BranchEnd::Range);
         let walk = Self { range: wide, most: MOST, ..*self };
         let [low, high] = self.range;
-        let back = |pair: &[Node]| {
+        let back = |pair: &[BranchNode]| {
             let [from, to] = pair else { return None };
             let inside = to.parameter.clamp(low, high);
             let part = from.part_of_way(to, inside)?;
@@ -347,7 +355,11 @@ impl Walk {
     }
 
     /// Whether the last harmonics that are kept are as large as if there were as many again.
-    pub(super) fn is_cut_off(&self, balance: &Balance, coefficients: &DVector<f64>) -> bool {
+    pub(super) fn is_cut_off(
+        &self,
+        balance: &HarmonicBalance,
+        coefficients: &DVector<f64>,
+    ) -> bool {
         /// Of the size of the motion: of one that is resolved the last quarter has next to nothing.
         const LARGEST: f64 = 0.1;
         self.resolved
@@ -355,7 +367,7 @@ impl Walk {
     }
 
     /// The points from one on in the direction of its tangent.
-    fn follow(&self, balance: &Balance, start: Node) -> (Vec<Node>, BranchEnd) {
+    fn follow(&self, balance: &HarmonicBalance, start: BranchNode) -> (Vec<BranchNode>, BranchEnd) {
         const FIRST: f64 = 0.2;
         const SHORTEST: f64 = 1e-9;
         /// Short enough to tell where the harmonics cease to suffice, or where an end of the range
@@ -372,12 +384,12 @@ impl Walk {
         let [low, high] = self.range;
         let bound = ENORMOUS * balance.extent(&start.coefficients).max(self.ordinary);
         // Near rest a branch of self-excited motions may end in a Hopf point.
-        let at_rest = |here: &Node, near: f64| match self.rest_beside(balance, here, near) {
+        let at_rest = |here: &BranchNode, near: f64| match self.rest_beside(balance, here, near) {
             Some(rest) => Ended(Some(rest), BranchEnd::Rest),
             None => Ended(None, BranchEnd::Lost),
         };
         let mut fastest = 0.0_f64;
-        let step = |nodes: &[Node], length: &mut f64| {
+        let step = |nodes: &[BranchNode], length: &mut f64| {
             let length = *length;
             if self.interrupt.is_requested() {
                 return Ended(None, BranchEnd::Interrupted);
@@ -448,7 +460,12 @@ impl Walk {
 
     /// The motion of amplitude zero beside a small one, near this parameter: where a self-excited
     /// motion is born.
-    pub(super) fn rest_beside(&self, balance: &Balance, here: &Node, near: f64) -> Option<Node> {
+    pub(super) fn rest_beside(
+        &self,
+        balance: &HarmonicBalance,
+        here: &BranchNode,
+        near: f64,
+    ) -> Option<BranchNode> {
         /// Of the largest motion, and of the range: what is beside.
         const BESIDE: f64 = 0.1;
         let small = BESIDE * self.size.max(self.ordinary);
@@ -465,18 +482,30 @@ impl Walk {
         let mut coefficients = DVector::zeros(balance.size());
         coefficients[0] = born.position;
         coefficients[balance.frequency_place()?] = born.frequency;
-        Some(Node { coefficients, parameter: born.parameter, ..here.clone() })
+        Some(BranchNode { coefficients, parameter: born.parameter, ..here.clone() })
     }
 
     /// Whether the way from one point to the next passes the first one in its direction.
-    fn has_closed(&self, first: &Node, here: &Node, next: &Node, weights: Weights) -> bool {
-        let scaled = |node: &Node| weights.scaled(&joined(&node.coefficients, node.parameter));
+    fn has_closed(
+        &self,
+        first: &BranchNode,
+        here: &BranchNode,
+        next: &BranchNode,
+        weights: Weights,
+    ) -> bool {
+        let scaled =
+            |node: &BranchNode| weights.scaled(&joined(&node.coefficients, node.parameter));
         let [target, from, to] = [first, here, next].map(scaled);
         weights.scaled(&first.tangent).dot(&(&to - &from)) > 0.0 && passes(&target, &from, &to)
     }
 
     /// The point at the end of the range between a point inside and one outside.
-    fn at_bound(&self, balance: &Balance, inside: &Node, outside: &Node) -> Option<Node> {
+    fn at_bound(
+        &self,
+        balance: &HarmonicBalance,
+        inside: &BranchNode,
+        outside: &BranchNode,
+    ) -> Option<BranchNode> {
         let [low, high] = self.range;
         let bound = if outside.parameter < low { low } else { high };
         let way = outside.parameter - inside.parameter;
@@ -496,7 +525,7 @@ impl Walk {
 
     /// Motions beside a crossing of branches, one on either side: the direction in which the
     /// equations have a second solution, and the motions a little way along it.
-    pub fn crossing(&self, balance: &Balance, at: &Node) -> Vec<Node> {
+    pub fn crossing(&self, balance: &HarmonicBalance, at: &BranchNode) -> Vec<BranchNode> {
         const APART: f64 = 0.02;
         let size = balance.size();
         let Some(linear) = balance.linearised(&at.coefficients, at.parameter) else {

@@ -15,7 +15,9 @@
 use nalgebra::{Matrix2, Matrix3};
 
 use super::driven::Driven;
-use super::stability::{self, Budget, FAR, Floquet, SAMPLES, TOLERANCE, TrueMotion, options};
+use super::stability::{
+    self, FAR, Floquet, SAMPLES, SimulationBudget, TOLERANCE, TrueMotion, options,
+};
 use crate::numeric::ode::root::find_root;
 use crate::numeric::ode::{Point, Trajectory, integrate_first_order};
 use crate::numeric::periodic::{PeriodicOrbit, Shooting};
@@ -109,7 +111,7 @@ pub fn settled(
     guess: &Guess,
     parameter: f64,
     periods: usize,
-    budget: &mut Budget,
+    budget: &mut SimulationBudget,
 ) -> Option<(f64, Vec<f64>)> {
     const CLOSELY: f64 = 1e-11;
     /// A period and what the first guess of it may be off.

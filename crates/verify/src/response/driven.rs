@@ -63,7 +63,7 @@ struct Jump {
 /// The line `normal . (x, v) = level`, or with n_x = 1 if n_v is zero, in exact numbers and
 /// symbols.
 #[derive(Clone, Debug, PartialEq)]
-struct Line {
+struct SwitchingLine {
     normal: [Rational; 2],
     level: Expr,
 }
@@ -104,7 +104,7 @@ fn on_side(
 /// Whether an argument of a step is zero on this line, and then whether it grows across it.
 fn grows_across(
     argument: &Expr,
-    line: &Line,
+    line: &SwitchingLine,
     oscillator: &Oscillator,
 ) -> Result<Option<bool>, ResponseError> {
     let found = line_of(argument, oscillator)?.filter(|(own, _)| own == line);
@@ -116,7 +116,7 @@ fn grows_across(
 /// they are written.
 fn jumps_across(
     force: &Expr,
-    line: &Line,
+    line: &SwitchingLine,
     oscillator: &Oscillator,
     parameter: Symbol,
 ) -> Result<bool, ResponseError> {
@@ -179,7 +179,7 @@ fn cancel(terms: &[CompiledFunction]) -> bool {
 fn line_of(
     argument: &Expr,
     oscillator: &Oscillator,
-) -> Result<Option<(Line, bool)>, ResponseError> {
+) -> Result<Option<(SwitchingLine, bool)>, ResponseError> {
     let (position, velocity) = (oscillator.coordinate, oscillator.velocity());
     let factor = |name: Symbol| -> Result<Option<Rational>, ResponseError> {
         Ok(argument.differentiate(name)?.expand()?.as_number().cloned())
@@ -198,7 +198,7 @@ fn line_of(
     }
     let grows = over.is_positive();
     let normal = [&by_position / &over, &by_velocity / &over];
-    Ok(Some((Line { normal, level }, grows)))
+    Ok(Some((SwitchingLine { normal, level }, grows)))
 }
 
 /// The force with names for its sides, 1 or -1, in place of what jumps, and the lines on which it
@@ -208,9 +208,9 @@ fn with_sides(
     oscillator: &Oscillator,
     parameter: Symbol,
     side: impl Fn(usize) -> Symbol,
-) -> Result<(Expr, Vec<Line>), ResponseError> {
+) -> Result<(Expr, Vec<SwitchingLine>), ResponseError> {
     let mut force = oscillator.force.expand()?;
-    let mut lines: Vec<Line> = Vec::new();
+    let mut lines: Vec<SwitchingLine> = Vec::new();
     for term in force.terms() {
         for argument in term.unique_nodes().filter_map(|part| argument_of_step(part, oscillator)) {
             match line_of(argument, oscillator)? {
@@ -295,7 +295,7 @@ impl Driven {
             force: compiled(&force)?,
             jumps: lines
                 .into_iter()
-                .map(|Line { normal, level }| {
+                .map(|SwitchingLine { normal, level }| {
                     Ok::<Jump, ResponseError>(Jump {
                         normal: normal.map(|factor| to_f64(&factor)),
                         level: [

@@ -16,16 +16,16 @@
 
 use super::driven::Driven;
 use crate::numeric::ode::{
-    Action, Event, Options, Point, StopReason, Trajectory, integrate_first_order,
+    Action, Event, IntegrationOptions, Point, StopReason, Trajectory, integrate_first_order,
 };
 
 /// Position, velocity and the two columns of M at a time.
-type Values = [f64; 6];
+type VariationalState = [f64; 6];
 
 /// A motion with its variations.
 #[derive(Clone, Debug)]
-pub struct Course {
-    legs: Vec<Trajectory<Point<Values>>>,
+pub struct VariationalMotion {
+    legs: Vec<Trajectory<Point<VariationalState>>>,
     /// Duration of all sticking phases, in the unit of time.
     stuck: f64,
     /// Whether it has ended where it turns back.
@@ -51,7 +51,7 @@ impl Until {
     }
 }
 
-impl Course {
+impl VariationalMotion {
     /// Positions at equal steps of the duration, its end left out.
     pub fn positions(&self, count: usize) -> Vec<f64> {
         let (from, to) = self.span();
@@ -110,11 +110,11 @@ pub fn follow(
     start: [f64; 2],
     parameter: f64,
     until: Until,
-    options: &Options,
-) -> Option<Course> {
+    options: &IntegrationOptions,
+) -> Option<VariationalMotion> {
     /// Legs of a period: beyond them it does not come to an end.
     const MOST: usize = 400;
-    let mut run = Run::new(driven, start, parameter);
+    let mut run = NonsmoothRun::new(driven, start, parameter);
     let mut legs = Vec::new();
     let mut stuck = 0.0;
     for _ in 0..MOST {
@@ -134,26 +134,26 @@ pub fn follow(
             _ => false,
         };
         if turned || run.t >= until.time() {
-            return Some(Course { legs, stuck, turned, end: run.y });
+            return Some(VariationalMotion { legs, stuck, turned, end: run.y });
         }
     }
     None
 }
 
 /// A motion on its way.
-struct Run<'a> {
+struct NonsmoothRun<'a> {
     driven: &'a Driven,
     parameter: f64,
     omega: f64,
     t: f64,
-    y: Values,
+    y: VariationalState,
     /// The side of each jump, 1 or -1.
     sides: Vec<f64>,
     /// The jump on which it sticks.
     sliding: Option<usize>,
 }
 
-impl<'a> Run<'a> {
+impl<'a> NonsmoothRun<'a> {
     fn new(driven: &'a Driven, start: [f64; 2], parameter: f64) -> Self {
         let y = [start[0], start[1], 1.0, 0.0, 0.0, 1.0];
         let heights = |index: usize| driven.height(index, start, parameter);
@@ -198,11 +198,11 @@ impl<'a> Run<'a> {
     }
 
     /// The events at which it leaves its side of a jump, those but one.
-    fn crossings(&self, but: Option<usize>) -> Vec<Event<'a, Point<Values>>> {
+    fn crossings(&self, but: Option<usize>) -> Vec<Event<'a, Point<VariationalState>>> {
         let (driven, parameter) = (self.driven, self.parameter);
         let crossing = |(index, side): (usize, &f64)| {
             let side = if Some(index) == but { 0.0 } else { *side };
-            let height = move |point: &Point<Values>| {
+            let height = move |point: &Point<VariationalState>| {
                 side * driven.height(index, [point.y[0], point.y[1]], parameter)
             };
             Event::new(height, Action::Stop).falling()
@@ -211,14 +211,18 @@ impl<'a> Run<'a> {
     }
 
     /// The event at which it turns back, behind all others but before them at the same time.
-    fn turn(until: Until) -> Option<Event<'a, Point<Values>>> {
-        let falls = |point: &Point<Values>| point.y[1];
+    fn turn(until: Until) -> Option<Event<'a, Point<VariationalState>>> {
+        let falls = |point: &Point<VariationalState>| point.y[1];
         matches!(until, Until::Turn(_)).then(|| Event::new(falls, Action::Stop).falling())
     }
 
     /// A leg between the jumps.
-    fn leg(&self, until: Until, options: &Options) -> Option<Trajectory<Point<Values>>> {
-        let rates = |t: f64, y: &Values, rates: &mut Values| {
+    fn leg(
+        &self,
+        until: Until,
+        options: &IntegrationOptions,
+    ) -> Option<Trajectory<Point<VariationalState>>> {
+        let rates = |t: f64, y: &VariationalState, rates: &mut VariationalState| {
             let at = [y[0], y[1], self.omega * t, self.parameter];
             let [by_position, by_velocity, _] = self.driven.slopes_on(&at, &self.sides);
             *rates = [
@@ -241,10 +245,10 @@ impl<'a> Run<'a> {
         &self,
         surface: usize,
         until: Until,
-        options: &Options,
-    ) -> Option<Trajectory<Point<Values>>> {
+        options: &IntegrationOptions,
+    ) -> Option<Trajectory<Point<VariationalState>>> {
         let [by_position, _] = self.driven.normal(surface);
-        let rates = |_: f64, y: &Values, rates: &mut Values| {
+        let rates = |_: f64, y: &VariationalState, rates: &mut VariationalState| {
             *rates =
                 [y[1], -by_position * y[1], y[3], -by_position * y[3], y[5], -by_position * y[5]];
         };
@@ -252,7 +256,7 @@ impl<'a> Run<'a> {
             let mut sides = self.sides.clone();
             sides[surface] = side;
             let (driven, omega, parameter) = (self.driven, self.omega, self.parameter);
-            let pushed = move |point: &Point<Values>| {
+            let pushed = move |point: &Point<VariationalState>| {
                 let [x, v, ..] = point.y;
                 side * (by_position * v
                     - driven.force_on(&[x, v, omega * point.t, parameter], &sides))
@@ -263,7 +267,7 @@ impl<'a> Run<'a> {
         let events: Vec<_> =
             turn.into_iter().chain(self.crossings(Some(surface))).chain(leaves).collect();
         // Nothing but the drive changes: a step sees all of it.
-        let options = Options {
+        let options = IntegrationOptions {
             maximum_step: 0.05 * std::f64::consts::TAU / self.omega / self.driven.periods as f64,
             ..*options
         };

@@ -63,20 +63,20 @@ pub use error::{ResponseError, Tried};
 pub use ripple::Ripple;
 
 use backbone::{BackbonePoint, backbones};
-use balance::Balance;
+use balance::HarmonicBalance;
 use bifurcation::BifurcationKind;
 use branches::largest;
-use continuation::{BranchEnd, Node, Path, Walk};
+use continuation::{BranchEnd, BranchNode, BranchPath, Walk};
 use driven::Driven;
-use judgement::Judged;
-use ripple::Found;
+use judgement::PointJudgement;
+use ripple::LocatedBifurcation;
 use seeds::{Seed, size_of};
 use slow::SlowResponse;
-use stability::Budget;
+use stability::SimulationBudget;
 
 /// A response to be computed: equation, parameter, range and accuracy.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Question {
+pub struct ResponseRequest {
     /// The equation.
     pub oscillator: Oscillator,
     /// Exact values of all parameters but the one that varies.
@@ -101,7 +101,7 @@ pub struct Question {
 
 /// A steady state.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Point {
+pub struct SteadyMotion {
     /// The parameter that varies.
     pub parameter: f64,
     /// Coefficients of cos(k theta) and sin(k theta), from k = 0, the mean.
@@ -134,7 +134,7 @@ pub struct Point {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Branch {
     /// Its points in order.
-    pub points: Vec<Point>,
+    pub points: Vec<SteadyMotion>,
     /// Why it ends before the first one and behind the last.
     pub ends: [BranchEnd; 2],
     /// Whether its mirror image, -x half a period of the drive later, is a branch as well, which is
@@ -218,9 +218,9 @@ impl Elsewhere {
 
 /// The steady states over the range of the parameter: branches, bifurcations and simulations.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Response {
+pub struct ResponseDiagram {
     /// The request that this answers.
-    pub question: Question,
+    pub question: ResponseRequest,
     /// The frequency of the drive; where there is none a name for that of the motion, of which each
     /// point has the number.
     pub frequency: Expr,
@@ -297,9 +297,9 @@ const MOST_BRANCHES: usize = 12;
 /// assert!((fold.parameter - 1.7797).abs() < 1e-3, "{}", fold.parameter);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn respond(question: &Question) -> Result<Response, ResponseError> {
+pub fn respond(question: &ResponseRequest) -> Result<ResponseDiagram, ResponseError> {
     const FIRST: usize = 8;
-    let asked = Asked::new(question)?;
+    let asked = PreparedRequest::new(question)?;
     // Of the map of a period harmonics are only read off: as many as there may be.
     let automatic = match asked.driven.is_balanced() {
         true => FIRST,
@@ -309,7 +309,7 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
     let (seeds, elsewhere) = asked.seeds(first)?;
     let mut harmonics = first;
     let mut before = (f64::INFINITY, usize::MAX);
-    let mut fewer: Option<Response> = None;
+    let mut fewer: Option<ResponseDiagram> = None;
     loop {
         let attempt = asked.attempt(harmonics, &seeds);
         let may_have_more = question.harmonics.is_none() && 2 * harmonics <= MOST_HARMONICS;
@@ -325,7 +325,7 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
         let mut response = match (attempt, fewer.take()) {
             (Ok(response), None) => response,
             (Ok(response), Some(_)) if response.complete => response,
-            (_, Some(response)) => Response { complete: false, ..response },
+            (_, Some(response)) => ResponseDiagram { complete: false, ..response },
             (Err(error), None) => return Err(error),
         };
         let points: usize = response.branches.iter().map(|branch| branch.points.len()).sum();
@@ -357,7 +357,7 @@ pub fn respond(question: &Question) -> Result<Response, ResponseError> {
     }
 }
 
-impl Response {
+impl ResponseDiagram {
     /// Whether a branch ends for this reason.
     fn ends_with(&self, end: BranchEnd) -> bool {
         self.branches.iter().any(|branch| branch.ends.contains(&end))
@@ -382,7 +382,7 @@ impl Response {
     }
 }
 
-impl Question {
+impl ResponseRequest {
     /// A question with automatic harmonics, a tolerance of 1 %, and motions of the period of the
     /// drive.
     ///
@@ -409,8 +409,8 @@ impl Question {
 }
 
 /// A question with its equation ready for numbers.
-struct Asked<'a> {
-    question: &'a Question,
+struct PreparedRequest<'a> {
+    question: &'a ResponseRequest,
     /// The equation with all values but one.
     oscillator: Oscillator,
     driven: Driven,
@@ -418,9 +418,9 @@ struct Asked<'a> {
     tried: Cell<Tried>,
 }
 
-impl<'a> Asked<'a> {
-    fn new(question: &'a Question) -> Result<Self, ResponseError> {
-        let Question { oscillator, parameter, .. } = question;
+impl<'a> PreparedRequest<'a> {
+    fn new(question: &'a ResponseRequest) -> Result<Self, ResponseError> {
+        let ResponseRequest { oscillator, parameter, .. } = question;
         let known = &oscillator.parameters;
         let self_excited = !oscillator.force.contains(Symbol::new("t"));
         if self_excited && oscillator.parts().is_ok_and(|parts| parts.damping.is_zero()) {
@@ -484,8 +484,8 @@ impl<'a> Asked<'a> {
     }
 
     /// The evaluations that the simulations of one purpose may take together.
-    fn budget(&self) -> Budget {
-        Budget { evaluations: MOST_EVALUATIONS, interrupt: self.question.interrupt }
+    fn budget(&self) -> SimulationBudget {
+        SimulationBudget { evaluations: MOST_EVALUATIONS, interrupt: self.question.interrupt }
     }
 
     fn walk(&self, seeds: &[Seed], size: f64) -> Walk {
@@ -504,9 +504,9 @@ impl<'a> Asked<'a> {
     }
 
     /// Everything with so many harmonics.
-    fn attempt(&self, harmonics: usize, seeds: &[Seed]) -> Result<Response, ResponseError> {
+    fn attempt(&self, harmonics: usize, seeds: &[Seed]) -> Result<ResponseDiagram, ResponseError> {
         let question = self.question;
-        let balance = Balance::new(&self.driven, harmonics);
+        let balance = HarmonicBalance::new(&self.driven, harmonics);
         let mut paths = match self.driven.is_balanced() {
             true => self.branches(&balance, seeds, size_of(seeds)),
             false => vec![],
@@ -546,7 +546,7 @@ impl<'a> Asked<'a> {
         let points = || branches.iter().flat_map(|branch| &branch.points);
         let complete = !question.interrupt.is_requested();
         let amplitude = points().map(|point| point.amplitude).fold(0.0, f64::max);
-        let response = Response {
+        let response = ResponseDiagram {
             question: question.clone(),
             frequency: self.driven.frequency.clone(),
             self_excited: self.driven.self_excited,
@@ -577,7 +577,10 @@ impl<'a> Asked<'a> {
 
     /// This response without the ends of branches at which no true motion was found, because the
     /// period grows without bound or there are too few harmonics.
-    fn without_tails(&self, mut response: Response) -> Result<Response, ResponseError> {
+    fn without_tails(
+        &self,
+        mut response: ResponseDiagram,
+    ) -> Result<ResponseDiagram, ResponseError> {
         /// Points without a true motion in a row that are no accident.
         const FEW: usize = 3;
         let tolerance = response.question.tolerance;
@@ -633,16 +636,16 @@ impl<'a> Asked<'a> {
     /// followed and added.
     fn judged_paths(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         seeds: &[Seed],
-        paths: &mut Vec<Path>,
-    ) -> (Vec<Vec<Judged>>, Vec<Change>, Option<Ripple>) {
+        paths: &mut Vec<BranchPath>,
+    ) -> (Vec<Vec<PointJudgement>>, Vec<Change>, Option<Ripple>) {
         let size = paths.iter().map(|path| largest(balance, path));
         let walk = self.walk(seeds, size.fold(size_of(seeds), f64::max));
         // Of a motion that is none the multipliers say nothing.
-        let of_true_motion = |judged: Judged| judged.1.map(|truth| truth.floquet);
-        let floquet = |node: &Node| of_true_motion(self.judged(balance, node));
-        let mut all_judged: Vec<Vec<Judged>> = Vec::new();
+        let of_true_motion = |judged: PointJudgement| judged.1.map(|truth| truth.floquet);
+        let floquet = |node: &BranchNode| of_true_motion(self.judged(balance, node));
+        let mut all_judged: Vec<Vec<PointJudgement>> = Vec::new();
         let mut changes = Vec::new();
         let mut ripple = None;
         while let Some(path) = paths.get(all_judged.len()).cloned() {
@@ -650,13 +653,13 @@ impl<'a> Asked<'a> {
             let points: usize = paths.iter().map(|path| path.nodes.len()).sum();
             let before: usize = all_judged.iter().map(Vec::len).sum();
             self.question.progress.begin(points - before);
-            let judged: Vec<Judged> = path
+            let judged: Vec<PointJudgement> = path
                 .nodes
                 .iter()
                 .inspect(|_| self.question.progress.advance())
                 .map(|node| self.judged_in_time(balance, node))
                 .collect();
-            let mut own: Vec<Found> = Vec::new();
+            let mut own: Vec<LocatedBifurcation> = Vec::new();
             for (index, (pair, known)) in path.nodes.windows(2).zip(judged.windows(2)).enumerate() {
                 let ([from, to], [before, after]) = (pair, known) else {
                     continue;
@@ -693,7 +696,12 @@ impl<'a> Asked<'a> {
     }
 
     /// The places where branches change, each once.
-    fn bifurcations(&self, balance: &Balance, changes: Vec<Change>, size: f64) -> Vec<Bifurcation> {
+    fn bifurcations(
+        &self,
+        balance: &HarmonicBalance,
+        changes: Vec<Change>,
+        size: f64,
+    ) -> Vec<Bifurcation> {
         let mut found: Vec<Bifurcation> = Vec::new();
         for (kind, branch, node) in changes {
             let point = self.point(balance, &node, (None, None), size);
@@ -724,7 +732,7 @@ impl<'a> Asked<'a> {
 
     /// Why there is nothing.
     fn nothing(&self) -> ResponseError {
-        let Question { parameter, range, .. } = *self.question;
+        let ResponseRequest { parameter, range, .. } = *self.question;
         match (self.question.interrupt.is_requested(), self.driven.self_excited) {
             (true, _) => ResponseError::Interrupted { parameter, tried: self.tried.get() },
             (false, true) => ResponseError::NoCycle { parameter, range },
@@ -736,4 +744,4 @@ impl<'a> Asked<'a> {
 }
 
 /// A place where a branch, counted from 0, changes.
-type Change = (BifurcationKind, usize, Node);
+type Change = (BifurcationKind, usize, BranchNode);

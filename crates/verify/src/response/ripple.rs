@@ -10,11 +10,11 @@
 //! the folds that the true motion does not have.
 
 use super::bifurcation::BifurcationKind;
-use super::continuation::Node;
-use super::judgement::Judged;
+use super::continuation::BranchNode;
+use super::judgement::PointJudgement;
 
 /// A place where a branch changes, between the point of this index and the next one.
-pub(super) type Found = (usize, BifurcationKind, Node);
+pub(super) type LocatedBifurcation = (usize, BifurcationKind, BranchNode);
 
 /// Folds of the balance alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,8 +43,8 @@ impl Ripple {
 
 /// The sign of det(1 - M) of the true motions beside these points, that of most of them; zero where
 /// there is none.
-fn side(judged: &[Judged]) -> f64 {
-    let sign = |(_, truth): &Judged| {
+fn side(judged: &[PointJudgement]) -> f64 {
+    let sign = |(_, truth): &PointJudgement| {
         truth.map_or(0.0, |truth| {
             let away = nalgebra::Matrix2::identity() - truth.floquet.monodromy;
             let determinant: f64 = match truth.floquet.self_excited {
@@ -61,10 +61,10 @@ fn side(judged: &[Judged]) -> f64 {
 /// The places where a branch changes without the folds that only its balance has, and the
 /// parameters of these.
 pub(super) fn without_ripple(
-    found: Vec<Found>,
-    nodes: &[Node],
-    judged: &[Judged],
-) -> (Vec<Found>, Vec<f64>) {
+    found: Vec<LocatedBifurcation>,
+    nodes: &[BranchNode],
+    judged: &[PointJudgement],
+) -> (Vec<LocatedBifurcation>, Vec<f64>) {
     let (mut kept, mut left_out) = (Vec::new(), Vec::new());
     let mut from = 0;
     let mut rest = found.into_iter().peekable();
@@ -106,11 +106,11 @@ pub(super) fn without_ripple(
 /// than the sign, its folds are as many as the sign changes, each where the branch comes farthest
 /// in between.
 fn of_true_motion(
-    folds: &[Found],
-    nodes: &[Node],
-    judged: &[Judged],
+    folds: &[LocatedBifurcation],
+    nodes: &[BranchNode],
+    judged: &[PointJudgement],
     [from, to]: [usize; 2],
-) -> Option<Vec<Found>> {
+) -> Option<Vec<LocatedBifurcation>> {
     // Before the first fold, between one and the next, behind the last.
     let begins = std::iter::once(from).chain(folds.iter().map(|fold| fold.0 + 1));
     let ends = folds.iter().map(|fold| fold.0 + 1).chain([to]);
@@ -141,7 +141,7 @@ fn of_true_motion(
             .filter_map(|index| Some((index, BifurcationKind::Fold, nodes.get(index)?)));
         let places = folds.iter().map(|(index, kind, node)| (*index, *kind, node));
         let places = places.filter(|(index, _, _)| (begin..end).contains(index));
-        let ahead = |node: &Node| direction * node.parameter;
+        let ahead = |node: &BranchNode| direction * node.parameter;
         let farthest =
             points.chain(places).max_by(|one, other| ahead(one.2).total_cmp(&ahead(other.2)));
         real.extend(farthest.map(|(index, kind, node)| (index, kind, node.clone())));

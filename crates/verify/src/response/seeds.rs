@@ -3,10 +3,10 @@
 use nalgebra::DVector;
 
 use super::backbone::places_of_rest;
-use super::balance::Balance;
-use super::continuation::Path;
-use super::stability::{Budget, half_of_peak_to_peak, settle};
-use super::{Asked, Elsewhere, ResponseError};
+use super::balance::HarmonicBalance;
+use super::continuation::BranchPath;
+use super::stability::{SimulationBudget, half_of_peak_to_peak, settle};
+use super::{Elsewhere, PreparedRequest, ResponseError};
 
 /// A motion to begin with.
 #[derive(Clone, Debug)]
@@ -19,7 +19,7 @@ pub(super) struct Seed {
     pub(super) start: Option<[f64; 2]>,
 }
 
-impl Asked<'_> {
+impl PreparedRequest<'_> {
     /// Motions to begin with: where simulations settle, from rest and from a ring of starts as
     /// large as the motions of the first branches; and what did not repeat itself.
     pub(super) fn seeds(
@@ -33,7 +33,7 @@ impl Asked<'_> {
             return Ok((self.cycles()?, vec![]));
         }
         let [low, high] = self.question.range;
-        let balance = Balance::new(&self.driven, harmonics);
+        let balance = HarmonicBalance::new(&self.driven, harmonics);
         /// Without damping the ends and the middle are where somebody would put a resonance, at
         /// which there is no motion.
         const OFF: f64 = 0.382;
@@ -67,7 +67,7 @@ impl Asked<'_> {
         }
         size = size.max(size_of(&seeds));
         // The ring is as wide as the branches that are known by now.
-        let first: Vec<Path> = match self.driven.is_balanced() {
+        let first: Vec<BranchPath> = match self.driven.is_balanced() {
             true => self.branches(&balance, &seeds, size),
             false => vec![],
         };
@@ -113,7 +113,7 @@ impl Asked<'_> {
     /// none.
     fn balanced_from_rest(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         place: f64,
         parameter: f64,
     ) -> Option<(Seed, f64)> {
@@ -127,7 +127,7 @@ impl Asked<'_> {
     }
 
     /// A motion of a balance to begin with.
-    fn seed(&self, balance: &Balance, found: &DVector<f64>, parameter: f64) -> Seed {
+    fn seed(&self, balance: &HarmonicBalance, found: &DVector<f64>, parameter: f64) -> Seed {
         const SAMPLES: usize = 256;
         let positions = (0..SAMPLES).map(|sample| {
             let phase = std::f64::consts::TAU * sample as f64 / SAMPLES as f64;
@@ -158,7 +158,7 @@ impl Asked<'_> {
         start: [f64; 2],
         parameter: f64,
         seeds: &mut Vec<Seed>,
-        budget: &mut Budget,
+        budget: &mut SimulationBudget,
     ) -> Option<Elsewhere> {
         const PERIODS: usize = 250;
         const CLOSELY: f64 = 1e-4;

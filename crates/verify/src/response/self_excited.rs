@@ -12,9 +12,9 @@
 use super::backbone::places_of_rest;
 use super::jump::{Until, follow};
 use super::seeds::Seed;
-use super::{Asked, ResponseError};
+use super::{PreparedRequest, ResponseError};
 use crate::numeric::ode::root::find_root;
-use crate::numeric::ode::{Event, Options, State, StopReason, Trajectory, integrate};
+use crate::numeric::ode::{Event, IntegrationOptions, State, StopReason, Trajectory, integrate};
 
 /// Values of the parameter at which cycles are looked for; the second where the first find none.
 const VALUES: [u32; 2] = [5, 33];
@@ -26,7 +26,7 @@ const RINGS: i32 = 22;
 /// Growth that is no more than the error of the steps.
 const ROUNDING: f64 = 1e-8;
 
-impl Asked<'_> {
+impl PreparedRequest<'_> {
     /// Limit cycles, each with its frequency and its positions.
     pub(super) fn cycles(&self) -> Result<Vec<Seed>, ResponseError> {
         let [low, high] = self.question.range;
@@ -162,7 +162,8 @@ impl Asked<'_> {
         let start = State { t: 0.0, x: 1.0, v: 0.0 };
         let events =
             [Event::stop(|_, _, v| v).falling(), Event::stop(|_, x, _| GONE - x.abs()).falling()];
-        let options = Options { maximum_steps, ..Options::with_tolerance(tolerance) };
+        let options =
+            IntegrationOptions { maximum_steps, ..IntegrationOptions::with_tolerance(tolerance) };
         let path = integrate(scaled, start, LONGEST, &events, &options).ok()?;
         let turned = matches!(path.stop_reason(), StopReason::Event { event: 0, .. });
         (turned && path.end().x > 0.0).then_some(path)

@@ -5,7 +5,7 @@
 //! of multiple scales. Out: its steady motions over the range, and how far they are from the stable
 //! points of the branches, each of which has its true motion beside it.
 
-use super::{Question, Response};
+use super::{ResponseDiagram, ResponseRequest};
 use crate::solution::Solution;
 use crate::solution::response::{SteadyMotions, SteadyState};
 use crate::symbol::Symbol;
@@ -78,7 +78,7 @@ pub struct SlowState {
 }
 
 /// The steady motions by these slow equations at one value of the parameter.
-fn motions_at(question: &Question, solution: &Solution, parameter: f64) -> SteadyMotions {
+fn motions_at(question: &ResponseRequest, solution: &Solution, parameter: f64) -> SteadyMotions {
     let numbers = question.values.numbers();
     let value_of = |name: Symbol| match name == question.parameter {
         true => Some(parameter),
@@ -87,7 +87,7 @@ fn motions_at(question: &Question, solution: &Solution, parameter: f64) -> Stead
     solution.steady_motions(&value_of)
 }
 
-impl Response {
+impl ResponseDiagram {
     /// This response with the steady motions of these slow equations beside it.
     ///
     /// ```

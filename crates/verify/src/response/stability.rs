@@ -14,9 +14,9 @@ use nalgebra::{DMatrix, Matrix2};
 use num_complex::Complex;
 
 use super::driven::Driven;
-use super::jump::{Course, Until, follow};
+use super::jump::{Until, VariationalMotion, follow};
 use crate::interrupt::Interrupt;
-use crate::numeric::ode::{Options, Point, Trajectory, integrate_first_order};
+use crate::numeric::ode::{IntegrationOptions, Point, Trajectory, integrate_first_order};
 use crate::numeric::periodic::{PeriodicOrbit, Shooting, eigenvalues_of_two};
 
 /// Samples of a period from which its harmonics and its peaks are taken.
@@ -92,11 +92,11 @@ pub(super) const TOLERANCE: f64 = 1e-10;
 /// Steps that a period may take.
 const STEPS: usize = 4_000;
 
-pub(super) fn options(size: f64, tolerance: f64) -> Options {
-    Options {
+pub(super) fn options(size: f64, tolerance: f64) -> IntegrationOptions {
+    IntegrationOptions {
         absolute_tolerance: tolerance * size.clamp(1e-12, 1.0),
         maximum_steps: STEPS,
-        ..Options::with_tolerance(tolerance)
+        ..IntegrationOptions::with_tolerance(tolerance)
     }
 }
 
@@ -211,14 +211,14 @@ pub fn half_of_peak_to_peak(positions: &[f64]) -> f64 {
 /// The budget of several simulations together: the evaluations of the force that are left, and the
 /// interrupt.
 #[derive(Clone, Copy, Debug)]
-pub struct Budget {
+pub struct SimulationBudget {
     /// Evaluations that are left.
     pub evaluations: usize,
     /// Looked at after every period.
     pub interrupt: Interrupt,
 }
 
-impl Budget {
+impl SimulationBudget {
     /// Takes what a period has cost; whether there may be another one.
     pub(super) fn spend(&mut self, evaluations: usize) -> bool {
         self.evaluations = self.evaluations.saturating_sub(evaluations);
@@ -241,7 +241,7 @@ pub struct Settled {
 /// A period of a simulation: in one, or by legs between the jumps of the force.
 enum Period {
     One(Trajectory<Point<[f64; 2]>>),
-    Legs(Course),
+    Legs(VariationalMotion),
 }
 
 impl Period {
@@ -278,7 +278,7 @@ pub fn settle(
     start: [f64; 2],
     parameter: f64,
     (most, closely): (usize, f64),
-    budget: &mut Budget,
+    budget: &mut SimulationBudget,
 ) -> Option<Settled> {
     /// Periods in which a repetition is looked for.
     const LONGEST: usize = 8;

@@ -16,38 +16,38 @@
 
 use nalgebra::{DVector, Matrix2, Matrix3, Vector3};
 
-use super::balance::Balance;
+use super::balance::HarmonicBalance;
 use super::branches::largest;
-use super::continuation::{BranchEnd, Node, Path};
-use super::jump::{Course, Until, follow};
+use super::continuation::{BranchEnd, BranchNode, BranchPath};
+use super::jump::{Until, VariationalMotion, follow};
 use super::seeds::Seed;
 use super::stability::{
     Floquet, SAMPLES, TOLERANCE, TrueMotion, half_of_peak_to_peak, options, settled,
 };
-use super::{Asked, LONGEST_STEP, MOST_BRANCHES};
-use crate::numeric::continuation::Step::{Ended, Taken, TooLong};
+use super::{LONGEST_STEP, MOST_BRANCHES, PreparedRequest};
+use crate::numeric::continuation::ContinuationStep::{Ended, Taken, TooLong};
 use crate::numeric::continuation::{self, passes};
 
 /// Position, velocity and parameter, each in its size.
-type Scaled = Vector3<f64>;
+type ScaledPoint = Vector3<f64>;
 
 /// A periodic motion on a branch.
 #[derive(Clone, Debug)]
 struct Shot {
-    at: Scaled,
-    tangent: Scaled,
-    course: Course,
+    at: ScaledPoint,
+    tangent: ScaledPoint,
+    course: VariationalMotion,
 }
 
 /// The map of a period in its sizes.
 struct PeriodMap<'a> {
-    asked: &'a Asked<'a>,
+    asked: &'a PreparedRequest<'a>,
     /// Of position, velocity and parameter.
-    sizes: Scaled,
+    sizes: ScaledPoint,
 }
 
 impl<'a> PeriodMap<'a> {
-    fn new(asked: &'a Asked<'a>, size: f64, parameter: f64) -> Self {
+    fn new(asked: &'a PreparedRequest<'a>, size: f64, parameter: f64) -> Self {
         let [low, high] = asked.question.range;
         let size = size.max(1e-12);
         Self {
@@ -56,17 +56,17 @@ impl<'a> PeriodMap<'a> {
         }
     }
 
-    fn scaled(&self, start: [f64; 2], parameter: f64) -> Scaled {
+    fn scaled(&self, start: [f64; 2], parameter: f64) -> ScaledPoint {
         Vector3::new(start[0], start[1], parameter).component_div(&self.sizes)
     }
 
-    fn start(&self, at: &Scaled) -> ([f64; 2], f64) {
+    fn start(&self, at: &ScaledPoint) -> ([f64; 2], f64) {
         let real = at.component_mul(&self.sizes);
         ([real[0], real[1]], real[2])
     }
 
     /// A period from here; nothing where it cannot be followed.
-    fn period(&self, at: &Scaled) -> Option<Course> {
+    fn period(&self, at: &ScaledPoint) -> Option<VariationalMotion> {
         /// Beyond it a motion without drive does not turn back.
         const LONGEST: f64 = 1e3;
         let (start, parameter) = self.start(at);
@@ -89,7 +89,7 @@ impl<'a> PeriodMap<'a> {
     }
 
     /// dP/dp, by differences.
-    fn by_parameter(&self, at: &Scaled) -> Option<[f64; 2]> {
+    fn by_parameter(&self, at: &ScaledPoint) -> Option<[f64; 2]> {
         const STEP: f64 = 1e-5;
         let [above, below] =
             [STEP, -STEP].map(|step| self.period(&(at + Vector3::new(0.0, 0.0, step))));
@@ -98,7 +98,12 @@ impl<'a> PeriodMap<'a> {
     }
 
     /// The bordered matrix at a motion, with this last row.
-    fn bordered(&self, course: &Course, by_parameter: [f64; 2], row: &Scaled) -> Matrix3<f64> {
+    fn bordered(
+        &self,
+        course: &VariationalMotion,
+        by_parameter: [f64; 2],
+        row: &ScaledPoint,
+    ) -> Matrix3<f64> {
         let [_, _, a, c, b, d] = course.end;
         let ratio = self.sizes[1] / self.sizes[0];
         Matrix3::new(
@@ -116,7 +121,7 @@ impl<'a> PeriodMap<'a> {
 
     /// Newton's method at right angles to a direction: the motion, its tangent turned as the
     /// direction.
-    fn corrected(&self, guess: &Scaled, direction: &Scaled) -> Option<Shot> {
+    fn corrected(&self, guess: &ScaledPoint, direction: &ScaledPoint) -> Option<Shot> {
         const MOST: usize = 14;
         const SETTLED: f64 = 1e-9;
         let mut at = *guess;
@@ -162,8 +167,8 @@ impl<'a> PeriodMap<'a> {
     fn walk(
         &self,
         first: Shot,
-        met: &dyn Fn(&Node) -> bool,
-        balance: &Balance,
+        met: &dyn Fn(&BranchNode) -> bool,
+        balance: &HarmonicBalance,
     ) -> (Vec<Shot>, BranchEnd) {
         const FIRST: f64 = 0.2;
         const SHORTEST: f64 = 1e-7;
@@ -224,7 +229,7 @@ impl<'a> PeriodMap<'a> {
     }
 
     /// A point of a branch with the harmonics of the motion.
-    fn node(&self, balance: &Balance, shot: &Shot) -> Node {
+    fn node(&self, balance: &HarmonicBalance, shot: &Shot) -> BranchNode {
         let (start, parameter) = self.start(&shot.at);
         let frequency = std::f64::consts::TAU / shot.course.duration();
         let self_excited = self.asked.driven.self_excited;
@@ -236,7 +241,7 @@ impl<'a> PeriodMap<'a> {
         let positions = shot.course.positions(SAMPLES);
         let mut tangent = DVector::zeros(balance.size() + 1);
         tangent[balance.size()] = shot.tangent[2];
-        Node {
+        BranchNode {
             coefficients: balance.unknowns_of(&positions, frequency),
             parameter,
             tangent,
@@ -254,9 +259,9 @@ impl<'a> PeriodMap<'a> {
 
 /// Leaves out what a branch has of motions that are no motions: the mass rests, and friction bears
 /// what drives it.
-fn cut_rest(balance: &Balance, path: &mut Path, size: f64) {
+fn cut_rest(balance: &HarmonicBalance, path: &mut BranchPath, size: f64) {
     const NOTHING: f64 = 1e-5;
-    let moves = |node: &Node| balance.extent(&node.coefficients) > NOTHING * size;
+    let moves = |node: &BranchNode| balance.extent(&node.coefficients) > NOTHING * size;
     let Some(first) = path.nodes.iter().position(moves) else {
         path.nodes.clear();
         return;
@@ -272,14 +277,14 @@ fn cut_rest(balance: &Balance, path: &mut Path, size: f64) {
     }
 }
 
-impl Asked<'_> {
+impl PreparedRequest<'_> {
     /// Follows every branch on from where harmonic balance has lost it because the motion begins to
     /// stick, and adds those on which it sticks all along.
     pub(super) fn follow_sticking(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         seeds: &[Seed],
-        paths: &mut Vec<Path>,
+        paths: &mut Vec<BranchPath>,
         size: f64,
     ) {
         if self.driven.jumps() == 0 {
@@ -310,8 +315,9 @@ impl Asked<'_> {
                 continue;
             };
             let (start, _) = map.start(&shot.at);
-            let known =
-                |path: &Path| self.lies_on(balance, path, start, seed.parameter, map.sizes[0]);
+            let known = |path: &BranchPath| {
+                self.lies_on(balance, path, start, seed.parameter, map.sizes[0])
+            };
             // An equilibrium is not a motion.
             let own = shot.course.stuck() > 0.0 || !self.driven.is_balanced();
             if own && shot.course.extent() > 1e-6 * size && !paths.iter().any(known) {
@@ -323,7 +329,12 @@ impl Asked<'_> {
 
     /// A branch of self-excited motions with its end in the place where they are born from rest, if
     /// it has one: motions too small to be told from rest are left out.
-    fn ended_at_rest(&self, balance: &Balance, seeds: &[Seed], mut path: Path) -> Path {
+    fn ended_at_rest(
+        &self,
+        balance: &HarmonicBalance,
+        seeds: &[Seed],
+        mut path: BranchPath,
+    ) -> BranchPath {
         /// Of the largest motion.
         const SMALL: f64 = 1e-3;
         if !self.driven.self_excited {
@@ -337,7 +348,8 @@ impl Asked<'_> {
             if side == 0 {
                 path.nodes.reverse();
             }
-            let is_small = |node: &Node| balance.extent(&node.coefficients) <= SMALL * largest;
+            let is_small =
+                |node: &BranchNode| balance.extent(&node.coefficients) <= SMALL * largest;
             while path.nodes.len() > 2 && path.nodes.last().is_some_and(is_small) {
                 path.nodes.pop();
             }
@@ -345,7 +357,7 @@ impl Asked<'_> {
             let rest =
                 path.nodes.last().and_then(|last| walk.rest_beside(balance, last, last.parameter));
             if let Some(rest) = rest {
-                path.nodes.push(Node { truth: None, ..rest });
+                path.nodes.push(BranchNode { truth: None, ..rest });
                 path.ends[side] = BranchEnd::Rest;
             }
             if side == 0 {
@@ -358,12 +370,12 @@ impl Asked<'_> {
     /// The branch through a motion that sticks.
     fn stuck_branch(
         &self,
-        balance: &Balance,
+        balance: &HarmonicBalance,
         map: &PeriodMap,
         shot: Shot,
-        paths: &[Path],
-    ) -> Option<Path> {
-        let met = |node: &Node| self.is_met(balance, paths, node);
+        paths: &[BranchPath],
+    ) -> Option<BranchPath> {
+        let met = |node: &BranchNode| self.is_met(balance, paths, node);
         let turned = |shot: Shot| Shot { tangent: -shot.tangent, ..shot };
         let (behind, last) = map.walk(shot.clone(), &met, balance);
         let closing = (last == BranchEnd::Closed).then(|| shot.clone());
@@ -373,26 +385,26 @@ impl Asked<'_> {
         };
         let before = before.into_iter().skip(1).rev().map(turned);
         let shots = before.chain(behind).chain(closing);
-        let nodes: Vec<Node> = shots.map(|shot| map.node(balance, &shot)).collect();
-        (nodes.len() > 1).then_some(Path { nodes, ends: [first, last], mirrored: false })
+        let nodes: Vec<BranchNode> = shots.map(|shot| map.node(balance, &shot)).collect();
+        (nodes.len() > 1).then_some(BranchPath { nodes, ends: [first, last], mirrored: false })
     }
 
     /// Follows a branch on beyond one of its ends.
     fn follow_on(
         &self,
-        balance: &Balance,
-        paths: &mut [Path],
+        balance: &HarmonicBalance,
+        paths: &mut [BranchPath],
         (index, side): (usize, usize),
         size: f64,
     ) {
         /// Points at an end that harmonic balance may have led astray.
         const ASTRAY: usize = 40;
         let path = &paths[index];
-        let nodes: Vec<&Node> = match side {
+        let nodes: Vec<&BranchNode> = match side {
             0 => path.nodes.iter().collect(),
             _ => path.nodes.iter().rev().collect(),
         };
-        let truth = |node: &Node| Some(self.judged(balance, node).1?.start);
+        let truth = |node: &BranchNode| Some(self.judged(balance, node).1?.start);
         let good = (0..nodes.len().saturating_sub(1).min(ASTRAY)).find_map(|skipped| {
             Some((skipped, truth(nodes[skipped])?, truth(nodes[skipped + 1])?))
         });
@@ -411,11 +423,11 @@ impl Asked<'_> {
         let Some(first) = map.corrected(&last, &(direction / length)) else {
             return;
         };
-        let others: Vec<Path> = (0..paths.len())
+        let others: Vec<BranchPath> = (0..paths.len())
             .filter(|other| *other != index)
             .map(|other| paths[other].clone())
             .collect();
-        let met = |node: &Node| self.is_met(balance, &others, node);
+        let met = |node: &BranchNode| self.is_met(balance, &others, node);
         let (shots, end) = map.walk(first, &met, balance);
         let mut outward = shots.iter().skip(1).map(|shot| map.node(balance, shot));
         let path = &mut paths[index];
@@ -423,8 +435,10 @@ impl Asked<'_> {
         match side {
             0 => {
                 // Points are in the order of the branch, and so are their tangents.
-                let mut all: Vec<Node> =
-                    outward.by_ref().map(|node| Node { tangent: -node.tangent, ..node }).collect();
+                let mut all: Vec<BranchNode> = outward
+                    .by_ref()
+                    .map(|node| BranchNode { tangent: -node.tangent, ..node })
+                    .collect();
                 all.reverse();
                 all.extend(path.nodes.drain(..).skip(skipped));
                 path.nodes = all;
@@ -437,7 +451,7 @@ impl Asked<'_> {
     }
 
     /// Whether a motion that does not stick lies on one of these branches.
-    fn is_met(&self, balance: &Balance, paths: &[Path], node: &Node) -> bool {
+    fn is_met(&self, balance: &HarmonicBalance, paths: &[BranchPath], node: &BranchNode) -> bool {
         let Some(truth) = node.truth else {
             return false;
         };
@@ -448,8 +462,8 @@ impl Asked<'_> {
     /// Whether a motion with this start lies on a branch.
     fn lies_on(
         &self,
-        balance: &Balance,
-        path: &Path,
+        balance: &HarmonicBalance,
+        path: &BranchPath,
         start: [f64; 2],
         parameter: f64,
         size: f64,
@@ -477,11 +491,11 @@ impl Asked<'_> {
     /// A motion between two of a branch of which one is known by shooting, at this part of the way.
     pub(super) fn stuck_between(
         &self,
-        balance: &Balance,
-        from: &Node,
-        to: &Node,
+        balance: &HarmonicBalance,
+        from: &BranchNode,
+        to: &BranchNode,
         part: f64,
-    ) -> Option<Node> {
+    ) -> Option<BranchNode> {
         let size = balance.extent(&from.coefficients).max(balance.extent(&to.coefficients));
         let map = PeriodMap::new(self, size, from.parameter);
         let [start, end] = [from, to].map(|node| map.scaled(node.begins(balance), node.parameter));

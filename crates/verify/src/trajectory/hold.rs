@@ -18,12 +18,12 @@
 
 use std::collections::BTreeMap;
 
-use super::{Course, Piece, Section, TrajectoryError, surplus};
+use super::{PoincareSection, TrajectoryError, TrajectoryRequest, TrajectorySegment, surplus};
 use crate::exact::{from_f64, ratio};
 use crate::expr::{CompiledFunction, Expr, ExprError, Function, Node};
 use crate::mechanics::{Rates, linear};
 use crate::symbol::{Symbol, fresh_stem};
-use crate::system::{End, Event, Options, Path, Solver, System};
+use crate::system::{Event, Path, PathEnd, Solver, System, SystemOptions};
 
 /// A speed that rounding leaves of one that is zero, beside speeds and places of one.
 const AT_REST: f64 = 1e-9;
@@ -69,7 +69,7 @@ struct Surface {
 
 /// The mode of a switching surface on a segment of the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Regime {
+enum SurfaceRegime {
     /// As the equations are typed: a corner of theirs.
     Typed,
     /// The motion stays on it.
@@ -82,7 +82,7 @@ enum Regime {
 }
 
 /// The surfaces that a motion was on where a stretch of it begins.
-type Regimes = Vec<(Surface, Regime)>;
+type Regimes = Vec<(Surface, SurfaceRegime)>;
 
 /// The map from the integrated states to all states.
 #[derive(Clone, Debug)]
@@ -106,7 +106,7 @@ impl Layout {
     }
 }
 
-impl Course {
+impl TrajectoryRequest {
     /// The motion stretch by stretch, each as the equations say or with something held by friction,
     /// and why it ends. The first stretch has been followed, as the equations say.
     pub(super) fn pieces(
@@ -114,15 +114,15 @@ impl Course {
         first: Path,
         solver: &Solver,
         equations: &StateEquations,
-        options: &Options,
+        options: &SystemOptions,
         recorded: usize,
-    ) -> Result<(Vec<Piece>, End), TrajectoryError> {
+    ) -> Result<(Vec<TrajectorySegment>, PathEnd), TrajectoryError> {
         let (mut pieces, mut regimes) = (Vec::new(), Regimes::new());
         let (mut first, mut from, mut state) = (Some(first), 0.0, Vec::new());
         let (mut idle, mut holds) = (0, 0);
         let reason = loop {
-            let piece = match regimes.iter().all(|(_, regime)| *regime == Regime::Typed) {
-                true => Piece {
+            let piece = match regimes.iter().all(|(_, regime)| *regime == SurfaceRegime::Typed) {
+                true => TrajectorySegment {
                     recorded,
                     layout: None,
                     from,
@@ -133,7 +133,7 @@ impl Course {
                 },
                 false => match self.stretch(equations, &regimes, from, &mut state, options)? {
                     Some(piece) => piece,
-                    None => break End::Sticks,
+                    None => break PathEnd::Sticks,
                 },
             };
             let (end, reason) = (piece.end(), piece.path.reason());
@@ -144,28 +144,28 @@ impl Course {
             state = last;
             // Other surfaces can hold the motion only if there is more friction than is needed.
             let hit = match reason {
-                End::Event(event) => hit(&regimes, event.saturating_sub(recorded)),
+                PathEnd::Event(event) => hit(&regimes, event.saturating_sub(recorded)),
                 _ => None,
             };
             let released = match reason {
-                End::Event(event) => {
+                PathEnd::Event(event) => {
                     hit.is_none() && released(&mut regimes, event.saturating_sub(recorded))
                 }
-                End::Sticks => false,
+                PathEnd::Sticks => false,
                 reason => break reason,
             };
             if !released {
                 regimes = match surfaces(equations, end, &state)? {
-                    found if found.is_empty() => break End::Sticks,
+                    found if found.is_empty() => break PathEnd::Sticks,
                     found => match regimes_at(equations, found, end, &state, hit.as_ref())? {
                         Some(regimes) => regimes,
-                        None => break End::Sticks,
+                        None => break PathEnd::Sticks,
                     },
                 };
             }
             idle = if end > from { 0 } else { idle + 1 };
             if idle > IDLE || holds > MOST_HOLDS {
-                break End::Sticks;
+                break PathEnd::Sticks;
             }
             from = end;
         };
@@ -181,8 +181,8 @@ impl Course {
         regimes: &Regimes,
         from: f64,
         state: &mut [f64],
-        options: &Options,
-    ) -> Result<Option<Piece>, TrajectoryError> {
+        options: &SystemOptions,
+    ) -> Result<Option<TrajectorySegment>, TrajectoryError> {
         let Some(sliding) = sliding(equations, regimes, &numbers_at(equations, from, state))?
         else {
             return Ok(None);
@@ -218,7 +218,7 @@ impl Course {
         };
         let system = system.with_critical_times(equations.critical);
         let path = system.solve(from, &start, self.duration, &events, options);
-        Ok(path.ok().map(|path| Piece {
+        Ok(path.ok().map(|path| TrajectorySegment {
             recorded,
             layout: sliding.held.then_some(layout),
             from,
@@ -227,7 +227,7 @@ impl Course {
     }
 }
 
-impl Section {
+impl PoincareSection {
     /// This section with these expressions in place of some states.
     fn on(&self, fixed: &BTreeMap<Symbol, Expr>) -> Result<Self, ExprError> {
         Ok(match self {
@@ -244,8 +244,8 @@ const EVENTS: usize = 4;
 /// back on its surface.
 fn released(regimes: &mut Regimes, event: usize) -> bool {
     match regimes.get_mut(event / EVENTS) {
-        Some((_, regime)) if *regime == Regime::Held => {
-            *regime = Regime::Left(if event.is_multiple_of(2) { 1 } else { -1 });
+        Some((_, regime)) if *regime == SurfaceRegime::Held => {
+            *regime = SurfaceRegime::Left(if event.is_multiple_of(2) { 1 } else { -1 });
             true
         }
         _ => false,
@@ -255,9 +255,10 @@ fn released(regimes: &mut Regimes, event: usize) -> bool {
 /// The surface whose friction reaches its bound in an event, where others have theirs from it or
 /// from each other.
 fn hit(regimes: &Regimes, event: usize) -> Option<Expr> {
-    let surplus = regimes.iter().any(|(_, regime)| matches!(regime, Regime::Tied(..)));
-    let (surface, _) =
-        regimes.get(event / EVENTS).filter(|(_, regime)| surplus && *regime == Regime::Held)?;
+    let surplus = regimes.iter().any(|(_, regime)| matches!(regime, SurfaceRegime::Tied(..)));
+    let (surface, _) = regimes
+        .get(event / EVENTS)
+        .filter(|(_, regime)| surplus && *regime == SurfaceRegime::Held)?;
     Some(surface.u.clone())
 }
 
@@ -384,13 +385,13 @@ fn regimes_at(
     let mut numbers = numbers_at(equations, time, state);
     let mut regimes = Regimes::new();
     for mut surface in found {
-        let alone = vec![(surface.clone(), Regime::Held)];
+        let alone = vec![(surface.clone(), SurfaceRegime::Held)];
         let jump = sliding(equations, &alone, &numbers)?
             .and_then(|own| own.jumps.first()?.evaluate(&numbers).ok());
         // Rates that lead away on both sides, or do not jump, hold nothing.
         if let Some(jump) = jump.filter(|jump| *jump < 0.0) {
             surface.strength = -jump;
-            regimes.push((surface, Regime::Held));
+            regimes.push((surface, SurfaceRegime::Held));
         }
     }
     let mut excess = f64::INFINITY;
@@ -416,8 +417,8 @@ fn regimes_at(
                 return Ok(None);
             }
             let is_hit = regimes.iter().enumerate().any(|(other, (surface, regime))| {
-                let of_one_size =
-                    other == *index || matches!(regime, Regime::Tied(lead, _) if lead == index);
+                let of_one_size = other == *index
+                    || matches!(regime, SurfaceRegime::Tied(lead, _) if lead == index);
                 of_one_size && hit == Some(&surface.u)
             });
             let bound = if is_hit { 1.0 - ROUNDING } else { 1.0 + ROUNDING };
@@ -429,8 +430,10 @@ fn regimes_at(
             let side = if share > 0.0 { 1 } else { -1 };
             for (other, (_, regime)) in regimes.iter_mut().enumerate() {
                 *regime = match *regime {
-                    Regime::Tied(lead, sign) if lead == index => Regime::Left(sign * side),
-                    _ if other == index => Regime::Left(side),
+                    SurfaceRegime::Tied(lead, sign) if lead == index => {
+                        SurfaceRegime::Left(sign * side)
+                    }
+                    _ if other == index => SurfaceRegime::Left(side),
                     regime => regime,
                 };
             }
@@ -439,7 +442,7 @@ fn regimes_at(
         }
         if sliding.shares.is_empty() && excess > CLEARLY {
             // The corner itself says where the motion goes.
-            regimes.iter_mut().for_each(|(_, regime)| *regime = Regime::Typed);
+            regimes.iter_mut().for_each(|(_, regime)| *regime = SurfaceRegime::Typed);
         }
         return Ok(Some(regimes));
     }
@@ -453,8 +456,8 @@ fn tie(
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<bool, ExprError> {
     for (_, regime) in regimes.iter_mut() {
-        if matches!(regime, Regime::Tied(..)) {
-            *regime = Regime::Held;
+        if matches!(regime, SurfaceRegime::Tied(..)) {
+            *regime = SurfaceRegime::Held;
         }
     }
     let Some(rates) = SurfaceRates::new(equations, regimes, numbers)? else {
@@ -498,10 +501,10 @@ fn tie(
         };
         for (other, sign) in others {
             let regime = &mut regimes[rates.on[*other]].1;
-            if *regime != Regime::Held {
+            if *regime != SurfaceRegime::Held {
                 return Ok(false);
             }
-            *regime = Regime::Tied(rates.on[*lead], sign * first);
+            *regime = SurfaceRegime::Tied(rates.on[*lead], sign * first);
         }
     }
     Ok(true)
@@ -530,7 +533,9 @@ impl SurfaceRates {
         let taken: Vec<Symbol> =
             equations.states.iter().chain(equations.values.keys()).copied().collect();
         let on: Vec<usize> = (0..regimes.len())
-            .filter(|index| matches!(regimes[*index].1, Regime::Held | Regime::Tied(..)))
+            .filter(|index| {
+                matches!(regimes[*index].1, SurfaceRegime::Held | SurfaceRegime::Tied(..))
+            })
             .collect();
         let mut rates = Self {
             right: Vec::new(),
@@ -616,7 +621,7 @@ fn sliding(
         return Ok(None);
     };
     let held: Vec<usize> =
-        (0..regimes.len()).filter(|index| regimes[*index].1 == Regime::Held).collect();
+        (0..regimes.len()).filter(|index| regimes[*index].1 == SurfaceRegime::Held).collect();
     if held.len() != rates.independent.len() {
         return Ok(None);
     }
@@ -655,8 +660,10 @@ fn sliding(
     let mut events = Vec::new();
     for (index, (surface, regime)) in regimes.iter().enumerate() {
         events.extend(match regime {
-            Regime::Typed | Regime::Tied(..) => [(); EVENTS].map(|()| Event::record(Expr::from(1))),
-            Regime::Held => {
+            SurfaceRegime::Typed | SurfaceRegime::Tied(..) => {
+                [(); EVENTS].map(|()| Event::record(Expr::from(1)))
+            }
+            SurfaceRegime::Held => {
                 let share = values.get(&share(index)).cloned().unwrap_or_else(Expr::zero);
                 let [one, more] = [1.0, 1.0 + 2.0 * ROUNDING].map(number);
                 [
@@ -666,7 +673,7 @@ fn sliding(
                     Event::stop(&share + &more).falling(),
                 ]
             }
-            Regime::Left(side) => {
+            SurfaceRegime::Left(side) => {
                 let away = Expr::from(*side) * surface.u.substitute_all(fixed)?;
                 let unseen = number(UNSEEN * surface.strength);
                 [
@@ -706,17 +713,17 @@ fn on_surfaces(
         known.map(|(_, same)| (index, *regime, if *same { 1 } else { -1 }))
     });
     let sign = match meant {
-        None | Some((_, Regime::Typed, _)) => return expr.with_children(children),
-        Some((index, Regime::Held, same)) => Expr::from(same) * Expr::from(share(index)),
-        Some((_, Regime::Tied(lead, sign), same)) => {
+        None | Some((_, SurfaceRegime::Typed, _)) => return expr.with_children(children),
+        Some((index, SurfaceRegime::Held, same)) => Expr::from(same) * Expr::from(share(index)),
+        Some((_, SurfaceRegime::Tied(lead, sign), same)) => {
             Expr::from(same * sign) * Expr::from(share(lead))
         }
-        Some((_, Regime::Left(side), same)) => Expr::from(same * side),
+        Some((_, SurfaceRegime::Left(side), same)) => Expr::from(same * side),
     };
     Ok(match (function, meant, arguments.first()) {
         (Function::Sign, ..) => sign,
         (Function::Step, ..) => (Expr::from(1) + sign) * Expr::number(ratio(1, 2)),
-        (_, Some((_, Regime::Left(_), _)), Some(argument)) => sign * argument,
+        (_, Some((_, SurfaceRegime::Left(_), _)), Some(argument)) => sign * argument,
         _ => Expr::zero(),
     })
 }

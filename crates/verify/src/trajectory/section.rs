@@ -24,7 +24,7 @@ pub const MOST_CROSSINGS: f64 = 1e6;
 
 /// The condition for recording a point of the motion.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Section {
+pub enum PoincareSection {
     /// Once in this time, which may depend on the parameters: `2*pi/Omega`.
     Every(Expr),
     /// An expression that grows through zero: `x'`, `x - 0.1`.
@@ -40,7 +40,7 @@ pub struct Crossing {
     pub state: Vec<f64>,
 }
 
-impl Section {
+impl PoincareSection {
     /// The letters in it.
     pub fn expression(&self) -> &Expr {
         match self {
@@ -127,7 +127,7 @@ impl Trajectory {
         let mut touched: Vec<[f64; 3]> = Vec::new();
         let times: Vec<f64> = match &course.section {
             None => vec![],
-            Some(Section::Rising(expression)) => {
+            Some(PoincareSection::Rising(expression)) => {
                 let met = self.pieces.iter().flat_map(|piece| {
                     let own = |occurrence: &&Occurrence| occurrence.event < piece.recorded;
                     piece.path.occurrences().iter().filter(own)
@@ -142,7 +142,7 @@ impl Trajectory {
                 let rising = crossed.into_iter().filter(|occurrence| occurrence.rising);
                 rising.map(|occurrence| occurrence.time).filter(|time| !touches(*time)).collect()
             }
-            Some(Section::Every(period)) => {
+            Some(PoincareSection::Every(period)) => {
                 let mut values = course.values.clone();
                 values.remove(&Symbol::new("t"));
                 let number = period.evaluate(&values).unwrap_or(f64::NAN);

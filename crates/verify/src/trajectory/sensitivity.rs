@@ -11,7 +11,7 @@
 //! motions side by side).
 
 use super::{ACCOUNTS, Trajectory};
-use crate::system::End;
+use crate::system::PathEnd;
 
 /// The part of a state by which its start is displaced: more than rounding, and so little that
 /// differences grow in proportion.
@@ -46,7 +46,7 @@ impl Trajectory {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn known_until(&self) -> Option<f64> {
-        if self.reason == End::Interrupted {
+        if self.reason == PathEnd::Interrupted {
             return None;
         }
         let time = |end: f64, index: u32| end * f64::from(index) / f64::from(ACCOUNTS);

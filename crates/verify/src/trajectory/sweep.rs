@@ -5,10 +5,10 @@
 //! order, whatever the number of threads; where somebody asks to stop, those that were begun. With
 //! a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
 
-use super::{Course, Crossing, TrajectoryError};
+use super::{Crossing, TrajectoryError, TrajectoryRequest};
 use crate::parallel::{each, threads};
 use crate::symbol::Symbol;
-use crate::system::{End, Integrator, LANES};
+use crate::system::{Integrator, LANES, PathEnd};
 
 /// The record of one motion of a sweep.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub struct SweptMotion {
     /// When it touches the section and does not cross it, from then on.
     pub touches: Vec<f64>,
     /// Why it ended.
-    pub reason: End,
+    pub reason: PathEnd,
 }
 
 /// Follows the course at every one of the values; `progress` hears of each motion that is done.
@@ -49,7 +49,7 @@ pub struct SweptMotion {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn sweep(
-    course: &Course,
+    course: &TrajectoryRequest,
     names: &[Symbol],
     grid: &[Vec<f64>],
     progress: impl Fn() + Sync,
@@ -76,14 +76,14 @@ pub fn sweep(
             return Ok(vec![]);
         }
         let courses = group.iter().map(|(_, values)| at(values)).collect();
-        let motions = Course::followed_together(courses, ready.as_ref());
+        let motions = TrajectoryRequest::followed_together(courses, ready.as_ref());
         let mut swept = Vec::with_capacity(group.len());
         for ((number, values), motion) in group.iter().zip(motions) {
             let motion = motion.map_err(|error| (*number, error))?;
             progress();
             // One that was cut off before it counts, or before it moved, has nothing to show.
             let end = motion.end();
-            if motion.reason() == End::Interrupted && (end < course.after || end == 0.0) {
+            if motion.reason() == PathEnd::Interrupted && (end < course.after || end == 0.0) {
                 continue;
             }
             swept.push(SweptMotion {

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 use super::force_of;
 use super::validity::Range;
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::decimal::significant;
 use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
@@ -84,7 +84,7 @@ pub(super) fn bounds(
 
 /// `x` and `f(x)/x` from rest to the amplitude, at all places where it may turn back; `None` where
 /// it has no value.
-fn course(force: &Force, amplitude: f64) -> Option<Vec<(f64, f64)>> {
+fn course(force: &CentredForce, amplitude: f64) -> Option<Vec<(f64, f64)>> {
     const LINEAR: i32 = 512;
     /// Towards rest by decades.
     const DECADES: i32 = 6;

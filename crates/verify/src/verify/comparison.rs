@@ -17,7 +17,7 @@ use super::{
 use crate::decimal::{decimal, significant};
 use crate::expr::Equation;
 use crate::method::homotopy_analysis::convergence_control;
-use crate::method::numbers::{Known, NoNumbers};
+use crate::method::numbers::{NoNumbers, NumbersCache};
 use crate::method::{Options, Reason, Refusal, solve, with_resonance_at};
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::solution::{AmplitudeConvention, Method, Solution};
@@ -28,7 +28,7 @@ use crate::values::Values;
 /// A method that applies.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Row {
+pub struct ComparisonRow {
     /// The derived answer.
     pub solution: Solution,
     /// omega by the formula; `None` where there is none.
@@ -49,7 +49,7 @@ pub struct Row {
     pub verdict: Option<Verdict>,
 }
 
-impl Row {
+impl ComparisonRow {
     /// The convergence-control parameter that was chosen for the numbers, where it was.
     pub fn chosen_hbar(&self) -> Option<(Symbol, f64)> {
         let hbar = convergence_control(&self.solution);
@@ -90,7 +90,7 @@ pub struct Comparison {
     /// The tolerance of verdicts and ranges, relative: 0.01 is 1 %.
     pub tolerance: f64,
     /// The methods that apply, in the order of [`Method::ALL`].
-    pub rows: Vec<Row>,
+    pub rows: Vec<ComparisonRow>,
     /// Those that do not.
     pub refused: Vec<Refused>,
     /// The ranges of validity, in words, if the true motion is periodic.
@@ -334,7 +334,7 @@ fn driven(
             "driven: the error is that of the amplitude; {}: {words}",
             solution.title()
         ));
-        rows.push(Row {
+        rows.push(ComparisonRow {
             solution: solution.clone(),
             frequency: judged.frequency,
             reason: None,
@@ -385,7 +385,7 @@ fn of_transients(
                 followed.reason
             ));
         }
-        rows.push(Row {
+        rows.push(ComparisonRow {
             frequency: judged.frequency,
             reason: judged.reason,
             chosen: judged.chosen,
@@ -420,7 +420,7 @@ fn row(
     true_motion: Option<&TrueMotion>,
     truth: &TrueBackbone,
     tolerance: f64,
-) -> Row {
+) -> ComparisonRow {
     let (found, reason) = numbers_or_reason(oscillator, solution, numbers);
     let frequency = found.as_ref().map(|found| found.frequency_squared.sqrt());
     let relative_error =
@@ -430,7 +430,7 @@ fn row(
         .zip(true_motion)
         .and_then(|((frequency, motion), truth)| largest_deviation(truth, frequency, motion));
     let pass = relative_error.is_some_and(|error| error.abs() <= tolerance);
-    Row {
+    ComparisonRow {
         solution: solution.clone(),
         frequency,
         reason,
@@ -511,7 +511,7 @@ pub fn backbones(
     };
     let mut curves: Vec<Backbone> = Vec::new();
     for row in comparison.rows.iter().filter(|row| row.solution.method != Method::Exact) {
-        let followed = Known::default();
+        let followed = NumbersCache::default();
         let points = curve(&|amplitude| {
             formula_frequency_along(
                 oscillator,

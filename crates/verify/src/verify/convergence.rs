@@ -27,7 +27,7 @@ use crate::exact::rational::to_f64;
 use crate::exact::{Doubles, Monomial, Polynomial, Rational};
 use crate::expr::Expr;
 use crate::method::power_series::PowerSeries;
-use crate::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand};
+use crate::method::secular::{AmplitudeKind, Detuning, ForceTerm, Scheme, expand};
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::recurrence::numeric_taylor;
 use crate::series::{FourierSeries, singularity};
@@ -188,7 +188,7 @@ fn at_numbers(
 }
 
 /// omega^2 in powers of the small parameter over a unit, up to a factor.
-struct Series {
+struct FrequencySeries {
     coefficients: Vec<f64>,
     unit: f64,
 }
@@ -207,7 +207,7 @@ fn in_the_amplitude(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
     amplitude: f64,
-) -> Option<Series> {
+) -> Option<FrequencySeries> {
     let (highest, few) = (2 * SERIES_TERMS + 1, 9);
     if oscillator.force.contains(oscillator.velocity()) {
         return None;
@@ -239,7 +239,7 @@ fn in_the_amplitude(
         even().for_each(|k| coefficients[k] = 0.0);
     }
     (coefficients[1], coefficients[0]) = (1.0, 0.0);
-    Some(Series { coefficients: amplitude_series(&coefficients)?, unit })
+    Some(FrequencySeries { coefficients: amplitude_series(&coefficients)?, unit })
 }
 
 /// In a parameter, at the amplitude given: secular terms removed in floating-point numbers.
@@ -248,7 +248,7 @@ fn in_a_parameter(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
     small: Symbol,
-) -> Option<Series> {
+) -> Option<FrequencySeries> {
     let cycle = solution.limit_cycle.as_ref();
     // The frequency of most limit cycles has even powers alone.
     let highest = if cycle.is_some() { 2 * SERIES_TERMS } else { SERIES_TERMS };
@@ -264,8 +264,8 @@ fn in_a_parameter(
     let scheme = Scheme {
         normalisation: AmplitudeConvention::Initial,
         amplitude: match cycle {
-            Some(_) => Amplitude::Determined,
-            None => Amplitude::Free,
+            Some(_) => AmplitudeKind::Determined,
+            None => AmplitudeKind::Free,
         },
         detuning: Detuning::Acceleration,
     };
@@ -275,7 +275,7 @@ fn in_a_parameter(
     if cycle.is_some() {
         forget_odd_noise(&mut coefficients);
     }
-    Some(Series { coefficients, unit })
+    Some(FrequencySeries { coefficients, unit })
 }
 
 /// Of a limit cycle rounding leaves odd powers where there are none.

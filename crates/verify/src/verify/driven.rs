@@ -30,7 +30,7 @@ use super::{Motions, Verdict, Verification, VerificationError, checked_numbers, 
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
 use crate::method::numbers::symbol_values;
-use crate::numeric::ode::{Options, State, integrate};
+use crate::numeric::ode::{IntegrationOptions, State, integrate};
 use crate::numeric::periodic::{PeriodicOrbit, periodic_motion};
 use crate::oscillator::Oscillator;
 use crate::solution::response::{SteadyMotions, SteadyState};
@@ -61,7 +61,7 @@ pub(super) fn motions(
     response: &Response,
     at: &Values,
 ) -> Result<Option<Motions>, VerificationError> {
-    let question = Question::new(oscillator, solution, response, at)?;
+    let question = DrivenComparison::new(oscillator, solution, response, at)?;
     let states = question.states();
     let largest = states.iter().find(|state| state.is_stable()).or(states.first());
     let Some((state, found)) =
@@ -87,16 +87,16 @@ pub(super) fn motions(
 }
 
 /// A driven oscillator with numbers.
-struct Question<'a> {
+struct DrivenComparison<'a> {
     solution: &'a Solution,
     numbers: BTreeMap<Symbol, f64>,
     /// omega of the motion itself.
     frequency: f64,
     truth: Truth,
-    motion: Formula,
+    motion: SteadyFormula,
 }
 
-impl<'a> Question<'a> {
+impl<'a> DrivenComparison<'a> {
     fn new(
         oscillator: &Oscillator,
         solution: &'a Solution,
@@ -124,7 +124,7 @@ impl<'a> Question<'a> {
             solution,
             frequency: driving.abs() * f64::from(q) / f64::from(p),
             truth: Truth::new(oscillator, &numbers, period, [p, q])?,
-            motion: Formula::new(solution, response, &numbers)?,
+            motion: SteadyFormula::new(solution, response, &numbers)?,
             numbers,
         })
     }
@@ -239,7 +239,11 @@ fn start_of(found: &Option<PeriodicOrbit>) -> Option<(f64, f64)> {
 
 /// All that is small is halved again and again, and the deviation of the same steady motion
 /// measured.
-fn slope(oscillator: &Oscillator, question: &Question, judged: &JudgedState) -> Option<f64> {
+fn slope(
+    oscillator: &Oscillator,
+    question: &DrivenComparison,
+    judged: &JudgedState,
+) -> Option<f64> {
     const HALVINGS: i32 = 3;
     /// The truth is good to 1e-10, and a hundred times that is measured to a per cent.
     const FLOOR: f64 = 1e-8;
@@ -251,9 +255,13 @@ fn slope(oscillator: &Oscillator, question: &Question, judged: &JudgedState) -> 
         }
         let smaller = smaller(oscillator, question.solution, &question.numbers, halvings)?;
         let response = smaller.solution.response.as_ref()?;
-        let question =
-            Question::of_numbers(&smaller.oscillator, &smaller.solution, response, smaller.numbers)
-                .ok()?;
+        let question = DrivenComparison::of_numbers(
+            &smaller.oscillator,
+            &smaller.solution,
+            response,
+            smaller.numbers,
+        )
+        .ok()?;
         let apart = |state: &SteadyState| (state.amplitude - judged.state.amplitude).abs();
         let states = question.states().into_iter();
         let alike = states.filter(|state| state.is_stable() == judged.state.is_stable());
@@ -279,7 +287,7 @@ pub(super) fn judge(
     at: &Values,
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
-    let question = Question::new(oscillator, solution, response, at)?;
+    let question = DrivenComparison::new(oscillator, solution, response, at)?;
     let (states, spurious) = question.judged_states();
     let judged = states.iter().find(|judged| judged.state.is_stable()).or(states.first());
     let passed = judged.filter(|judged| judged.state.is_stable()).is_some_and(|judged| {
@@ -367,7 +375,7 @@ impl Truth {
     /// those that begin at the known places.
     fn by_newton(
         &self,
-        motion: &Formula,
+        motion: &SteadyFormula,
         state: SteadyState,
         known: &[[f64; 2]],
     ) -> Option<PeriodicOrbit> {
@@ -380,7 +388,7 @@ impl Truth {
 
     /// The true periodic motion near one by the formula; where a second one is near that is as
     /// stable as it, and the first is not, that one.
-    fn as_stable(&self, motion: &Formula, state: SteadyState) -> Option<PeriodicOrbit> {
+    fn as_stable(&self, motion: &SteadyFormula, state: SteadyState) -> Option<PeriodicOrbit> {
         /// Largest relative error of the amplitude of the second motion.
         const NEAR: f64 = 0.3;
         let found = self.near(motion, state)?;
@@ -396,7 +404,7 @@ impl Truth {
     }
 
     /// The true periodic motion near one by the formula.
-    fn near(&self, motion: &Formula, state: SteadyState) -> Option<PeriodicOrbit> {
+    fn near(&self, motion: &SteadyFormula, state: SteadyState) -> Option<PeriodicOrbit> {
         /// For how long a motion is left to settle.
         const PERIODS: f64 = 200.0;
         let start = [motion.position(0.0, state), motion.velocity(0.0, state)];
@@ -407,7 +415,7 @@ impl Truth {
         // Near a fold the search may miss what a motion settles on all the same.
         let settled = || {
             let [x, v] = start;
-            let options = Options::with_tolerance(1e-9);
+            let options = IntegrationOptions::with_tolerance(1e-9);
             let end = PERIODS * self.period;
             let path = integrate(acceleration, State { t: 0.0, x, v }, end, &[], &options).ok()?;
             let end = path.end();
@@ -421,7 +429,7 @@ impl Truth {
     /// A true periodic motion near one by the formula that is none of the known ones.
     fn another(
         &self,
-        motion: &Formula,
+        motion: &SteadyFormula,
         state: SteadyState,
         known: &[[f64; 2]],
     ) -> Option<PeriodicOrbit> {
@@ -448,7 +456,7 @@ impl Truth {
 
     fn beside(
         &self,
-        motion: &Formula,
+        motion: &SteadyFormula,
         state: SteadyState,
         found: Option<&PeriodicOrbit>,
     ) -> JudgedState {
@@ -471,14 +479,14 @@ impl Truth {
 }
 
 /// The motion by the formula, in time, amplitude and phase.
-struct Formula {
+struct SteadyFormula {
     position: CompiledFunction,
     velocity: CompiledFunction,
     acceleration: CompiledFunction,
     equilibrium: f64,
 }
 
-impl Formula {
+impl SteadyFormula {
     fn new(
         solution: &Solution,
         response: &Response,

@@ -14,7 +14,7 @@ use crate::numeric::ode;
 use crate::numeric::ode::root::{Until, bisect, find_root};
 use crate::oscillator::Oscillator;
 use crate::symbol::Symbol;
-use crate::trajectory::{Course, Trajectory};
+use crate::trajectory::{Trajectory, TrajectoryRequest};
 
 /// A motion released from rest, and for how long it is followed.
 pub(super) struct Start {
@@ -29,7 +29,7 @@ pub(super) struct Start {
 }
 
 /// The representation of a motion.
-enum Path {
+enum FreePath {
     /// From the equation, and held where friction holds it.
     Series(Box<Trajectory>),
     /// By Runge-Kutta on values of the force alone.
@@ -49,16 +49,16 @@ fn evaluated(
     let force =
         CompiledFunction::new(&force, &[oscillator.coordinate, oscillator.velocity()]).ok()?;
     let begin = ode::State { t: 0.0, x: start.equilibrium + start.distance, v: 0.0 };
-    let options = ode::Options {
+    let options = ode::IntegrationOptions {
         maximum_step: start.step,
-        ..ode::Options::with_tolerance(TOLERANCE * start.distance.abs().min(1.0))
+        ..ode::IntegrationOptions::with_tolerance(TOLERANCE * start.distance.abs().min(1.0))
     };
     ode::integrate(|_, x, v| -force.call(&[x, v]), begin, start.duration, &[], &options).ok()
 }
 
 /// A motion with what is read off it.
 pub(super) struct FreeMotion {
-    motion: Path,
+    motion: FreePath,
     equilibrium: f64,
     end: f64,
     /// Whether it could not be followed as long as it was asked for.
@@ -83,7 +83,7 @@ impl FreeMotion {
     ) -> Result<Self, VerificationError> {
         /// A millionth of the deviations that are told apart.
         const TOLERANCE: f64 = 1e-11;
-        let mut course = Course::of_equation(oscillator);
+        let mut course = TrajectoryRequest::of_equation(oscillator);
         let parameters = course.parameters();
         let known = numbers.iter().filter(|(name, _)| parameters.contains(name));
         course.values = known.map(|(name, value)| (*name, *value)).collect();
@@ -96,11 +96,11 @@ impl FreeMotion {
             // the motion goes on.
             true => match evaluated(oscillator, numbers, start) {
                 Some(other) if other.end().t > motion.end() => {
-                    (other.end().t, Path::Evaluated(other))
+                    (other.end().t, FreePath::Evaluated(other))
                 }
-                _ => (motion.end(), Path::Series(Box::new(motion))),
+                _ => (motion.end(), FreePath::Series(Box::new(motion))),
             },
-            false => (start.duration, Path::Series(Box::new(motion))),
+            false => (start.duration, FreePath::Series(Box::new(motion))),
         };
         if end < start.step {
             return Err(VerificationError::NotFollowed { time: end });
@@ -134,10 +134,10 @@ impl FreeMotion {
     /// Distance from the equilibrium and velocity.
     pub(super) fn at(&self, time: f64) -> (f64, f64) {
         let found = match &self.motion {
-            Path::Series(motion) => {
+            FreePath::Series(motion) => {
                 motion.at(time).and_then(|state| Some((*state.first()?, *state.get(1)?)))
             }
-            Path::Evaluated(motion) => motion.at(time),
+            FreePath::Evaluated(motion) => motion.at(time),
         };
         found.map_or((f64::NAN, f64::NAN), |(x, v)| (x - self.equilibrium, v))
     }

@@ -11,12 +11,12 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use super::validity::Range;
-use super::{Motions, Sample, Verdict, Verification, VerificationError, checked_numbers};
+use super::{Motions, TimedState, Verdict, Verification, VerificationError, checked_numbers};
 use crate::decimal::decimal;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
 use crate::method::numbers::symbol_values;
-use crate::numeric::ode::{Options, State, integrate};
+use crate::numeric::ode::{IntegrationOptions, State, integrate};
 use crate::oscillator::Oscillator;
 use crate::solution::{AmplitudeConvention, Solution};
 use crate::symbol::Symbol;
@@ -28,9 +28,9 @@ const PERIODS: [f64; 2] = [10.0, 200.0];
 const SAMPLES: usize = 4096;
 
 /// The formula and the true motion at the same instants.
-struct Followed {
-    formula: Vec<Sample>,
-    truth: Vec<Sample>,
+struct SampledMotions {
+    formula: Vec<TimedState>,
+    truth: Vec<TimedState>,
     numbers: BTreeMap<Symbol, f64>,
     /// The angular frequencies of the drives.
     drives: Vec<f64>,
@@ -39,7 +39,7 @@ struct Followed {
     residual: f64,
 }
 
-impl Followed {
+impl SampledMotions {
     fn new(
         oscillator: &Oscillator,
         solution: &Solution,
@@ -78,8 +78,9 @@ impl Followed {
         let until = (PERIODS[0] * TAU / slow).min(PERIODS[1] * TAU / fast);
         let acceleration = |t: f64, x: f64, v: f64| -force.call(&[t, x, v]);
         let begin = State { t: 0.0, x: equilibrium + numbers[&start], v: 0.0 };
-        let path = integrate(acceleration, begin, until, &[], &Options::with_tolerance(1e-12))
-            .map_err(|_| VerificationError::NotFollowed { time: 0.0 })?;
+        let path =
+            integrate(acceleration, begin, until, &[], &IntegrationOptions::with_tolerance(1e-12))
+                .map_err(|_| VerificationError::NotFollowed { time: 0.0 })?;
         if !path.is_complete() {
             let time = path.end().t;
             return Err(VerificationError::NotFollowed { time });
@@ -149,7 +150,7 @@ pub(super) fn judge(
     at: &Values,
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
-    let followed = Followed::new(oscillator, solution, motion, at)?;
+    let followed = SampledMotions::new(oscillator, solution, motion, at)?;
     let deviation = followed.deviation();
     let numbers = &followed.numbers;
     let frequency = followed.drives.first().copied().unwrap_or(0.0);
@@ -197,6 +198,7 @@ pub(super) fn motions(
     motion: &Expr,
     at: &Values,
 ) -> Result<Motions, VerificationError> {
-    let Followed { formula, truth, .. } = Followed::new(oscillator, solution, motion, at)?;
+    let SampledMotions { formula, truth, .. } =
+        SampledMotions::new(oscillator, solution, motion, at)?;
     Ok(Motions { formula, truth, envelope: None })
 }

@@ -38,7 +38,7 @@ pub use driven::JudgedState;
 pub use transient::Followed;
 pub use validity::{Range, Reach};
 
-pub use crate::conservative::well::{End, Rim, Well};
+pub use crate::conservative::well::{Rim, Well, WellEnd};
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -46,13 +46,13 @@ use std::f64::consts::TAU;
 use self::largest::largest_over;
 use self::orbit::{Meant, NearCycle, Physics, SAMPLES, TrueMotion, true_frequency};
 use crate::conservative::features::Features;
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::decimal::{decimal, significant};
 use crate::exact::Doubles;
 use crate::exact::rational::from_f64;
 use crate::expr::{EvaluationError, Expr, ExprError, LostDigits};
 use crate::method::numbers::{
-    Known, NoNumbers, Numbers, evaluate, frequency_squared_along, half_a_period, law_name,
+    NoNumbers, Numbers, NumbersCache, evaluate, frequency_squared_along, half_a_period, law_name,
     symbol_values,
 };
 use crate::numeric::period::PeriodError;
@@ -344,12 +344,12 @@ pub fn judge(
     at: &Values,
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
-    judge_to(oscillator, solution, at, tolerance, Extent::Range)
+    judge_to(oscillator, solution, at, tolerance, VerificationScope::Range)
 }
 
 /// The extent of a verification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
+pub enum VerificationScope {
     /// The motion at the values given, and nothing else: where motions are periodic, neither how
     /// its error grows nor how far the formula is good, which takes most of the time.
     Motion,
@@ -366,7 +366,7 @@ pub fn judge_to(
     solution: &Solution,
     at: &Values,
     tolerance: f64,
-    extent: Extent,
+    extent: VerificationScope,
 ) -> Result<Verification, VerificationError> {
     let _letters = solution.letters().in_force();
     if let Some(relative) = in_another_coordinate(oscillator, solution)? {
@@ -427,7 +427,7 @@ pub fn judge_to(
         symbols.values.retain(|(name, _)| *name != AmplitudeConvention::Initial.symbol());
         symbols.values.extend(size.ok().map(|size| (solution.amplitude.symbol(), size)));
     }
-    let ranged = extent == Extent::Range;
+    let ranged = extent == VerificationScope::Range;
     let far = ranged.then(|| validity::ranges(oscillator, solution, &numbers, tolerance));
     let far = far.into_iter().flatten();
     Ok(Verification {
@@ -659,14 +659,14 @@ fn checked_numbers(
 }
 
 /// Time, displacement and velocity, in the units of the equation.
-pub type Sample = (f64, f64, f64);
+pub type TimedState = (f64, f64, f64);
 
 /// The motion by the formula and the true one, at the same instants of one true period.
 pub struct Motions {
     /// By the formula.
-    pub formula: Vec<Sample>,
+    pub formula: Vec<TimedState>,
     /// By Runge-Kutta.
-    pub truth: Vec<Sample>,
+    pub truth: Vec<TimedState>,
     /// Motions whose amplitude changes: times and places of its two envelopes by the formula.
     pub envelope: Option<[Vec<(f64, f64)>; 2]>,
 }
@@ -747,7 +747,7 @@ pub fn true_motion(
     oscillator: &Oscillator,
     solution: &Solution,
     at: &Values,
-) -> Result<Vec<Sample>, VerificationError> {
+) -> Result<Vec<TimedState>, VerificationError> {
     let numbers = numbers_of_motion(solution, at);
     let settled = on_cycle(solution, at);
     let solution = settled.as_ref().unwrap_or(solution);
@@ -780,7 +780,7 @@ fn instants(truth: &TrueMotion) -> impl Iterator<Item = f64> {
     (0..=SAMPLES).map(move |k| period * k as f64 / SAMPLES as f64)
 }
 
-fn samples_of(truth: &TrueMotion) -> Vec<Sample> {
+fn samples_of(truth: &TrueMotion) -> Vec<TimedState> {
     instants(truth).map(|t| truth.sample(t)).collect()
 }
 
@@ -790,7 +790,7 @@ fn formula_frequency(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Option<f64> {
-    formula_frequency_along(oscillator, solution, numbers, &Known::default())
+    formula_frequency_along(oscillator, solution, numbers, &NumbersCache::default())
 }
 
 /// As [`formula_frequency`] for one amplitude after the other, all else being the same.
@@ -798,7 +798,7 @@ fn formula_frequency_along(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    known: &Known,
+    known: &NumbersCache,
 ) -> Option<f64> {
     let squared = frequency_squared_along(oscillator, solution, numbers, known).ok()?;
     (squared > 0.0 && squared.is_finite()).then(|| squared.sqrt())
@@ -894,10 +894,10 @@ fn force_of(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-) -> Option<Force> {
+) -> Option<CentredForce> {
     let amplitude = numbers.get(&solution.amplitude.symbol()).copied().unwrap_or(1.0);
     let (force, coordinate) = (&oscillator.force, oscillator.coordinate);
-    Force::new(force, coordinate, &solution.equilibrium, numbers, amplitude)
+    CentredForce::new(force, coordinate, &solution.equilibrium, numbers, amplitude)
 }
 
 /// Describes the position of a true limit cycle and whether it attracts.

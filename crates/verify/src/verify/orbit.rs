@@ -6,13 +6,13 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use super::VerificationError;
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::numeric::ode::energy::grows_towards_zero;
 use crate::numeric::ode::root::find_root;
 use crate::numeric::period::{PeriodError, Swing, period_between, swing_with_cuts};
-use crate::numeric::return_map::{Equation, LimitCycle, nearest_limit_cycle};
+use crate::numeric::return_map::{AutonomousEquation, NumericalLimitCycle, nearest_limit_cycle};
 use crate::oscillator::Oscillator;
 use crate::solution::AmplitudeConvention;
 use crate::symbol::Symbol;
@@ -53,7 +53,7 @@ impl Meant {
 /// One period of a true motion, from a turning point.
 enum Orbit {
     Swing(Swing),
-    LimitCycle(LimitCycle),
+    LimitCycle(NumericalLimitCycle),
 }
 
 impl Orbit {
@@ -151,7 +151,7 @@ impl TrueMotion {
     }
 
     /// The limit cycle, where the motion is one.
-    pub(super) fn limit_cycle(&self) -> Option<&LimitCycle> {
+    pub(super) fn limit_cycle(&self) -> Option<&NumericalLimitCycle> {
         match &self.orbit {
             Some(Orbit::LimitCycle(cycle)) => Some(cycle),
             _ => None,
@@ -193,7 +193,7 @@ impl TrueMotion {
 /// The equation with numbers for its parameters, seen from its equilibrium.
 pub(super) struct Physics {
     /// The force at rest.
-    pub(super) rest: Force,
+    pub(super) rest: CentredForce,
     /// The velocity-dependent part of the force as a function of position and velocity; `None` if
     /// the period follows from the energy.
     moving: Option<CompiledFunction>,
@@ -221,7 +221,7 @@ impl Physics {
             }
         };
         meant.equilibrium.evaluate(numbers)?;
-        let rest = Force::new(&at_rest, x, &meant.equilibrium, numbers, amplitude);
+        let rest = CentredForce::new(&at_rest, x, &meant.equilibrium, numbers, amplitude);
         let mut physics = Self {
             rest: rest
                 .ok_or_else(|| VerificationError::Missing(without_number(oscillator, numbers)))?,
@@ -292,12 +292,12 @@ impl Physics {
     }
 
     /// The true limit cycle nearest to an amplitude.
-    fn limit_cycle(&self, near: &NearCycle) -> Result<LimitCycle, VerificationError> {
+    fn limit_cycle(&self, near: &NearCycle) -> Result<NumericalLimitCycle, VerificationError> {
         let amplitude = near.amplitude;
         let equilibrium = self.rest.equilibrium();
         let step = 1e-3 * amplitude;
         let slope = (self.rest.at(step) - self.rest.at(-step)) / (2.0 * step);
-        let equation = Equation {
+        let equation = AutonomousEquation {
             acceleration: &|x, v| -self.force_at(x - equilibrium, v),
             equilibrium,
             amplitude,

@@ -13,8 +13,8 @@ use super::formula_frequency_along;
 use crate::conservative::features::Features;
 use crate::decimal::significant;
 use crate::expr::Expr;
-use crate::method::numbers::Known;
-use crate::method::table::{Entry, Motion};
+use crate::method::numbers::NumbersCache;
+use crate::method::table::{MethodEntry, MotionEvaluation};
 use crate::numeric::ode::root::{Until, bisect};
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
@@ -136,12 +136,14 @@ pub(super) fn reach(
     }
     // Over the many hilltops of a force that waves a balance has many solutions, and following it
     // finds one or another.
-    if Entry::of(solution.method).motion == Motion::Balance && truth.has_waves_of_hilltops() {
+    if MethodEntry::of(solution.method).motion == MotionEvaluation::Balance
+        && truth.has_waves_of_hilltops()
+    {
         return None;
     }
     let mut amplitudes = truth.amplitudes();
     let asked = truth.asked();
-    let known = Known::default();
+    let known = NumbersCache::default();
     let error = |size: f64| {
         let true_frequency = truth.frequency(size)?;
         let frequency =

@@ -12,7 +12,7 @@ use super::VerificationError;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::numeric::ode::root::find_root;
-use crate::numeric::ode::{Options as Integration, Point, integrate_first_order};
+use crate::numeric::ode::{IntegrationOptions as Integration, Point, integrate_first_order};
 use crate::solution::modulation::Release;
 use crate::solution::{AmplitudeConvention, Method, Modulation, Solution};
 use crate::symbol::Symbol;
@@ -27,7 +27,7 @@ pub(super) const LOOKS: f64 = 32.0;
 /// The slow equations with numbers, solved from the start.
 pub(super) struct SlowMotion {
     /// Amplitude and phase at a time.
-    slow: Slow,
+    slow: SlowSolution,
     /// The motion about the equilibrium in amplitude and phase, and its rate.
     place: CompiledFunction,
     speed: CompiledFunction,
@@ -54,7 +54,7 @@ pub(super) struct SlowMotion {
 type SlowPath = Box<dyn Fn(f64) -> Option<[f64; 2]>>;
 
 /// The representation of amplitude and phase.
-enum Slow {
+enum SlowSolution {
     /// In closed form, in the time.
     Closed([CompiledFunction; 2]),
     /// Point by point, at equal steps, with as many rates.
@@ -62,7 +62,7 @@ enum Slow {
 }
 
 /// The numbers of a motion released at rest.
-struct Numbers {
+struct ReleaseValues {
     /// Parameters, definitions and the amplitude at the start, which is the size of one that is
     /// turned.
     known: BTreeMap<Symbol, f64>,
@@ -74,7 +74,7 @@ struct Numbers {
     closed_forms_hold: bool,
 }
 
-impl Numbers {
+impl ReleaseValues {
     /// # Errors
     /// A definition without a value.
     fn of(
@@ -149,7 +149,7 @@ impl SlowMotion {
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
         let equilibrium = solution.equilibrium.evaluate(numbers)?;
-        let numbers = Numbers::of(solution, modulation, numbers)?;
+        let numbers = ReleaseValues::of(solution, modulation, numbers)?;
         let (a, theta) = (modulation.amplitude, solution.phase());
         let place = numbers.put(&displacement(solution, theta)?)?;
         let rates =
@@ -168,8 +168,10 @@ impl SlowMotion {
         }
         let period = TAU / frequency;
         let slow = match numbers.closed(modulation) {
-            Some(closed) => Slow::Closed(closed),
-            None => Slow::Followed(followed(a, &rates, start, 2.0 * MOST_PERIODS * period)?),
+            Some(closed) => SlowSolution::Closed(closed),
+            None => {
+                SlowSolution::Followed(followed(a, &rates, start, 2.0 * MOST_PERIODS * period)?)
+            }
         };
         let transient = modulation.transient.as_ref();
         let ends = transient.and_then(|transient| transient.ends.as_ref());
@@ -195,8 +197,8 @@ impl SlowMotion {
     /// Amplitude and phase; the amplitude zero once it has come down to that.
     fn slow_at(&self, t: f64) -> [f64; 2] {
         let [amplitude, phase] = match &self.slow {
-            Slow::Closed([amplitude, phase]) => [amplitude.call(&[t]), phase.call(&[t])],
-            Slow::Followed(of) => of(t).unwrap_or([f64::NAN; 2]),
+            SlowSolution::Closed([amplitude, phase]) => [amplitude.call(&[t]), phase.call(&[t])],
+            SlowSolution::Followed(of) => of(t).unwrap_or([f64::NAN; 2]),
         };
         let over = t >= self.ends || amplitude * self.start <= 0.0;
         [if over { 0.0 } else { amplitude }, phase + self.turn]

@@ -25,7 +25,7 @@ use super::free_motion::{FreeMotion, Start};
 use super::slow_motion::{LOOKS, SlowMotion};
 use super::smaller::{is_small_in_amplitude, smaller};
 use super::validity::Range;
-use super::{Motions, Sample, Verdict, Verification, VerificationError, slopes_of};
+use super::{Motions, TimedState, Verdict, Verification, VerificationError, slopes_of};
 use crate::decimal::decimal;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
@@ -80,8 +80,8 @@ pub(super) fn judge(
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
     let symbols = symbol_values(oscillator, solution, numbers, None);
-    let judged = Judged::of(oscillator, solution, modulation, numbers)?;
-    let Judged { slow, truth, until, reason, start } = &judged;
+    let judged = TransientPair::of(oscillator, solution, modulation, numbers)?;
+    let TransientPair { slow, truth, until, reason, start } = &judged;
     let crossings = slow.crossings(*until);
     let own: Vec<f64> = truth.crossings.iter().copied().filter(|t| t <= until).collect();
     let count = own.len().min(crossings.len());
@@ -156,11 +156,11 @@ pub(super) fn motions(
     modulation: &Modulation,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<Motions, VerificationError> {
-    let judged = Judged::of(oscillator, solution, modulation, numbers)?;
+    let judged = TransientPair::of(oscillator, solution, modulation, numbers)?;
     let rest = judged.slow.equilibrium;
     let count = samples(judged.until, judged.slow.period);
     let time = |k: usize| judged.until * k as f64 / count as f64;
-    let sample = |t: f64, (y, v): (f64, f64)| -> Sample { (t, rest + y, v) };
+    let sample = |t: f64, (y, v): (f64, f64)| -> TimedState { (t, rest + y, v) };
     let times = || (0..=count).map(time);
     let envelope = |t: f64| [0.0, PI].map(|phase| (t, rest + judged.slow.at_phase(t, phase)));
     let [upper, lower] = [0, 1].map(|side| times().map(|t| envelope(t)[side]).collect());
@@ -190,7 +190,7 @@ fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
 }
 
 /// Formula and truth from one start.
-struct Judged {
+struct TransientPair {
     slow: SlowMotion,
     truth: FreeMotion,
     until: f64,
@@ -206,7 +206,7 @@ struct Errors {
     deviation: Option<f64>,
 }
 
-impl Judged {
+impl TransientPair {
     fn of(
         oscillator: &Oscillator,
         solution: &Solution,
@@ -289,7 +289,7 @@ fn slopes(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
-    judged: &Judged,
+    judged: &TransientPair,
 ) -> Slopes {
     const HALVINGS: i32 = 4;
     /// Duration of the first motion in periods; it is doubled with each halving.
@@ -305,9 +305,14 @@ fn slopes(
         let slow =
             SlowMotion::new(&smaller.solution, smaller.solution.slow()?, &smaller.numbers).ok()?;
         let until = first * 2.0_f64.powi(halving);
-        let judged =
-            Judged::followed(&smaller.oscillator, &smaller.numbers, slow, (until, ""), until)
-                .ok()?;
+        let judged = TransientPair::followed(
+            &smaller.oscillator,
+            &smaller.numbers,
+            slow,
+            (until, ""),
+            until,
+        )
+        .ok()?;
         (judged.until >= until).then(|| judged.errors(until))
     };
     let mut errors = vec![];

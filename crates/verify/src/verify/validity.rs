@@ -9,12 +9,12 @@ use super::bounds::bounds;
 use super::convergence::convergence;
 use super::reach;
 use super::{VerificationError, force_of, meant};
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::conservative::well::Well;
 use crate::decimal::significant;
 use crate::method::inertia;
 use crate::method::numbers::{error_of_integral, frequency_squared_of, law_name};
-use crate::method::table::{Entry, Sees};
+use crate::method::table::{MethodEntry, Sees};
 use crate::numeric::ode::energy::PeriodError;
 use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
@@ -44,8 +44,8 @@ pub(super) fn ranges(
 ) -> Vec<Range> {
     let mut ranges: Vec<Range> = of_equation(oscillator, solution, numbers).into_iter().collect();
     if let Some(cycle) = &solution.limit_cycle {
-        let series =
-            Entry::of(solution.method).sees == Sees::Derivatives && cycle.small_with.is_empty();
+        let series = MethodEntry::of(solution.method).sees == Sees::Derivatives
+            && cycle.small_with.is_empty();
         // Without self-excitation there is no cycle to expand from.
         let feeds = numbers.get(&solution.small_parameter).is_some_and(|value| *value != 0.0);
         let found = (series && feeds).then(|| convergence(oscillator, solution, numbers)).flatten();
@@ -77,7 +77,7 @@ pub(super) fn ranges(
         inner if inner > 0.0 => ranges.extend(positive_from(oscillator, solution, numbers, &truth)),
         _ => ranges.extend(vanishing(oscillator, solution, numbers, truth.largest_amplitude())),
     }
-    if Entry::of(solution.method).sees == Sees::Derivatives {
+    if MethodEntry::of(solution.method).sees == Sees::Derivatives {
         ranges.extend(convergence(oscillator, solution, numbers));
     }
     if let Some(reach) = reach::reach(oscillator, solution, &truth, tolerance) {
@@ -161,7 +161,7 @@ fn well_of(
     }
     let forces = inertia::forces(oscillator)?;
     let [weighted, force] = forces.map(|force| {
-        Force::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, amplitude)
+        CentredForce::new(&force, oscillator.coordinate, &solution.equilibrium, numbers, amplitude)
     });
     Well::with_inertia(&weighted?, &force?, amplitude)
 }

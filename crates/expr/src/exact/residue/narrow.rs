@@ -26,7 +26,7 @@ struct Four {
 
 /// Products not carried yet, and the sums of the low and of the high halves of those that are.
 #[derive(Clone, Copy)]
-pub struct Sum {
+pub struct NarrowSum {
     recent: Words,
     low: Words,
     high: Words,
@@ -129,52 +129,52 @@ impl Arithmetic for Narrow {
     const DIGIT: u32 = 30;
     // Sixteen products of 60 digits fill a word.
     const RUN: usize = 16;
-    type Sum = Sum;
+    type Sum = NarrowSum;
 
     #[inline(always)]
-    fn none(self) -> Sum {
+    fn none(self) -> NarrowSum {
         let none = [self.all(0); 2];
-        Sum { recent: none, low: none, high: none }
+        NarrowSum { recent: none, low: none, high: none }
     }
     #[inline(always)]
-    fn add_product(self, sum: Sum, left: &Lanes, right: &Lanes) -> Sum {
+    fn add_product(self, sum: NarrowSum, left: &Lanes, right: &Lanes) -> NarrowSum {
         let product = self.multiply(self.words(left), self.words(right));
-        Sum { recent: self.both(sum.recent, product), ..sum }
+        NarrowSum { recent: self.both(sum.recent, product), ..sum }
     }
     #[inline(always)]
-    fn add_multiple(self, sum: Sum, left: u64, right: &Lanes) -> Sum {
+    fn add_multiple(self, sum: NarrowSum, left: u64, right: &Lanes) -> NarrowSum {
         let left = self.all(left);
         let product = self.multiply([left; 2], self.words(right));
-        Sum { recent: self.both(sum.recent, product), ..sum }
+        NarrowSum { recent: self.both(sum.recent, product), ..sum }
     }
     #[inline(always)]
-    fn carry(self, sum: Sum) -> Sum {
-        Sum {
+    fn carry(self, sum: NarrowSum) -> NarrowSum {
+        NarrowSum {
             recent: [self.all(0); 2],
             low: self.both(sum.low, self.lower(sum.recent)),
             high: self.both(sum.high, self.upper(sum.recent)),
         }
     }
     #[inline(always)]
-    fn merge(self, left: Sum, right: Sum) -> Sum {
-        Sum {
+    fn merge(self, left: NarrowSum, right: NarrowSum) -> NarrowSum {
+        NarrowSum {
             recent: self.both(left.recent, right.recent),
             low: self.both(left.low, right.low),
             high: self.both(left.high, right.high),
         }
     }
     #[inline(always)]
-    fn join(self, left: Sum, right: Sum) -> Sum {
+    fn join(self, left: NarrowSum, right: NarrowSum) -> NarrowSum {
         self.merge(self.carry(left), self.carry(right))
     }
     #[inline(always)]
-    fn parts(self, sum: Sum) -> (Lanes, Lanes) {
+    fn parts(self, sum: NarrowSum) -> (Lanes, Lanes) {
         let sum = self.carry(sum);
         (Lanes(pulp::cast(sum.low)), Lanes(pulp::cast(sum.high)))
     }
     #[inline(always)]
-    fn reduce(self, sum: Sum, moduli: &Moduli) -> Lanes {
-        let Sum { low, high, .. } = self.carry(sum);
+    fn reduce(self, sum: NarrowSum, moduli: &Moduli) -> Lanes {
+        let NarrowSum { low, high, .. } = self.carry(sum);
         let [first, second] = self.fours(moduli);
         let residues: Words =
             [self.reduce_four(low[0], high[0], first), self.reduce_four(low[1], high[1], second)];

@@ -70,7 +70,12 @@ impl<A: Arithmetic> Remainders<A> {
 
     /// Eight numbers, from their plain residues modulo each prime and the [weights](Self::weights);
     /// the residues are used up.
-    pub fn lift(&self, residues: &mut [Lanes], weights: &[u64], numbers: &mut Numbers) {
+    pub fn lift(
+        &self,
+        residues: &mut [Lanes],
+        weights: &[u64],
+        numbers: &mut ReconstructedIntegers,
+    ) {
         numbers.digits.resize(self.product.len(), Lanes::default());
         self.arithmetic.vectorize(Lift(self, residues, weights, numbers));
     }
@@ -78,13 +83,13 @@ impl<A: Arithmetic> Remainders<A> {
     /// One number, from its plain residues.
     pub fn lift_one(&self, residues: impl Iterator<Item = u64>, weights: &[u64]) -> Integer {
         let mut residues: Vec<Lanes> = residues.map(Lanes::all).collect();
-        let mut numbers = Numbers::default();
+        let mut numbers = ReconstructedIntegers::default();
         self.lift(&mut residues, weights, &mut numbers);
         numbers.integer::<A>(0)
     }
 }
 
-struct Lift<'a, A>(&'a Remainders<A>, &'a mut [Lanes], &'a [u64], &'a mut Numbers);
+struct Lift<'a, A>(&'a Remainders<A>, &'a mut [Lanes], &'a [u64], &'a mut ReconstructedIntegers);
 
 impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
     type Output = ();
@@ -170,12 +175,12 @@ fn digits<A: Arithmetic>(number: &Integer, count: usize) -> Vec<u64> {
 /// Eight whole numbers as they come out of the remainders: of a negative one the digits of its sum
 /// with a power of a digit.
 #[derive(Clone, Debug, Default)]
-pub struct Numbers {
+pub struct ReconstructedIntegers {
     digits: Vec<Lanes>,
     negative: [bool; WIDTH],
 }
 
-impl Numbers {
+impl ReconstructedIntegers {
     /// Their plain residues; `powers` are the residues of the powers of a
     /// [digit](Arithmetic::DIGIT), one more than there are digits.
     pub fn residues<A: Arithmetic>(
@@ -184,8 +189,8 @@ impl Numbers {
         modulus: &Modulus,
         powers: &[u64],
     ) -> [u64; WIDTH] {
-        struct Residues<'a, A>(A, &'a Modulus, &'a [u64], &'a [Lanes]);
-        impl<A: Arithmetic> NullaryFnOnce for Residues<'_, A> {
+        struct ReduceDigits<'a, A>(A, &'a Modulus, &'a [u64], &'a [Lanes]);
+        impl<A: Arithmetic> NullaryFnOnce for ReduceDigits<'_, A> {
             type Output = Lanes;
             #[inline(always)]
             fn call(self) -> Lanes {
@@ -194,8 +199,9 @@ impl Numbers {
             }
         }
         let count = self.digits.len();
-        let mut residues =
-            arithmetic.vectorize(Residues(arithmetic, modulus, &powers[..count], &self.digits)).0;
+        let mut residues = arithmetic
+            .vectorize(ReduceDigits(arithmetic, modulus, &powers[..count], &self.digits))
+            .0;
         let above = modulus.plain(powers[count]);
         for (residue, negative) in residues.iter_mut().zip(self.negative) {
             if negative {
@@ -286,7 +292,7 @@ mod tests {
                 }
                 let first = remainders.lift_one(residues.iter().map(|own| own.0[0]), &weights);
                 assert_eq!(first, all[0]);
-                let mut numbers = Numbers::default();
+                let mut numbers = ReconstructedIntegers::default();
                 remainders.lift(&mut residues, &weights, &mut numbers);
                 let digit = check.residue(1 << A::DIGIT);
                 let powers: Vec<u64> = (0..60).map(|place| check.power(digit, place)).collect();

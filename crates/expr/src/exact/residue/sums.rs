@@ -229,7 +229,7 @@ pub(super) fn multiples<A: Arithmetic>(arithmetic: A, factors: &[u64], row: &[La
 
 /// One series of a [mixture], at one order.
 #[derive(Clone, Copy, Debug)]
-pub struct Part {
+pub struct MixtureTerm {
     /// What it is multiplied by.
     pub factor: Lanes,
     /// Its place among the tables.
@@ -242,7 +242,7 @@ pub struct Part {
 #[inline(always)]
 pub fn mixture<A: Arithmetic>(
     residues: &Residues<A>,
-    parts: &[Part],
+    parts: &[MixtureTerm],
     tables: &Tables,
     out: &mut [Lanes],
 ) {

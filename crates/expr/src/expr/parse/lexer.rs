@@ -15,7 +15,7 @@ pub(super) fn tokens(text: &str) -> Result<Vec<Token>, ParseError> {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum TokenKind {
     Number,
     Name,
     Plus,
@@ -32,7 +32,7 @@ pub(super) enum Kind {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Token {
-    pub(super) kind: Kind,
+    pub(super) kind: TokenKind,
     pub(super) start: usize,
     pub(super) end: usize,
 }
@@ -69,11 +69,11 @@ impl<'a> Lexer<'a> {
             };
             tokens.push(Token { kind, start, end: self.position });
         }
-        tokens.push(Token { kind: Kind::End, start: self.position, end: self.position });
+        tokens.push(Token { kind: TokenKind::End, start: self.position, end: self.position });
         Ok(tokens)
     }
 
-    fn name(&mut self) -> Result<Kind, ParseError> {
+    fn name(&mut self) -> Result<TokenKind, ParseError> {
         let start = self.position;
         self.skip_while(|letter| letter.is_ascii_alphanumeric() || letter == '_');
         self.skip_while(|letter| letter == '\'');
@@ -81,11 +81,11 @@ impl<'a> Lexer<'a> {
             true => {
                 Err(self.error(start, &format!("a name of more than {LONGEST_NAME} letters"), ""))
             }
-            false => Ok(Kind::Name),
+            false => Ok(TokenKind::Name),
         }
     }
 
-    fn number(&mut self) -> Result<Kind, ParseError> {
+    fn number(&mut self) -> Result<TokenKind, ParseError> {
         let start = self.position;
         let digit = |letter: char| letter.is_ascii_digit();
         self.skip_while(digit);
@@ -111,26 +111,26 @@ impl<'a> Lexer<'a> {
                 self.skip_while(digit);
             }
         }
-        Ok(Kind::Number)
+        Ok(TokenKind::Number)
     }
 
-    fn sign(&mut self, letter: char) -> Result<Kind, ParseError> {
+    fn sign(&mut self, letter: char) -> Result<TokenKind, ParseError> {
         let start = self.position;
         self.position += letter.len_utf8();
         let (message, help) = match letter {
-            '+' => return Ok(Kind::Plus),
-            '-' => return Ok(Kind::Minus),
-            '/' => return Ok(Kind::Divide),
-            '^' => return Ok(Kind::Power),
-            '(' => return Ok(Kind::Open),
-            ')' => return Ok(Kind::Close),
-            ',' => return Ok(Kind::Comma),
-            '=' => return Ok(Kind::Equals),
+            '+' => return Ok(TokenKind::Plus),
+            '-' => return Ok(TokenKind::Minus),
+            '/' => return Ok(TokenKind::Divide),
+            '^' => return Ok(TokenKind::Power),
+            '(' => return Ok(TokenKind::Open),
+            ')' => return Ok(TokenKind::Close),
+            ',' => return Ok(TokenKind::Comma),
+            '=' => return Ok(TokenKind::Equals),
             '*' if self.rest().starts_with('*') => {
                 self.position += 1;
-                return Ok(Kind::Power);
+                return Ok(TokenKind::Power);
             }
-            '*' => return Ok(Kind::Times),
+            '*' => return Ok(TokenKind::Times),
             '\'' => ("a prime stands directly after its letter".into(), "try `x'`"),
             '"' => ("a double quote is no pair of primes".into(), "try `x''`"),
             '[' | '{' => (format!("`{letter}` is no parenthesis here"), "try `(`"),

@@ -30,7 +30,7 @@ use crate::impact::hertz;
 use crate::impact::model::{Model, Side};
 
 /// Numbers of the law d^(3/2) that are the same for every contact.
-struct Numbers {
+struct ContactConstants {
     /// tau_0, tau_1, tau_2.
     duration: [f64; 3],
     /// int_0^1 sqrt(1 - y^(5/2)) dy: the area of half a contact in the phase plane in units of v D,
@@ -50,12 +50,12 @@ const LOSS_OF_A_FALL: f64 = PI / 16.0;
 /// T v/D of a free fall, 2 int_0^1 dy/sqrt(1 - y).
 const DURATION_OF_A_FALL: f64 = 4.0;
 
-static NUMBERS: LazyLock<Numbers> = LazyLock::new(|| {
+static NUMBERS: LazyLock<ContactConstants> = LazyLock::new(|| {
     // B(a, -1/2).
     let beta = |a: f64| -2.0 * PI.sqrt() * gamma(a) / gamma(a - 0.5);
     let hertz = hertz::duration_factor();
     let slope = 0.4 * (beta(0.8) - beta(1.4));
-    Numbers {
+    ContactConstants {
         duration: [hertz, slope, DURATION_OF_A_FALL - hertz - slope],
         area: 0.2 * PI.sqrt() * gamma(0.4) / gamma(1.9),
         loss: 4.0 / 15.0,
@@ -71,7 +71,7 @@ const DEEPEST: f64 = 0.3;
 
 /// A barrier and what counts while it is touched.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Barrier {
+pub(super) struct ChainBarrier {
     /// Which.
     pub side: Side,
     /// Its place, positive towards it from the bottom.
@@ -98,7 +98,7 @@ pub(super) struct Bounce {
     pub speed_out: f64,
 }
 
-impl Barrier {
+impl ChainBarrier {
     /// The barrier of this side, where there is one.
     pub fn of(model: &Model, side: Side) -> Option<Self> {
         let x = model.barrier(side).filter(|_| model.gamma > 0.0)?;
@@ -126,7 +126,7 @@ impl Barrier {
         if share.is_nan() || share < LEANS || depth > DEEPEST {
             return None;
         }
-        let Numbers { duration: [zeroth, first, second], area, loss } = &*NUMBERS;
+        let ContactConstants { duration: [zeroth, first, second], area, loss } = &*NUMBERS;
         // The less the barrier takes of the work, the less is lost in it.
         let loss = hunt_crossley::loss(
             product * (1.0 - share) * (1.0 + share * (LOSS_OF_A_FALL / loss - 1.0)),

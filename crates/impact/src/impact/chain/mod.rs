@@ -28,13 +28,13 @@ use thiserror::Error;
 
 use super::model::{Friction, Model, Side, Start};
 use super::simulation::{
-    ClosedForm, Contact, Integrator, Path, REST_FRACTION, Regime, Settings, Simulation, Stop, Turn,
-    first_swing, has_rested,
+    ClosedForm, ContactRecord, Integrator, REST_FRACTION, Regime, Settings, Simulation,
+    SimulationPath, SimulationStop, Turn, first_swing, has_rested,
 };
 use super::taylor;
 use crate::decimal::decimal;
-use bounce::Barrier;
-use swing::{Spot, Stretch, Swing};
+use bounce::ChainBarrier;
+use swing::{Spot, Stretch, UndampedSwing};
 
 /// Why a motion has no chain of closed forms.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -114,7 +114,7 @@ pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulat
     if let Some((side, _)) = model.depth(start.x) {
         return Err(ChainError::Inside(side));
     }
-    let barriers = [Side::Left, Side::Right].map(|side| Barrier::of(model, side));
+    let barriers = [Side::Left, Side::Right].map(|side| ChainBarrier::of(model, side));
     let mut chain = Chain {
         model,
         settings,
@@ -126,7 +126,7 @@ pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulat
             2],
         impacts: Vec::with_capacity(MANY),
         turns: Vec::with_capacity(2 * MANY),
-        path: Path::new(),
+        path: SimulationPath::new(),
         stop: None,
         level: REST_FRACTION * first_swing(model, start),
         integrated: None,
@@ -139,10 +139,10 @@ pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulat
 
 /// Where the next stretch begins.
 #[derive(Debug, Clone, Copy)]
-enum Place {
+enum StretchStart {
     /// At rest on this side at this spot; the swing and how far it reaches to the barrier ahead,
     /// where they are known.
-    Turn(Side, Spot, Option<(Swing, Stretch)>),
+    Turn(Side, Spot, Option<(UndampedSwing, Stretch)>),
     /// At this spot, counted towards this side, with this energy, on the way there.
     Leaving(Side, Spot, f64),
 }
@@ -172,7 +172,7 @@ impl Leg {
 /// Which energies are alike from one swing to the next: of those that leave a barrier, and of free
 /// ones.
 #[derive(Debug, Clone, Copy)]
-enum Kind {
+enum StretchKind {
     FromPlace,
     FromTurn,
 }
@@ -189,16 +189,16 @@ struct Remembered {
 struct Chain<'a> {
     model: &'a Model,
     settings: &'a Settings,
-    barriers: &'a [Option<Barrier>; 2],
+    barriers: &'a [Option<ChainBarrier>; 2],
     t: f64,
     /// x and x' now.
     state: [f64; 2],
     count: usize,
     remembered: [Remembered; 2],
-    impacts: Vec<Contact>,
+    impacts: Vec<ContactRecord>,
     turns: Vec<Turn>,
-    path: Path,
-    stop: Option<Stop>,
+    path: SimulationPath,
+    stop: Option<SimulationStop>,
     /// A tenth of the amplitude of the first swing.
     level: f64,
     /// What of it was integrated, from now on.
@@ -215,12 +215,12 @@ impl<'a> Chain<'a> {
                 return self.held(x);
             }
             let side = if x > 0.0 { Side::Right } else { Side::Left };
-            Place::Turn(side, Spot::at(x.abs()), None)
+            StretchStart::Turn(side, Spot::at(x.abs()), None)
         } else {
             let to = if velocity > 0.0 { Side::Right } else { Side::Left };
             let spot = Spot::at(to.sign() * x);
             let touched = self.barrier(to).filter(|barrier| barrier.spot == spot);
-            let place = Place::Leaving(to, spot, energy);
+            let place = StretchStart::Leaving(to, spot, energy);
             touched
                 .map_or(Some(place), |barrier| self.contact(barrier, velocity.abs()))
                 .unwrap_or(place)
@@ -228,22 +228,22 @@ impl<'a> Chain<'a> {
         while self.stop.is_none() {
             self.count += 1;
             if self.count > self.settings.maximum_steps {
-                self.stop = Some(Stop::Steps { t: self.t });
+                self.stop = Some(SimulationStop::Steps { t: self.t });
             } else if self.settings.interrupt.is_requested() {
-                self.stop = Some(Stop::Interrupted { t: self.t });
+                self.stop = Some(SimulationStop::Interrupted { t: self.t });
             } else if self.t >= self.settings.duration {
-                self.stop = Some(Stop::Duration);
+                self.stop = Some(SimulationStop::Duration);
             } else {
                 let next = match place {
-                    Place::Turn(side, turn, known) => self.after_turn(side, turn, known),
-                    Place::Leaving(to, spot, energy) => self.after_leaving(to, spot, energy),
+                    StretchStart::Turn(side, turn, known) => self.after_turn(side, turn, known),
+                    StretchStart::Leaving(to, spot, energy) => self.after_leaving(to, spot, energy),
                 };
                 place = next.unwrap_or(place);
             }
         }
     }
 
-    fn barrier(&self, side: Side) -> Option<&'a Barrier> {
+    fn barrier(&self, side: Side) -> Option<&'a ChainBarrier> {
         match side {
             Side::Left => self.barriers[0].as_ref(),
             Side::Right => self.barriers[1].as_ref(),
@@ -256,7 +256,7 @@ impl<'a> Chain<'a> {
     }
 
     /// E_before - E of a leg, and how fast that grows with E.
-    fn above(&self, leg: &Leg, swing: &Swing) -> (f64, f64) {
+    fn above(&self, leg: &Leg, swing: &UndampedSwing) -> (f64, f64) {
         let Model { zeta, alpha, .. } = *self.model;
         let growth = (2.0 * zeta * (leg.time - leg.lag)).exp_m1();
         let loss = leg.area / leg.time * growth;
@@ -277,17 +277,17 @@ impl<'a> Chain<'a> {
     fn reference(
         &mut self,
         energy: f64,
-        kind: Kind,
-        leg: impl Fn(&Swing) -> Leg,
-    ) -> Option<(Swing, Leg)> {
+        kind: StretchKind,
+        leg: impl Fn(&UndampedSwing) -> Leg,
+    ) -> Option<(UndampedSwing, Leg)> {
         if self.model.zeta == 0.0 && self.model.alpha == 0.0 {
-            let swing = Swing::new(energy);
+            let swing = UndampedSwing::new(energy);
             return Some((swing, leg(&swing))).filter(|(_, leg)| leg.time > 0.0);
         }
         let last = self.remembered[kind as usize];
         let mut reference = energy * (last.ratio + last.change);
         for _ in 0..MOST_NEWTON {
-            let mut swing = Swing::new(reference);
+            let mut swing = UndampedSwing::new(reference);
             let mut leg = leg(&swing);
             if !is_positive(leg.time) {
                 return None;
@@ -319,7 +319,7 @@ impl<'a> Chain<'a> {
 
     /// How much later than at the energy of the swing, where its phase is this one, the spot is
     /// passed with another energy.
-    fn later(swing: &Swing, (sine, cosine): (f64, f64), spot: &Spot, energy: f64) -> f64 {
+    fn later(swing: &UndampedSwing, (sine, cosine): (f64, f64), spot: &Spot, energy: f64) -> f64 {
         let (own_sine, own_cosine) = spot.phase(energy);
         let change = (own_sine * cosine - own_cosine * sine).clamp(-1.0, 1.0).asin();
         change / (1.0 - 0.5 * swing.energy * sine * sine).sqrt()
@@ -344,14 +344,14 @@ impl<'a> Chain<'a> {
         &mut self,
         side: Side,
         turn: Spot,
-        known: Option<(Swing, Stretch)>,
-    ) -> Option<Place> {
+        known: Option<(UndampedSwing, Stretch)>,
+    ) -> Option<StretchStart> {
         let (to, energy) = (side.opposite(), turn.energy);
         if let Some(ahead) = self.barrier(to)
             && (ahead.spot.x < 0.0 || energy > ahead.spot.energy)
         {
             let (swing, reach) = known.unwrap_or_else(|| {
-                let swing = Swing::new(energy);
+                let swing = UndampedSwing::new(energy);
                 (swing, swing.reach(&ahead.spot))
             });
             let leg = leg(self.model, &swing, &ahead.spot, reach);
@@ -371,9 +371,9 @@ impl<'a> Chain<'a> {
     }
 
     /// From one turning point to the next, or the next two, where no barrier is in reach.
-    fn free(&mut self, side: Side, from: Spot) -> Option<Place> {
+    fn free(&mut self, side: Side, from: Spot) -> Option<StretchStart> {
         let out_of_reach =
-            |barrier: &Barrier| barrier.spot.x > 0.0 && barrier.spot.energy >= from.energy;
+            |barrier: &ChainBarrier| barrier.spot.x > 0.0 && barrier.spot.energy >= from.energy;
         let turns =
             match self.model.alpha == 0.0 && self.barriers.iter().flatten().all(out_of_reach) {
                 true => self.undulate(side, from),
@@ -387,9 +387,10 @@ impl<'a> Chain<'a> {
 
     /// Two turning points under viscous damping, about the energy of the first; nothing where there
     /// is none.
-    fn undulate(&mut self, side: Side, from: Spot) -> Option<Place> {
-        let half = |swing: &Swing| Leg::free(2.0 * swing.quarter.time, 2.0 * swing.quarter.area);
-        let (swing, leg) = self.reference(from.energy, Kind::FromTurn, half)?;
+    fn undulate(&mut self, side: Side, from: Spot) -> Option<StretchStart> {
+        let half =
+            |swing: &UndampedSwing| Leg::free(2.0 * swing.quarter.time, 2.0 * swing.quarter.area);
+        let (swing, leg) = self.reference(from.energy, StretchKind::FromTurn, half)?;
         let energy = swing.energy - self.below(&leg);
         if !is_positive(energy) {
             return None;
@@ -410,15 +411,15 @@ impl<'a> Chain<'a> {
                 return None;
             }
         }
-        Some(Place::Turn(side, second, None))
+        Some(StretchStart::Turn(side, second, None))
     }
 
     /// The next turning point with dry friction: half of the viscous damping before it, half after
     /// it; nothing where there is none.
-    fn rub(&mut self, side: Side, from: Spot) -> Option<Place> {
+    fn rub(&mut self, side: Side, from: Spot) -> Option<StretchStart> {
         let to = side.opposite();
-        let quarter = |swing: &Swing| Leg::free(swing.quarter.time, swing.quarter.area);
-        let (before, _) = self.reference(from.energy, Kind::FromTurn, quarter)?;
+        let quarter = |swing: &UndampedSwing| Leg::free(swing.quarter.time, swing.quarter.area);
+        let (before, _) = self.reference(from.energy, StretchKind::FromTurn, quarter)?;
         let angle = match self.model.alpha == 0.0 {
             true => Spot::turn(before.energy).x,
             false => rubbed(Spot::turn(before.energy).x, self.model.alpha),
@@ -427,7 +428,7 @@ impl<'a> Chain<'a> {
             // It comes to rest before the bottom, where friction holds it.
             return None;
         }
-        let after = Swing::new(Spot::at(angle).energy);
+        let after = UndampedSwing::new(Spot::at(angle).energy);
         let mut turn = Spot::turn(after.energy - self.below(&quarter(&after)));
         if let Some(ahead) = self.barrier(to)
             && turn.x > ahead.spot.x
@@ -444,19 +445,19 @@ impl<'a> Chain<'a> {
     }
 
     /// From a spot on the way to a side: to the barrier there, or to the turning point.
-    fn after_leaving(&mut self, to: Side, spot: Spot, energy: f64) -> Option<Place> {
+    fn after_leaving(&mut self, to: Side, spot: Spot, energy: f64) -> Option<StretchStart> {
         let ahead = self.barrier(to);
         if let Some(ahead) = ahead
             && energy > ahead.spot.energy
         {
-            let crossing = |swing: &Swing| {
+            let crossing = |swing: &UndampedSwing| {
                 let (end, start) = (swing.reach(&ahead.spot), swing.reach(&spot));
                 Leg {
                     length: 0.5 * (ahead.spot.x - spot.x),
                     ..Leg::free(0.5 * (end.time - start.time), 0.5 * (end.area - start.area))
                 }
             };
-            if let Some((swing, leg)) = self.reference(energy, Kind::FromPlace, crossing) {
+            if let Some((swing, leg)) = self.reference(energy, StretchKind::FromPlace, crossing) {
                 let arrived = swing.energy - self.below(&leg);
                 if arrived > ahead.spot.energy {
                     self.swing([energy, arrived], 2.0 * leg.time, to, [spot.x, ahead.spot.x]);
@@ -466,7 +467,7 @@ impl<'a> Chain<'a> {
         }
         let back = spot.mirrored();
         let model = self.model;
-        let found = self.reference(energy, Kind::FromPlace, |swing| {
+        let found = self.reference(energy, StretchKind::FromPlace, |swing| {
             leg(model, swing, &back, swing.reach(&back))
         });
         let Some((swing, leg)) = found else {
@@ -481,7 +482,7 @@ impl<'a> Chain<'a> {
         self.swing([energy, swing.energy], time, to, [spot.x, turn.x]);
         // The way back to a barrier that was left is the way there; a start between the barriers is
         // not on one.
-        let leaves = |barrier: &Barrier| barrier.spot == back;
+        let leaves = |barrier: &ChainBarrier| barrier.spot == back;
         let known = self.barrier(to.opposite()).is_some_and(leaves).then(|| {
             let reach = Stretch {
                 time: leg.time - swing.quarter.time,
@@ -493,7 +494,12 @@ impl<'a> Chain<'a> {
     }
 
     /// The pendulum rests at this spot for a moment, or for good.
-    fn turned(&mut self, side: Side, turn: Spot, known: Option<(Swing, Stretch)>) -> Option<Place> {
+    fn turned(
+        &mut self,
+        side: Side,
+        turn: Spot,
+        known: Option<(UndampedSwing, Stretch)>,
+    ) -> Option<StretchStart> {
         if self.stop.is_some() {
             return None;
         }
@@ -505,25 +511,25 @@ impl<'a> Chain<'a> {
             return None;
         }
         if self.settings.rest_energy.is_some_and(|rest| turn.energy <= rest) {
-            self.stop = Some(Stop::RestEnergy);
+            self.stop = Some(SimulationStop::RestEnergy);
         } else if self.settings.stop_at_rest && has_rested(self.model, &self.turns, self.level) {
-            self.stop = Some(Stop::AtRest);
+            self.stop = Some(SimulationStop::AtRest);
         }
-        Some(Place::Turn(side, turn, known))
+        Some(StretchStart::Turn(side, turn, known))
     }
 
     /// A contact entered with this speed.
-    fn contact(&mut self, barrier: &Barrier, speed: f64) -> Option<Place> {
+    fn contact(&mut self, barrier: &ChainBarrier, speed: f64) -> Option<StretchStart> {
         if self.stop.is_some() {
             return None;
         }
-        let Barrier { side, spot, .. } = *barrier;
+        let ChainBarrier { side, spot, .. } = *barrier;
         let x = side.sign() * spot.x;
         self.state = [x, side.sign() * speed];
         let Some(bounce) = barrier.bounce(speed) else {
             return self.integrate();
         };
-        let mut contact = Contact::touched(side, self.t, speed);
+        let mut contact = ContactRecord::touched(side, self.t, speed);
         contact.penetration = bounce.depth;
         let deepest = self.t + 0.5 * bounce.duration;
         if deepest <= self.settings.duration {
@@ -543,14 +549,14 @@ impl<'a> Chain<'a> {
             contact.released(self.model, self.t, bounce.speed_out);
             self.state = [x, away.sign() * bounce.speed_out];
             if self.settings.rest_energy.is_some_and(|rest| energy <= rest) {
-                self.stop = Some(Stop::RestEnergy);
+                self.stop = Some(SimulationStop::RestEnergy);
             } else if self.settings.stop_at_rest && has_rested(self.model, &self.turns, self.level)
             {
-                self.stop = Some(Stop::AtRest);
+                self.stop = Some(SimulationStop::AtRest);
             }
         }
         self.impacts.push(contact);
-        Some(Place::Leaving(away, spot.mirrored(), energy))
+        Some(StretchStart::Leaving(away, spot.mirrored(), energy))
     }
 
     /// A stretch of the swing between two energies and two places, towards a side.
@@ -566,7 +572,7 @@ impl<'a> Chain<'a> {
         }
         if self.t + time > self.settings.duration {
             self.state = form().at(end - start).into();
-            self.stop = Some(Stop::Duration);
+            self.stop = Some(SimulationStop::Duration);
         }
         self.t = end;
     }
@@ -582,11 +588,11 @@ impl<'a> Chain<'a> {
         }
         self.t = end;
         self.state = [x, 0.0];
-        self.stop = Some(Stop::Duration);
+        self.stop = Some(SimulationStop::Duration);
     }
 
     /// What has no closed form: the rest of the motion is followed by Taylor series.
-    fn integrate(&mut self) -> Option<Place> {
+    fn integrate(&mut self) -> Option<StretchStart> {
         let left = Settings { duration: self.settings.duration - self.t, ..*self.settings };
         let [x, velocity] = self.state;
         let motion = taylor::alone(*self.model, Start { x, velocity }, left);
@@ -626,7 +632,7 @@ impl<'a> Chain<'a> {
             end_time,
             end_x,
             end_velocity,
-            stop: self.stop.unwrap_or(Stop::Duration),
+            stop: self.stop.unwrap_or(SimulationStop::Duration),
             steps,
             fall: None,
         }
@@ -640,7 +646,7 @@ fn is_positive(value: f64) -> bool {
 
 /// The leg between the turning point of a swing and a spot, which is counted from the bottom away
 /// from the turning point.
-fn leg(model: &Model, swing: &Swing, spot: &Spot, reach: Stretch) -> Leg {
+fn leg(model: &Model, swing: &UndampedSwing, spot: &Spot, reach: Stretch) -> Leg {
     let Model { zeta, alpha, .. } = *model;
     let phase = spot.phase(swing.energy);
     let (_, cosine) = phase;
@@ -701,7 +707,7 @@ fn slowness(energy: f64) -> f64 {
 /// The area in the phase plane of the undamped swing of this amplitude, rad, and of the same
 /// between the barriers, units of m g L/omega.
 pub(super) fn actions(model: &Model, amplitude: f64) -> (f64, f64) {
-    let swing = Swing::new(Spot::at(amplitude).energy);
+    let swing = UndampedSwing::new(Spot::at(amplitude).energy);
     let reach = |side: Side| match model.barrier(side) {
         Some(x) => swing.reach(&Spot::at(side.sign() * x)).area,
         None => swing.quarter.area,
@@ -714,7 +720,7 @@ fn closed(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) -> ClosedFo
     let moduli = energies.map(|energy| (0.5 * energy).sqrt());
     let mean = (moduli[0] * moduli[1]).sqrt();
     let parameter = mean * mean;
-    let middle = Swing::new(2.0 * parameter);
+    let middle = UndampedSwing::new(2.0 * parameter);
     // The time from the bottom of the swing of mean energy to the phase that the place has in its
     // own.
     let phase = |energy: f64, place: f64| {

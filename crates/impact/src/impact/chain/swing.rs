@@ -68,14 +68,14 @@ impl Spot {
 
 /// The undamped swing of one energy, between rest and the upright position.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Swing {
+pub(super) struct UndampedSwing {
     /// E, in units of m g L, from 0 to less than 2.
     pub energy: f64,
     /// The quarter of the swing from the bottom to the turning point.
     pub quarter: Stretch,
 }
 
-impl Swing {
+impl UndampedSwing {
     /// The swing of this energy.
     pub fn new(energy: f64) -> Self {
         let parameter = 0.5 * energy;
@@ -166,7 +166,7 @@ mod tests {
     #[test]
     fn the_stretches_are_elliptic_integrals() {
         for amplitude in [1e-6, 0.01, 0.3, 1.0, 1.5, 2.5, 3.1, 3.13] {
-            let swing = Swing::new(Spot::at(amplitude).energy);
+            let swing = UndampedSwing::new(Spot::at(amplitude).energy);
             let m = 0.5 * swing.energy;
             let (first, second) = (ellipk(m).unwrap(), ellipe(m).unwrap());
             assert!((swing.quarter.time / first - 1.0).abs() < 1e-13, "{amplitude}");
@@ -196,14 +196,15 @@ mod tests {
     #[test]
     fn a_small_swing_keeps_the_digits_of_its_area() {
         for amplitude in [1e-12, 1e-7, 1e-4] {
-            let swing = Swing::new(Spot::at(amplitude).energy);
+            let swing = UndampedSwing::new(Spot::at(amplitude).energy);
             let m = 0.5 * swing.energy;
             assert!(
                 (swing.quarter.area / (PI * m * (1.0 + 0.125 * m)) - 1.0).abs() < 1e-14,
                 "{amplitude}"
             );
         }
-        let [below, above] = [SMALL.next_down(), SMALL].map(|m| Swing::new(2.0 * m).quarter.area);
+        let [below, above] =
+            [SMALL.next_down(), SMALL].map(|m| UndampedSwing::new(2.0 * m).quarter.area);
         assert!((below / above - 1.0).abs() < 1e-12, "{below} {above}");
     }
 
@@ -213,8 +214,8 @@ mod tests {
             let energy = Spot::at(amplitude).energy;
             let step = 1e-5 * energy;
             let [below, above] = [energy - step, energy + step]
-                .map(|energy| Swing::new(energy).reach(&Spot::at(x)).area);
-            let time = Swing::new(energy).reach(&Spot::at(x)).time;
+                .map(|energy| UndampedSwing::new(energy).reach(&Spot::at(x)).area);
+            let time = UndampedSwing::new(energy).reach(&Spot::at(x)).time;
             assert!(((above - below) / (2.0 * step) / time - 1.0).abs() < 1e-7, "{amplitude} {x}");
         }
     }

@@ -38,7 +38,7 @@ use std::f64::consts::PI;
 use num_complex::Complex64;
 
 use super::super::hertz::positive;
-use super::time::{Panel, expand, invert, length};
+use super::time::{LegendrePanel, expand, invert, length};
 use super::{ContactError, in_range, within};
 use crate::decimal::significant;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_part, nodes_and_weights};
@@ -66,9 +66,9 @@ pub struct ExactContact {
     /// The greatest force, per unit of mass.
     pub peak_force: f64,
     /// t(q), from the touch on.
-    first: Vec<Panel>,
+    first: Vec<LegendrePanel>,
     /// T/2 - t(w), from the deepest point back.
-    second: Vec<Panel>,
+    second: Vec<LegendrePanel>,
 }
 
 impl ExactContact {
@@ -199,7 +199,7 @@ impl ExactContact {
         // turns by no more than 6 rad in a piece.
         let mut elements: Vec<(f64, f64)> = Vec::new();
         let mut gather =
-            |panels: &[Panel], angle: &dyn Fn(f64) -> f64, element: &dyn Fn(f64) -> f64| {
+            |panels: &[LegendrePanel], angle: &dyn Fn(f64) -> f64, element: &dyn Fn(f64) -> f64| {
                 for panel in panels {
                     let pieces = 1 + (highest * wave * (panel.end - panel.start) / 6.0) as usize;
                     let width = (panel.to - panel.from) / pieces as f64;

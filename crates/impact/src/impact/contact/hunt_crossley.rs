@@ -30,7 +30,7 @@ use std::f64::consts::FRAC_PI_4;
 use spec_math::cephes64::log1pmx;
 
 use super::super::hertz::positive;
-use super::time::{Panel, expand, invert, length};
+use super::time::{LegendrePanel, expand, invert, length};
 use super::{ContactError, in_range, within};
 use crate::numeric::ode::root::find_root;
 
@@ -62,11 +62,11 @@ pub struct HuntCrossley {
     /// The energy lost, (1 - e^2) v^2/2, per unit of mass.
     pub energy_lost: f64,
     /// t(q) from the touch, q = sqrt(d/D), up to phi = pi/4.
-    loading: Vec<Panel>,
+    loading: Vec<LegendrePanel>,
     /// t(phi) from there to 3 pi/4.
-    turning: Vec<Panel>,
+    turning: Vec<LegendrePanel>,
     /// The time left to the release as a function of q.
-    unloading: Vec<Panel>,
+    unloading: Vec<LegendrePanel>,
 }
 
 impl HuntCrossley {
@@ -106,7 +106,7 @@ impl HuntCrossley {
             (0.5 * m).powf(inverse) * speed.powf(2.0 * inverse) * stiffness.powf(-inverse);
         let depth = in_range("depth", undamped * (1.0 + excess(x)).powf(inverse))?;
         let loss = loss(x);
-        let motion = Motion { x, whole: signed_root(x) };
+        let motion = PhasePlaneMotion { x, whole: signed_root(x) };
 
         let scale = depth / speed;
         let half_way = 0.5_f64.powf(0.5 * inverse);
@@ -222,9 +222,9 @@ impl HuntCrossley {
         (self.speed * ratio, force)
     }
 
-    fn motion(&self) -> Motion {
+    fn motion(&self) -> PhasePlaneMotion {
         let x = self.damping * self.speed;
-        Motion { x, whole: signed_root(x) }
+        PhasePlaneMotion { x, whole: signed_root(x) }
     }
 }
 
@@ -404,7 +404,7 @@ pub fn peak_force(exponent: f64, stiffness: f64, damping: f64, speed: f64) -> Op
     let undamped = (0.5 * m).powf(inverse) * speed.powf(2.0 * inverse) * stiffness.powf(-inverse);
     let depth = undamped * (1.0 + excess(x)).powf(inverse);
     let whole = signed_root(x);
-    let (_, factor) = Motion { x, whole }.peak(exponent);
+    let (_, factor) = PhasePlaneMotion { x, whole }.peak(exponent);
     Some(0.5 * m * speed / depth * speed * (1.0 + excess(x)) * factor)
         .filter(|force| force.is_finite())
 }
@@ -412,14 +412,14 @@ pub fn peak_force(exponent: f64, stiffness: f64, damping: f64, speed: f64) -> Op
 /// The motion in the phase plane: u/v as a function of sigma, the part of S(lambda v) that is left,
 /// with its sign.
 #[derive(Debug, Clone, Copy)]
-struct Motion {
+struct PhasePlaneMotion {
     /// lambda v.
     x: f64,
     /// S(lambda v).
     whole: f64,
 }
 
-impl Motion {
+impl PhasePlaneMotion {
     fn speed_ratio(&self, sigma: f64) -> f64 {
         if self.x < 1e-9 {
             // z = S + S^2/3 with S = sigma x (1 - x/3).

@@ -19,7 +19,7 @@ use thiserror::Error;
 
 use super::super::hertz::{self, DEFAULT_STIFFNESS, positive};
 use super::super::linearisation::{self, Rule};
-use super::half_oscillation::{HalfOscillation, Order};
+use super::half_oscillation::{HalfOscillation, PerturbationOrder};
 use super::line::LineContact;
 use super::{
     ContactError, CorrectedPowerLaw, ExactContact, PowerLaw, SineSeries, finite, in_range, within,
@@ -185,9 +185,9 @@ impl Touch<'_> {
         let half = HalfOscillation { force: &force, speed: self.speed };
         let form = match law {
             ContactLaw::Line(rule) => Form::Line(self.line(rule)?),
-            ContactLaw::Homotopy => Form::Sines(half.perturbed(Order::First)?),
-            ContactLaw::Iteration => Form::Sines(half.perturbed(Order::Iterated)?),
-            ContactLaw::SecondHomotopy => Form::Sines(half.perturbed(Order::Second)?),
+            ContactLaw::Homotopy => Form::Sines(half.perturbed(PerturbationOrder::First)?),
+            ContactLaw::Iteration => Form::Sines(half.perturbed(PerturbationOrder::Iterated)?),
+            ContactLaw::SecondHomotopy => Form::Sines(half.perturbed(PerturbationOrder::Second)?),
             ContactLaw::TwoHarmonics => Form::Sines(half.balanced(2)?),
             ContactLaw::ThreeHarmonics => Form::Sines(half.balanced(3)?),
             ContactLaw::PowerLaw => Form::PowerLaw(self.power_law()?),

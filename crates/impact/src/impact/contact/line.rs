@@ -8,7 +8,7 @@
 //! d = (v/w) sin w s - (b/w^2) (1 - cos w s)               D = hypot(v/w, b/w^2) - b/w^2
 //! ```
 
-use crate::impact::linearisation::Line;
+use crate::impact::linearisation::LinearContactForce;
 
 /// d'' + b + w^2 d = 0 from d = 0 with speed v until d = 0 again.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +25,7 @@ impl LineContact {
     /// What the line drives, per unit of this stiffness, beside a force `at_barrier` that grows
     /// with `slope`; `None` where that does not oscillate.
     pub(in crate::impact) fn new(
-        line: Line,
+        line: LinearContactForce,
         stiffness: f64,
         [at_barrier, slope]: [f64; 2],
         speed: f64,

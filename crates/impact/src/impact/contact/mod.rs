@@ -178,8 +178,11 @@ fn by_runge_kutta(
     force: impl Fn(f64, f64) -> f64,
     [speed, depth, time]: [f64; 3],
 ) -> crate::numeric::ode::Trajectory {
-    use crate::numeric::ode::{Event, Options, State, integrate};
-    let options = Options { absolute_tolerance: 1e-14 * depth, ..Options::with_tolerance(1e-13) };
+    use crate::numeric::ode::{Event, IntegrationOptions, State, integrate};
+    let options = IntegrationOptions {
+        absolute_tolerance: 1e-14 * depth,
+        ..IntegrationOptions::with_tolerance(1e-13)
+    };
     let events = [Event::record(|_, _, v| v), Event::stop(|_, d, _| d).falling()];
     let start = State { t: 0.0, x: 0.0, v: speed };
     integrate(|_, d, v| -force(d, v), start, time, &events, &options).expect("a path")

@@ -17,8 +17,10 @@ use std::f64::consts::{FRAC_2_PI, PI, TAU};
 use super::FrictionError;
 use crate::impact::model::{Friction, Model, STEEPNESS, Start};
 use crate::impact::simulate::simulate;
-use crate::impact::simulation::{Integrator, NoRest, Regime, Settings, Simulation, Stop, Turn};
-use crate::numeric::ode::{Options, Point, Trajectory, integrate_first_order};
+use crate::impact::simulation::{
+    Integrator, NoRest, Regime, Settings, Simulation, SimulationStop, Turn,
+};
+use crate::numeric::ode::{IntegrationOptions, Point, Trajectory, integrate_first_order};
 
 /// The first cycle by the arctangent.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -167,7 +169,7 @@ fn followed(model: &Model, x: f64, duration: f64) -> Result<Simulation, Friction
     let settings = Settings { duration, ..Settings::default() };
     let motion = simulate(model, Start { x, velocity: 0.0 }, Integrator::Taylor, &settings)?;
     match motion.stop {
-        Stop::Duration => Ok(motion),
+        SimulationStop::Duration => Ok(motion),
         _ => Err(FrictionError::Restless(model.alpha)),
     }
 }
@@ -307,7 +309,7 @@ impl WithoutInertia {
         let falls = move |_: f64, [log]: &[f64; 1], rates: &mut [f64; 1]| {
             *rates = [-rate * place(alpha, *log).cos()]
         };
-        let options = Options::with_tolerance(TOLERANCE);
+        let options = IntegrationOptions::with_tolerance(TOLERANCE);
         let logarithm = integrate_first_order(falls, start, duration, &[], &options);
         Ok(Self {
             alpha,

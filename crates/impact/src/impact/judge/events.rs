@@ -15,7 +15,8 @@
 use super::Coordinate;
 use crate::impact::model::{Model, Side, Start};
 use crate::impact::simulation::{
-    Contact, Integrator, Path, Regime, Settings, Simulation, Stop, Turn, enter, scaled,
+    ContactRecord, Integrator, Regime, Settings, Simulation, SimulationPath, SimulationStop, Turn,
+    enter, scaled,
 };
 use crate::numeric::ode::{
     self, Event, IntegrationError, Occurrence, StopReason, Trajectory, integrate_phases,
@@ -23,7 +24,7 @@ use crate::numeric::ode::{
 
 /// Where the pendulum is and which way dry friction acts: a phase of the run.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Place {
+struct HybridMode {
     region: Regime,
     /// 1 or -1 where Coulomb friction acts, in the direction of x; 0 at rest under it, and where
     /// there is none.
@@ -56,7 +57,7 @@ const NUDGE: f64 = 1e-14;
 /// Each region moving without Coulomb friction, rising, falling, and stuck.
 const MOTIONS: usize = 4;
 
-fn index(place: Place, stuck: bool) -> usize {
+fn index(place: HybridMode, stuck: bool) -> usize {
     let region = REGIONS.iter().position(|region| *region == place.region).unwrap_or(0);
     let motion = match place.direction {
         _ if stuck => 3,
@@ -67,10 +68,10 @@ fn index(place: Place, stuck: bool) -> usize {
     region * MOTIONS + motion
 }
 
-fn place(index: usize) -> (Place, bool) {
+fn place(index: usize) -> (HybridMode, bool) {
     let direction = [0.0, 1.0, -1.0, 0.0][index % MOTIONS];
     let region = REGIONS[(index / MOTIONS).min(REGIONS.len() - 1)];
-    (Place { region, direction }, index % MOTIONS == 3)
+    (HybridMode { region, direction }, index % MOTIONS == 3)
 }
 
 impl Coordinate {
@@ -101,10 +102,10 @@ fn from_rest(model: &Model, region: Regime, t: f64, value: f64) -> usize {
     let direction = force.signum();
     let held = force.abs() <= model.alpha * (1.0 + 4.0 * f64::EPSILON);
     if held {
-        return index(Place { region, direction }, true);
+        return index(HybridMode { region, direction }, true);
     }
     let region = pushed_into(model, region, value, direction).unwrap_or(region);
-    index(Place { region, direction }, false)
+    index(HybridMode { region, direction }, false)
 }
 
 /// The contact that begins at rest on a barrier, where the motion sets off in this direction.
@@ -142,12 +143,12 @@ fn phase<'a>(
     model: &'a Model,
     settings: &Settings,
     number: usize,
-) -> (ode::Phase<'a>, Vec<Meaning>) {
+) -> (ode::IntegrationPhase<'a>, Vec<Meaning>) {
     let (place, stuck) = place(number);
-    let Place { region, direction } = place;
+    let HybridMode { region, direction } = place;
     if stuck {
         let (event, meaning) = letting_go(model, place);
-        return (ode::Phase::new(|_, _, _| 0.0, vec![event]), vec![meaning]);
+        return (ode::IntegrationPhase::new(|_, _, _| 0.0, vec![event]), vec![meaning]);
     }
     let mut watched = match region {
         Regime::Free | Regime::Stuck => touches(model, direction),
@@ -160,17 +161,17 @@ fn phase<'a>(
     let swing =
         move |t: f64, x: f64, velocity: f64| model.field(t, x) + model.damping(velocity, direction);
     let phase = match region {
-        Regime::Contact(_) => ode::Phase::new(
+        Regime::Contact(_) => ode::IntegrationPhase::new(
             coordinate.contact(swing, |depth, speed| model.contact(depth, speed)),
             events,
         ),
-        _ => ode::Phase::new(coordinate.flight(swing), events),
+        _ => ode::IntegrationPhase::new(coordinate.flight(swing), events),
     };
     (phase, meanings)
 }
 
 /// Held by friction, until all the other forces together exceed it.
-fn letting_go(model: &Model, Place { region, .. }: Place) -> Watched<'_> {
+fn letting_go(model: &Model, HybridMode { region, .. }: HybridMode) -> Watched<'_> {
     let sign = Coordinate::of(model, region).sign;
     let excess = move |t: f64, value: f64, _: f64| {
         force_at_rest(model, region, t, value).abs() - model.alpha
@@ -184,7 +185,7 @@ fn letting_go(model: &Model, Place { region, .. }: Place) -> Watched<'_> {
             Some(contact) => (contact, ode::State { x: 0.0, v: NUDGE, ..state }),
             None => (region, ode::State { v, ..state }),
         };
-        (index(Place { region, direction }, false), state)
+        (index(HybridMode { region, direction }, false), state)
     };
     (Event::switch(excess, next).rising(), Meaning::LetGo)
 }
@@ -194,7 +195,7 @@ fn touches(model: &Model, direction: f64) -> Vec<Watched<'_>> {
     let touch = |side: Side| {
         let barrier = model.barrier(side)?;
         let next = move |state: ode::State| {
-            let contact = Place { region: Regime::Contact(side), direction };
+            let contact = HybridMode { region: Regime::Contact(side), direction };
             // It moves inwards, whatever rounding says of one that rests there.
             let v = (side.sign() * state.v).max(0.0);
             (index(contact, false), ode::State { x: 0.0, v, ..state })
@@ -209,11 +210,11 @@ fn touches(model: &Model, direction: f64) -> Vec<Watched<'_>> {
 /// than the barrier.
 fn ends_of_contact(
     model: &Model,
-    Place { region, direction }: Place,
+    HybridMode { region, direction }: HybridMode,
     side: Side,
 ) -> Vec<Watched<'_>> {
     let Coordinate { sign, origin } = Coordinate::of(model, region);
-    let to = move |region: Regime| index(Place { region, direction }, false);
+    let to = move |region: Regime| index(HybridMode { region, direction }, false);
     let release = move |state: ode::State| {
         let v = sign * state.v.min(0.0);
         (to(Regime::Free), ode::State { x: origin, v, ..state })
@@ -237,7 +238,7 @@ fn ends_of_contact(
 }
 
 /// The turning points: under Coulomb friction each decides how the motion goes on.
-fn turning(model: &Model, Place { region, direction }: Place) -> Watched<'_> {
+fn turning(model: &Model, HybridMode { region, direction }: HybridMode) -> Watched<'_> {
     if direction == 0.0 {
         return (Event::record(|_, _, v| v), Meaning::Turn);
     }
@@ -276,17 +277,17 @@ pub(in crate::impact) fn follow(
     let region = beginning(model, start);
     let Coordinate { sign, origin } = Coordinate::of(model, region);
     let first = match start.velocity {
-        _ if !model.sticks() => index(Place { region, direction: 0.0 }, false),
+        _ if !model.sticks() => index(HybridMode { region, direction: 0.0 }, false),
         0.0 => from_rest(model, region, 0.0, sign * (start.x - origin)),
         velocity => {
             let direction = velocity.signum();
-            index(Place { region, direction }, false)
+            index(HybridMode { region, direction }, false)
         }
     };
     // What lets go of a stuck pendulum varies with the excitation, not with the motion.
     let watched = model.sticks() && model.beta != 0.0 && model.frequency_ratio > 0.0;
     let maximum_step = if watched { 1.0 / model.frequency_ratio } else { f64::INFINITY };
-    let options = ode::Options {
+    let options = ode::IntegrationOptions {
         relative_tolerance: settings.relative_tolerance,
         absolute_tolerance: settings.absolute_tolerance,
         maximum_steps: settings.maximum_steps,
@@ -335,8 +336,8 @@ fn contacts_and_turns(
     first: Regime,
     trajectory: &Trajectory,
     meanings: &[Vec<Meaning>],
-) -> (Vec<Contact>, Vec<Turn>) {
-    let mut impacts: Vec<Contact> = Vec::new();
+) -> (Vec<ContactRecord>, Vec<Turn>) {
+    let mut impacts: Vec<ContactRecord> = Vec::new();
     if let Regime::Contact(side) | Regime::Detached(side) = first {
         let depth = model.depth(start.x).map_or(0.0, |(_, depth)| depth);
         let speed = side.sign() * start.velocity;
@@ -380,15 +381,15 @@ fn contacts_and_turns(
 }
 
 /// Why the run ended.
-fn stop_of(reason: StopReason) -> Stop {
+fn stop_of(reason: StopReason) -> SimulationStop {
     match reason {
-        StopReason::EndReached => Stop::Duration,
-        StopReason::Event { .. } => Stop::RestEnergy,
-        StopReason::NonFinite { time } => Stop::NotFinite { t: time },
-        StopReason::MaximumSteps { time } => Stop::Steps { t: time },
-        StopReason::Interrupted { time } => Stop::Interrupted { t: time },
-        StopReason::StepTooSmall { time } => Stop::StepTooSmall { t: time },
-        StopReason::SwitchingStalled { time } => Stop::Stalled { t: time },
+        StopReason::EndReached => SimulationStop::Duration,
+        StopReason::Event { .. } => SimulationStop::RestEnergy,
+        StopReason::NonFinite { time } => SimulationStop::NotFinite { t: time },
+        StopReason::MaximumSteps { time } => SimulationStop::Steps { t: time },
+        StopReason::Interrupted { time } => SimulationStop::Interrupted { t: time },
+        StopReason::StepTooSmall { time } => SimulationStop::StepTooSmall { t: time },
+        StopReason::SwitchingStalled { time } => SimulationStop::Stalled { t: time },
     }
 }
 
@@ -407,14 +408,14 @@ fn end_in_x(model: &Model, trajectory: &Trajectory) -> (f64, f64) {
 }
 
 /// The run as a function of time, a piece for each step.
-fn path_of(model: &Model, settings: &Settings, trajectory: Trajectory) -> Path {
+fn path_of(model: &Model, settings: &Settings, trajectory: Trajectory) -> SimulationPath {
     let knots: Vec<f64> = trajectory.knots().map(|knot| knot.t).collect();
-    let mut path = Path::judged(trajectory);
+    let mut path = SimulationPath::judged(trajectory);
     if settings.keep_path {
         for pair in knots.windows(2) {
             let [from, to] = [pair[0], pair[1]];
             let phase = path.judged_phase(0.5 * (from + to)).unwrap_or(0);
-            let (Place { region, .. }, stuck) = place(phase);
+            let (HybridMode { region, .. }, stuck) = place(phase);
             let Coordinate { origin, sign } = Coordinate::of(model, region);
             let regime = if stuck { Regime::Stuck } else { region };
             path.push_judged([from, to], regime, [origin, sign]);

@@ -137,7 +137,7 @@ fn way_forward(reason: &StopReason) -> String {
 /// ```
 pub fn true_impact(
     collision: &Collision,
-    options: &ode::Options,
+    options: &ode::IntegrationOptions,
 ) -> Result<TrueImpact, TrueImpactError> {
     let &Collision { release, barrier, stiffness, restoring_force, elastic_force, damping } =
         collision;
@@ -224,8 +224,8 @@ fn energy_drift(
 }
 
 /// The same, with what may be neglected beside this size.
-fn at_scale(options: &ode::Options, size: f64) -> ode::Options {
-    ode::Options {
+fn at_scale(options: &ode::IntegrationOptions, size: f64) -> ode::IntegrationOptions {
+    ode::IntegrationOptions {
         absolute_tolerance: options
             .absolute_tolerance
             .min(options.relative_tolerance * size)
@@ -238,7 +238,7 @@ fn at_scale(options: &ode::Options, size: f64) -> ode::Options {
 fn approach(
     swing: impl Fn(f64, f64, f64) -> f64,
     [release, barrier]: [f64; 2],
-    options: &ode::Options,
+    options: &ode::IntegrationOptions,
 ) -> Result<Trajectory, TrueImpactError> {
     // Counted from the release: near the top of the swing every digit of the distance to it
     // matters.
@@ -267,7 +267,7 @@ fn way_back(
     swing: impl Fn(f64, f64, f64) -> f64,
     barrier: f64,
     exit: ode::State,
-    options: &ode::Options,
+    options: &ode::IntegrationOptions,
 ) -> Result<Trajectory, TrueImpactError> {
     let outwards = Coordinate { sign: -1.0, origin: barrier };
     let start = ode::State { t: 0.0, x: 0.0, v: -exit.v };
@@ -330,10 +330,10 @@ const TIGHTEST: f64 = 1e-14;
 /// ```
 pub fn assured_impact(
     collision: &Collision,
-    options: &ode::Options,
+    options: &ode::IntegrationOptions,
 ) -> Result<TrueImpact, TrueImpactError> {
     let with = |tolerance: f64| {
-        let options = ode::Options {
+        let options = ode::IntegrationOptions {
             relative_tolerance: tolerance,
             absolute_tolerance: tolerance,
             ..*options
@@ -457,16 +457,16 @@ fn largest(from: f64, to: f64, function: impl Fn(f64) -> f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::impact::hertz::{Design, elastic_force};
+    use crate::impact::hertz::{StiffnessDesign, elastic_force};
     use crate::impact::linearisation::Rule;
-    use crate::impact::phases::{ContactSpeed, Swing, three_phases};
-    use crate::numeric::ode::Options;
+    use crate::impact::phases::{ContactSpeed, ImpactProblem, three_phases};
+    use crate::numeric::ode::IntegrationOptions;
     use crate::numeric::ode::root::find_root;
 
     const FORCE: fn(f64) -> f64 = f64::sin;
 
-    fn swing(barrier: f64, stiffness: f64) -> Swing<'static> {
-        Swing {
+    fn swing(barrier: f64, stiffness: f64) -> ImpactProblem<'static> {
+        ImpactProblem {
             amplitude: 1.5,
             barrier,
             stiffness,
@@ -490,7 +490,8 @@ mod tests {
     }
 
     fn pendulum(barrier: f64, stiffness: f64) -> TrueImpact {
-        true_impact(&collision(1.5, barrier, stiffness), &Options::with_tolerance(1e-13)).unwrap()
+        true_impact(&collision(1.5, barrier, stiffness), &IntegrationOptions::with_tolerance(1e-13))
+            .unwrap()
     }
 
     fn near(value: f64, expected: f64, allowed: f64) {
@@ -551,7 +552,7 @@ mod tests {
     #[test]
     fn the_drift_tells_a_loose_run_from_a_tight_one() {
         let run = |tolerance| {
-            let options = Options::with_tolerance(tolerance);
+            let options = IntegrationOptions::with_tolerance(tolerance);
             true_impact(&collision(1.5, 0.323, 1e6), &options).unwrap().energy_drift
         };
         assert!(run(1e-5) > 1e3 * run(1e-11));
@@ -559,7 +560,7 @@ mod tests {
 
     #[test]
     fn the_closed_form_beside_the_true_motion() {
-        let stiffness = Design::default().stiffness().unwrap();
+        let stiffness = StiffnessDesign::default().stiffness().unwrap();
         let truth = pendulum(0.323, stiffness);
         for column in [ContactSpeed::Paper, ContactSpeed::Energy] {
             let motion = three_phases(&swing(0.323, stiffness), column).unwrap();
@@ -595,13 +596,14 @@ mod tests {
         // contact, 0 at x_c = 0 where the spring k = 1 acts from.
         let spring = |depth: f64| depth;
         let linear = |x: f64| x;
-        let exact = Swing {
+        let exact = ImpactProblem {
             frequency_squared: 1.0,
             restoring_force: &linear,
             elastic_force: &spring,
             ..swing(0.4, 1e4)
         };
-        let truth = true_impact(&exact.collision(), &Options::with_tolerance(1e-13)).unwrap();
+        let truth =
+            true_impact(&exact.collision(), &IntegrationOptions::with_tolerance(1e-13)).unwrap();
         for column in [ContactSpeed::Paper, ContactSpeed::Energy] {
             let motion = three_phases(&exact, column).unwrap();
             let found = deviation(&motion, &truth);
@@ -616,7 +618,8 @@ mod tests {
     #[test]
     fn what_cannot_be_followed_is_refused() {
         let run = |amplitude, barrier| {
-            true_impact(&collision(amplitude, barrier, 1e6), &Options::default()).unwrap_err()
+            true_impact(&collision(amplitude, barrier, 1e6), &IntegrationOptions::default())
+                .unwrap_err()
         };
         let refused = run(0.3, 0.323);
         assert!(
@@ -628,7 +631,7 @@ mod tests {
             TrueImpactError::Collision(CollisionError::ReleasedBehindBarrier { .. })
         ));
         assert!(matches!(run(f64::NAN, 0.3), TrueImpactError::Integration(_)));
-        let few = Options { maximum_steps: 5, ..Options::default() };
+        let few = IntegrationOptions { maximum_steps: 5, ..IntegrationOptions::default() };
         let refused = true_impact(&collision(1.5, 0.323, 1e6), &few).unwrap_err();
         assert!(
             matches!(refused, TrueImpactError::Stopped(StopReason::MaximumSteps { .. })),
@@ -636,7 +639,7 @@ mod tests {
         );
         // At rest on top: it never gets anywhere.
         let still = Collision { restoring_force: &|_| 0.0, ..collision(1.0, 0.3, 1.0) };
-        let refused = true_impact(&still, &Options::default()).unwrap_err();
+        let refused = true_impact(&still, &IntegrationOptions::default()).unwrap_err();
         assert!(matches!(refused, TrueImpactError::Stopped(StopReason::EndReached)), "{refused}");
     }
 }

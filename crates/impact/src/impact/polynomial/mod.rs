@@ -109,7 +109,7 @@ pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots
         found.push(bracketed(coefficients, 0.0, (0.0, first), (h, end)));
         return found;
     }
-    let mut search = Search {
+    let mut search = RootSearch {
         coefficients,
         curvature: curvature(coefficients, h),
         sign: first.signum(),
@@ -128,7 +128,7 @@ const DEEPEST: usize = 56;
 const MOST_LOOKS: usize = 400;
 
 /// A search from left to right.
-struct Search<'a> {
+struct RootSearch<'a> {
     coefficients: &'a [f64],
     /// A bound on |p''|.
     curvature: f64,
@@ -138,7 +138,7 @@ struct Search<'a> {
     found: Roots,
 }
 
-impl Search<'_> {
+impl RootSearch<'_> {
     /// Looks at the interval between two places with their values.
     fn between(&mut self, left: (f64, f64), right: (f64, f64), halvings: usize) {
         if self.found.is_full() {

@@ -36,20 +36,20 @@ struct Accelerations {
 static DERIVED: LazyLock<Result<Accelerations, MechanicsError>> = LazyLock::new(derive);
 
 /// The equations of one case.
-pub(super) struct Equations {
+pub(super) struct PrimaryEquations {
     accelerations: &'static Accelerations,
     numbers: BTreeMap<Symbol, f64>,
     case: PrimaryCase,
     /// The phases that there were: a motion goes through the same ones again and again.
-    built: RefCell<Vec<(Phase, Rc<Followed>)>>,
+    built: RefCell<Vec<(PhaseKey, Rc<PhaseSystem>)>>,
 }
 
 /// A phase with equations of its own: in the barrier of a side or in none, and the direction in
 /// which dry friction acts.
-type Phase = (Option<Side>, f64);
+type PhaseKey = (Option<Side>, f64);
 
 /// The system of a phase: its states, and behind them the accounts that change in it.
-pub(super) struct Followed {
+pub(super) struct PhaseSystem {
     pub(super) system: System,
     /// Which accounts those are.
     pub(super) accounts: Vec<usize>,
@@ -84,7 +84,7 @@ fn derive() -> Result<Accelerations, MechanicsError> {
     Ok(Accelerations { free: [x.clone(), y.clone()], held })
 }
 
-impl Equations {
+impl PrimaryEquations {
     pub(super) fn new(case: PrimaryCase) -> Result<Self, PrimaryError> {
         let accelerations = DERIVED.as_ref().map_err(Clone::clone)?;
         let (primary, model) = (case.primary, case.model);
@@ -110,9 +110,9 @@ impl Equations {
     /// The system of a phase, built when it is first met.
     fn once(
         &self,
-        phase: Phase,
-        build: impl FnOnce() -> Result<Followed, PrimaryError>,
-    ) -> Result<Rc<Followed>, PrimaryError> {
+        phase: PhaseKey,
+        build: impl FnOnce() -> Result<PhaseSystem, PrimaryError>,
+    ) -> Result<Rc<PhaseSystem>, PrimaryError> {
         let known = self.built.borrow().iter().find(|own| own.0 == phase).map(|own| own.1.clone());
         if let Some(known) = known {
             return Ok(known);
@@ -152,7 +152,7 @@ impl Equations {
         time: &str,
         right: &[Expr],
         more: &[(&str, f64)],
-    ) -> Result<Followed, PrimaryError> {
+    ) -> Result<PhaseSystem, PrimaryError> {
         // What is not there costs nothing: no product with zero is followed, and no account that
         // stands still.
         let absent = self.numbers.iter().filter(|(_, value)| **value == 0.0);
@@ -170,7 +170,7 @@ impl Equations {
         let rates = accounts.iter().map(|account| account_rates[*account].clone());
         let rates: Vec<Expr> = own_rates.iter().cloned().chain(rates).collect();
         let system = System::new(&names, Symbol::new(time), &rates, &self.numbers_and(more))?;
-        Ok(Followed { system, accounts })
+        Ok(PhaseSystem { system, accounts })
     }
 
     /// The numbers of the case, and these beside them.
@@ -187,11 +187,11 @@ impl Equations {
     }
 
     /// Away from the barriers, moving in this direction where dry friction asks for one.
-    pub(super) fn flight(&self, direction: f64) -> Result<Rc<Followed>, PrimaryError> {
+    pub(super) fn flight(&self, direction: f64) -> Result<Rc<PhaseSystem>, PrimaryError> {
         self.once((None, direction), || self.flight_system(direction))
     }
 
-    fn flight_system(&self, direction: f64) -> Result<Followed, PrimaryError> {
+    fn flight_system(&self, direction: f64) -> Result<PhaseSystem, PrimaryError> {
         let [torque, power] = self.friction(direction);
         let mut right = vec![own("x'")];
         let put = |acceleration: &Expr| {
@@ -209,7 +209,7 @@ impl Equations {
         side: Side,
         place: f64,
         direction: f64,
-    ) -> Result<Rc<Followed>, PrimaryError> {
+    ) -> Result<Rc<PhaseSystem>, PrimaryError> {
         self.once((Some(side), direction), || self.contact_system(side, place, direction))
     }
 
@@ -218,7 +218,7 @@ impl Equations {
         side: Side,
         place: f64,
         direction: f64,
-    ) -> Result<Followed, PrimaryError> {
+    ) -> Result<PhaseSystem, PrimaryError> {
         let [torque, power] = self.friction(direction);
         let put = |acceleration: &Expr| self.put(acceleration, &[("G", torque.clone())]);
         let [x, y] = [put(&self.accelerations.free[0])?, put(&self.accelerations.free[1])?];
@@ -230,7 +230,7 @@ impl Equations {
 
     /// The main mass alone with the pendulum held at x; the torque on the pendulum is what friction
     /// must hold.
-    pub(super) fn held(&self, x: f64, contact: f64) -> Result<(Followed, Expr), PrimaryError> {
+    pub(super) fn held(&self, x: f64, contact: f64) -> Result<(PhaseSystem, Expr), PrimaryError> {
         let still = [("x'", Expr::zero())];
         let mut right = vec![own("y'"), self.accelerations.held.clone()];
         for account in self.accounts(Expr::zero(), Expr::zero()) {

@@ -16,15 +16,15 @@
 
 use super::super::model::Side;
 use super::super::simulation::REST_FRACTION;
-use super::equations::{ACCOUNTS, Equations, Followed};
-use super::path::{Piece, PrimaryPath, PrimaryState};
+use super::equations::{ACCOUNTS, PhaseSystem, PrimaryEquations};
+use super::path::{PrimaryPath, PrimarySegment, PrimaryState};
 use super::{
     PrimaryCase, PrimaryEnergy, PrimaryError, PrimaryImpact, PrimaryMotion, PrimarySettings,
     PrimaryStop,
 };
 use crate::exact::from_f64;
 use crate::expr::{Expr, parse_expression};
-use crate::system::{End, Event, Options, Path};
+use crate::system::{Event, Path, PathEnd, SystemOptions};
 
 /// Both bodies from their start until the duration is over.
 ///
@@ -52,7 +52,7 @@ pub fn simulate_primary(
     if !(settings.duration > 0.0 && settings.duration.is_finite()) {
         return Err(PrimaryError::Duration(settings.duration));
     }
-    let mut run = Run::new(case, settings)?;
+    let mut run = PrimaryRun::new(case, settings)?;
     let stop = loop {
         if run.t >= settings.duration {
             break PrimaryStop::Duration;
@@ -69,16 +69,16 @@ pub fn simulate_primary(
         }
         let before = run.t;
         let reason = match run.regime {
-            Regime::Free(direction) => run.fly(direction)?,
-            Regime::Contact(side, direction) => run.touch(side, direction)?,
-            Regime::LetGo(side, direction) => run.let_go(side, direction)?,
-            Regime::Held => run.hold()?,
+            PrimaryRegime::Free(direction) => run.fly(direction)?,
+            PrimaryRegime::Contact(side, direction) => run.touch(side, direction)?,
+            PrimaryRegime::LetGo(side, direction) => run.let_go(side, direction)?,
+            PrimaryRegime::Held => run.hold()?,
         };
         run.settle();
         match reason {
-            End::Interrupted => break PrimaryStop::Interrupted,
-            End::Reached | End::Event(_) => {}
-            End::StepLimit | End::Singular | End::Overflow | End::Sticks => {
+            PathEnd::Interrupted => break PrimaryStop::Interrupted,
+            PathEnd::Reached | PathEnd::Event(_) => {}
+            PathEnd::StepLimit | PathEnd::Singular | PathEnd::Overflow | PathEnd::Sticks => {
                 break PrimaryStop::Singular;
             }
         }
@@ -99,7 +99,7 @@ const ROUNDING: f64 = 1e-12;
 
 /// What the pendulum is doing; the direction is that of dry friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Regime {
+enum PrimaryRegime {
     Free(f64),
     Contact(Side, f64),
     /// In a barrier that would have to pull.
@@ -108,11 +108,11 @@ enum Regime {
 }
 
 /// A motion in the making.
-struct Run<'a> {
+struct PrimaryRun<'a> {
     case: PrimaryCase,
     settings: &'a PrimarySettings,
-    equations: Equations,
-    regime: Regime,
+    equations: PrimaryEquations,
+    regime: PrimaryRegime,
     t: f64,
     state: PrimaryState,
     accounts: [f64; ACCOUNTS],
@@ -142,7 +142,7 @@ fn offset(name: &str, place: f64) -> Expr {
     own(name) - number(place)
 }
 
-impl<'a> Run<'a> {
+impl<'a> PrimaryRun<'a> {
     fn new(case: PrimaryCase, settings: &'a PrimarySettings) -> Result<Self, PrimaryError> {
         let [x, velocity, y, speed] = case.start;
         let state = PrimaryState { x, velocity, y, speed };
@@ -150,8 +150,8 @@ impl<'a> Run<'a> {
         let mut run = Self {
             case,
             settings,
-            equations: Equations::new(case)?,
-            regime: Regime::Free(0.0),
+            equations: PrimaryEquations::new(case)?,
+            regime: PrimaryRegime::Free(0.0),
             t: 0.0,
             state,
             accounts: [0.0; ACCOUNTS],
@@ -174,12 +174,12 @@ impl<'a> Run<'a> {
             run.begin_impact(side, depth);
         }
         run.regime = match (direction, inside) {
-            (None, _) => Regime::Held,
+            (None, _) => PrimaryRegime::Held,
             (Some(direction), None) => return run.set_off(direction).map(|()| run),
             (Some(direction), Some((side, _))) if case.model.would_pull(side.sign() * velocity) => {
-                Regime::LetGo(side, direction)
+                PrimaryRegime::LetGo(side, direction)
             }
-            (Some(direction), Some((side, _))) => Regime::Contact(side, direction),
+            (Some(direction), Some((side, _))) => PrimaryRegime::Contact(side, direction),
         };
         Ok(run)
     }
@@ -201,7 +201,7 @@ impl<'a> Run<'a> {
     /// On in this direction: into the barrier on whose surface it stands, where it moves or is
     /// pushed that way, else free.
     fn set_off(&mut self, direction: f64) -> Result<(), PrimaryError> {
-        self.regime = Regime::Free(direction);
+        self.regime = PrimaryRegime::Free(direction);
         let PrimaryState { x, velocity, y, speed } = self.state;
         for side in [Side::Left, Side::Right] {
             if x != self.place(side) {
@@ -221,11 +221,11 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    fn options(&self) -> Options {
-        Options {
+    fn options(&self) -> SystemOptions {
+        SystemOptions {
             tolerance: self.settings.tolerance,
             interrupt: self.settings.interrupt,
-            ..Options::default()
+            ..SystemOptions::default()
         }
     }
 
@@ -235,19 +235,19 @@ impl<'a> Run<'a> {
     }
 
     /// The states, and behind them the accounts that change in this phase.
-    fn with_accounts(&self, states: &[f64], followed: &Followed) -> Vec<f64> {
+    fn with_accounts(&self, states: &[f64], followed: &PhaseSystem) -> Vec<f64> {
         let accounts = followed.accounts.iter().map(|account| self.accounts[*account]);
         states.iter().copied().chain(accounts).collect()
     }
 
     /// Takes back what stands behind the states.
-    fn keep_accounts(&mut self, values: &[f64], followed: &Followed) {
+    fn keep_accounts(&mut self, values: &[f64], followed: &PhaseSystem) {
         for (account, value) in followed.accounts.iter().zip(values) {
             self.accounts[*account] = *value;
         }
     }
 
-    fn fly(&mut self, direction: f64) -> Result<End, PrimaryError> {
+    fn fly(&mut self, direction: f64) -> Result<PathEnd, PrimaryError> {
         let mut events = vec![Event::record(own("y'"))];
         let mut sides = Vec::new();
         for side in [Side::Left, Side::Right] {
@@ -262,7 +262,7 @@ impl<'a> Run<'a> {
             false => events.push(Event::record(own("x'"))),
         }
         let reason = self.glide(direction, &events, Some(turning))?;
-        if let End::Event(event) = reason {
+        if let PathEnd::Event(event) = reason {
             match sides.get(event.wrapping_sub(1)) {
                 Some(side) => self.enter(*side, direction),
                 None => self.turn_back(0.0)?,
@@ -286,7 +286,7 @@ impl<'a> Run<'a> {
         direction: f64,
         events: &[Event],
         swings: Option<usize>,
-    ) -> Result<End, PrimaryError> {
+    ) -> Result<PathEnd, PrimaryError> {
         let followed = self.equations.flight(direction)?;
         let PrimaryState { x, velocity, y, speed } = self.state;
         let start = self.with_accounts(&[x, velocity, y, speed], &followed);
@@ -305,7 +305,7 @@ impl<'a> Run<'a> {
         let last = path.at(end).unwrap_or(start);
         self.state = PrimaryState { x: last[0], velocity: last[1], y: last[2], speed: last[3] };
         self.keep_accounts(&last[4..], &followed);
-        self.path.push(self.t, end, Piece::Flight(path));
+        self.path.push(self.t, end, PrimarySegment::Flight(path));
         self.t = end;
         Ok(reason)
     }
@@ -316,7 +316,7 @@ impl<'a> Run<'a> {
         match self.direction(contact) {
             Some(direction) => self.set_off(direction),
             None => {
-                self.regime = Regime::Held;
+                self.regime = PrimaryRegime::Held;
                 Ok(())
             }
         }
@@ -325,7 +325,7 @@ impl<'a> Run<'a> {
     fn enter(&mut self, side: Side, direction: f64) {
         self.state.x = self.place(side);
         self.begin_impact(side, 0.0);
-        self.regime = Regime::Contact(side, direction);
+        self.regime = PrimaryRegime::Contact(side, direction);
     }
 
     /// An impact that begins now, this deep in the barrier.
@@ -350,10 +350,10 @@ impl<'a> Run<'a> {
             impact.speed_out = Some(-side.sign() * velocity);
             impact.energy_lost = self.accounts[2] - taken;
         }
-        self.regime = Regime::Free(direction);
+        self.regime = PrimaryRegime::Free(direction);
     }
 
-    fn touch(&mut self, side: Side, direction: f64) -> Result<End, PrimaryError> {
+    fn touch(&mut self, side: Side, direction: f64) -> Result<PathEnd, PrimaryError> {
         let place = self.place(side);
         let followed = self.equations.contact(side, place, direction)?;
         let depth = (side.sign() * (self.state.x - place)).max(0.0);
@@ -396,17 +396,19 @@ impl<'a> Run<'a> {
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest).max(w * w);
         }
-        self.path.push(self.t, end, Piece::Contact { path, side, place });
+        self.path.push(self.t, end, PrimarySegment::Contact { path, side, place });
         self.t = end;
         match reason {
-            End::Event(1) => self.leave(side, direction),
-            End::Event(2) => self.t = self.settings.duration,
-            End::Event(event) if event == pulls => self.regime = Regime::LetGo(side, direction),
-            End::Event(_) => {
+            PathEnd::Event(1) => self.leave(side, direction),
+            PathEnd::Event(2) => self.t = self.settings.duration,
+            PathEnd::Event(event) if event == pulls => {
+                self.regime = PrimaryRegime::LetGo(side, direction)
+            }
+            PathEnd::Event(_) => {
                 let push = -side.sign() * self.case.model.contact(w * w, 0.0);
                 self.turn_back(push)?;
-                if let Regime::Free(direction) = self.regime {
-                    self.regime = Regime::Contact(side, direction);
+                if let PrimaryRegime::Free(direction) = self.regime {
+                    self.regime = PrimaryRegime::Contact(side, direction);
                 }
             }
             _ => {}
@@ -416,7 +418,7 @@ impl<'a> Run<'a> {
 
     /// Out of a barrier that comes back more slowly than the pendulum: as free as in flight, until
     /// it is out, or slow enough to be pushed again.
-    fn let_go(&mut self, side: Side, direction: f64) -> Result<End, PrimaryError> {
+    fn let_go(&mut self, side: Side, direction: f64) -> Result<PathEnd, PrimaryError> {
         let place = self.place(side);
         let sign = Expr::from(side.sign() as i64);
         let events = [
@@ -433,14 +435,14 @@ impl<'a> Run<'a> {
         };
         self.accounts[2] += stored(before) - stored(self.state.x);
         match reason {
-            End::Event(1) => self.leave(side, direction),
-            End::Event(2) => self.regime = Regime::Contact(side, direction),
+            PathEnd::Event(1) => self.leave(side, direction),
+            PathEnd::Event(2) => self.regime = PrimaryRegime::Contact(side, direction),
             _ => {}
         }
         Ok(reason)
     }
 
-    fn hold(&mut self) -> Result<End, PrimaryError> {
+    fn hold(&mut self) -> Result<PathEnd, PrimaryError> {
         let PrimaryState { x, y, speed, .. } = self.state;
         let inside = self.case.model.depth(x);
         let contact =
@@ -465,12 +467,12 @@ impl<'a> Run<'a> {
         let last = path.at(end).unwrap_or(start);
         self.state = PrimaryState { x, velocity: 0.0, y: last[0], speed: last[1] };
         self.keep_accounts(&last[2..], &followed);
-        self.path.push(self.t, end, Piece::Held { path, x });
+        self.path.push(self.t, end, PrimarySegment::Held { path, x });
         self.t = end;
-        if let End::Event(event) = reason {
+        if let PathEnd::Event(event) = reason {
             let direction = if event % 2 == 1 { 1.0 } else { -1.0 };
             match inside {
-                Some((side, _)) => self.regime = Regime::Contact(side, direction),
+                Some((side, _)) => self.regime = PrimaryRegime::Contact(side, direction),
                 None => self.set_off(direction)?,
             }
         }

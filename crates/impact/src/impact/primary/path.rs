@@ -20,7 +20,7 @@ pub struct PrimaryState {
 
 /// What the states of a piece are.
 #[derive(Clone, Debug)]
-pub(super) enum Piece {
+pub(super) enum PrimarySegment {
     /// (x, x', y, y') in t.
     Flight(Path),
     /// (w, x', y, y', t) in s: x = place + side w^2.
@@ -29,7 +29,7 @@ pub(super) enum Piece {
     Held { path: Path, x: f64 },
 }
 
-impl Piece {
+impl PrimarySegment {
     /// The state at a time within the piece.
     fn at(&self, time: f64) -> Option<PrimaryState> {
         match self {
@@ -70,12 +70,12 @@ fn own_time(path: &Path, time: f64) -> Option<f64> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct PrimaryPath {
     /// Each with the time at which it begins.
-    pieces: Vec<(f64, Piece)>,
+    pieces: Vec<(f64, PrimarySegment)>,
     end: f64,
 }
 
 impl PrimaryPath {
-    pub(super) fn push(&mut self, start: f64, end: f64, piece: Piece) {
+    pub(super) fn push(&mut self, start: f64, end: f64, piece: PrimarySegment) {
         self.pieces.push((start, piece));
         self.end = end;
     }
@@ -93,8 +93,8 @@ impl PrimaryPath {
     pub(super) fn contacts(&self, [from, until]: [f64; 2]) -> impl Iterator<Item = (&Path, Side)> {
         let within = self.pieces.iter().filter(move |(start, _)| (from..=until).contains(start));
         within.filter_map(|(_, piece)| match piece {
-            Piece::Contact { path, side, .. } => Some((path, *side)),
-            Piece::Flight(_) | Piece::Held { .. } => None,
+            PrimarySegment::Contact { path, side, .. } => Some((path, *side)),
+            PrimarySegment::Flight(_) | PrimarySegment::Held { .. } => None,
         })
     }
 

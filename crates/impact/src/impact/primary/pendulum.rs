@@ -2,7 +2,7 @@
 
 use super::super::hertz;
 use super::super::si::greatest;
-use super::super::simulation::place::Place;
+use super::super::simulation::place::RestPoint;
 use super::super::simulation::rest::first_swing;
 use super::super::simulation::{NoRest, REST_FRACTION};
 use super::{PrimaryImpact, PrimaryMotion};
@@ -34,7 +34,7 @@ impl PrimaryMotion {
     pub fn pendulum_rest_time(&self) -> Result<f64, NoRest> {
         let [x, velocity, ..] = self.case.start;
         let model = &self.case.model;
-        let place = Place::near(model, self.at(self.end).map_or(x, |state| state.x));
+        let place = RestPoint::near(model, self.at(self.end).map_or(x, |state| state.x));
         let free = place.free_side(model);
         let turns = self.swings.iter().filter(|(t, _)| *t > 0.0);
         let turns: Vec<(f64, f64)> = turns.map(|(t, x)| (*t, x - place.x)).collect();

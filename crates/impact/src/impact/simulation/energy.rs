@@ -12,7 +12,7 @@
 //! lets go because it would have to pull, the energy still in it is lost to its damping.
 
 use super::Simulation;
-use super::path::{Node, Regime};
+use super::path::{QuadratureNode, Regime};
 use crate::impact::hertz;
 use crate::impact::model::{Friction, Side};
 
@@ -116,7 +116,7 @@ impl Simulation {
         }
     }
 
-    fn depth(&self, regime: Regime, node: &Node) -> f64 {
+    fn depth(&self, regime: Regime, node: &QuadratureNode) -> f64 {
         let inside = |side: Side| {
             let barrier = self.model.barrier(side).unwrap_or(node.x);
             (side.sign() * (node.x - barrier)).max(0.0)

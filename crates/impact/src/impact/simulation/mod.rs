@@ -20,7 +20,7 @@ use std::fmt;
 
 pub use closed::ClosedForm;
 pub use energy::{EnergyBook, EnergyPoint};
-pub use path::{Path, Piece, Regime};
+pub use path::{PathSegment, Regime, SimulationPath};
 pub use rest::{NoRest, REST_FRACTION, Rest};
 pub(super) use rest::{first_swing, has_rested};
 
@@ -91,7 +91,7 @@ impl Default for Settings {
 
 /// Why a run ended. Everything before is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Stop {
+pub enum SimulationStop {
     /// At the end of the duration.
     Duration,
     /// The energy fell to [`Settings::rest_energy`].
@@ -125,14 +125,14 @@ pub enum Stop {
     },
 }
 
-impl Stop {
+impl SimulationStop {
     /// Whether the run got where it was to get.
     pub fn is_complete(self) -> bool {
         matches!(self, Self::Duration | Self::RestEnergy | Self::AtRest)
     }
 }
 
-impl Stop {
+impl SimulationStop {
     /// The same so much later.
     pub(super) fn later(self, time: f64) -> Self {
         match self {
@@ -160,7 +160,7 @@ impl Stop {
     }
 }
 
-impl fmt::Display for Stop {
+impl fmt::Display for SimulationStop {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let time = |t: &f64| significant(*t, 12);
         match self {
@@ -199,7 +199,7 @@ impl fmt::Display for Stop {
 /// One contact with a barrier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub struct Contact {
+pub struct ContactRecord {
     /// Which barrier.
     pub side: Side,
     /// When it is touched.
@@ -221,7 +221,7 @@ pub struct Contact {
     pub energy_lost: Option<f64>,
 }
 
-impl Contact {
+impl ContactRecord {
     /// A contact that begins with a touch at this speed.
     pub(super) fn touched(side: Side, t: f64, speed: f64) -> Self {
         Self {
@@ -289,7 +289,7 @@ pub(super) fn scaled(settings: &Settings, model: &Model, start: Start) -> Settin
 /// A contact left and entered again before x has changed by more than a step may err goes on: the
 /// pendulum is pressed against the barrier and rests there.
 pub(super) fn enter(
-    impacts: &mut Vec<Contact>,
+    impacts: &mut Vec<ContactRecord>,
     (model, settings): (&Model, &Settings),
     side: Side,
     t: f64,
@@ -302,7 +302,7 @@ pub(super) fn enter(
         && let (Some(exit), Some(left)) = (last.exit_time, last.speed_out)
         && left.max(speed) * (t - exit) <= visible
     {
-        *last = Contact {
+        *last = ContactRecord {
             exit_time: None,
             speed_out: None,
             restitution: None,
@@ -311,10 +311,10 @@ pub(super) fn enter(
         };
         return;
     }
-    impacts.push(Contact {
+    impacts.push(ContactRecord {
         start_depth: depth,
         penetration: depth,
-        ..Contact::touched(side, t, speed)
+        ..ContactRecord::touched(side, t, speed)
     });
 }
 
@@ -340,9 +340,9 @@ pub struct Simulation {
     /// By which method.
     pub integrator: Integrator,
     /// The motion as a function of time; empty without [`Settings::keep_path`].
-    pub path: Path,
+    pub path: SimulationPath,
     /// Every contact, in order.
-    pub impacts: Vec<Contact>,
+    pub impacts: Vec<ContactRecord>,
     /// Every turning point, in order; the start where it is one.
     pub turns: Vec<Turn>,
     /// Time at the end.
@@ -352,7 +352,7 @@ pub struct Simulation {
     /// Velocity there.
     pub end_velocity: f64,
     /// Why it ended there.
-    pub stop: Stop,
+    pub stop: SimulationStop,
     /// Steps taken.
     pub steps: usize,
     /// Where the envelope does not tell the rest, and no path or that of a chain: when |x| has
@@ -379,7 +379,7 @@ pub struct ContactDeviation {
 
 /// How two motions differ.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Difference {
+pub struct MotionDifference {
     /// The largest difference in x, rad.
     pub displacement: f64,
     /// The largest difference in x'.
@@ -408,7 +408,7 @@ impl Simulation {
     /// assert!((force / (1e4 * first.penetration.powf(1.5)) - 1.0).abs() < 1e-9); // without damping that of the greatest depth
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn peak_force(&self, impact: &Contact) -> Option<f64> {
+    pub fn peak_force(&self, impact: &ContactRecord) -> Option<f64> {
         let (exit, barrier) = (impact.exit_time?, self.model.barrier(impact.side)?);
         let is_known = self.integrator != Integrator::Chain && !self.path.pieces().is_empty();
         if !is_known || exit - impact.entry_time < CLOCK * exit {
@@ -423,9 +423,9 @@ impl Simulation {
     }
 
     /// Compares the paths at so many times, as far as both go.
-    pub fn difference(&self, other: &Self, count: usize) -> Difference {
+    pub fn difference(&self, other: &Self, count: usize) -> MotionDifference {
         let until = self.end_time.min(other.end_time);
-        let mut difference = Difference { displacement: 0.0, velocity: 0.0, until };
+        let mut difference = MotionDifference { displacement: 0.0, velocity: 0.0, until };
         for index in 0..count {
             let t = until * (index as f64 / (count.max(2) - 1) as f64);
             if let (Some((x, v)), Some((other_x, other_v))) = (self.path.at(t), other.path.at(t)) {
@@ -441,11 +441,11 @@ impl Simulation {
     pub fn contact_deviations(&self, truth: &Self) -> Vec<Option<ContactDeviation>> {
         let relative =
             |found: f64, truth: f64| Some(found / truth - 1.0).filter(|error| error.is_finite());
-        let error = |(index, found): (usize, &Contact)| {
+        let error = |(index, found): (usize, &ContactRecord)| {
             let truth = truth.impacts.get(index).filter(|truth| truth.side == found.side)?;
-            let duration = |contact: &Contact| Some(contact.exit_time? - contact.entry_time);
+            let duration = |contact: &ContactRecord| Some(contact.exit_time? - contact.entry_time);
             let both = |found: Option<f64>, truth: Option<f64>| relative(found?, truth?);
-            let depth = |contact: &Contact| contact.exit_time.map(|_| contact.penetration);
+            let depth = |contact: &ContactRecord| contact.exit_time.map(|_| contact.penetration);
             Some(ContactDeviation {
                 entry_time: found.entry_time - truth.entry_time,
                 speed_in: relative(found.speed_in, truth.speed_in),

@@ -38,7 +38,7 @@ impl Regime {
 
 /// A stretch of time in one regime, from knot to knot.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
+pub struct PathSegment {
     /// Where it begins.
     pub start: f64,
     /// Where it ends.
@@ -48,7 +48,7 @@ pub struct Piece {
     form: Representation,
 }
 
-impl Piece {
+impl PathSegment {
     /// The formula of this stretch, where it has one: in a chain.
     pub fn closed_form(&self) -> Option<ClosedForm> {
         match self.form {
@@ -80,15 +80,15 @@ enum Representation {
 
 /// The whole motion.
 #[derive(Debug, Clone)]
-pub struct Path {
-    pieces: Vec<Piece>,
+pub struct SimulationPath {
+    pieces: Vec<PathSegment>,
     pool: Vec<f64>,
     judge: Option<Trajectory>,
 }
 
 /// A point of the motion inside a piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::impact) struct Node {
+pub(in crate::impact) struct QuadratureNode {
     pub(in crate::impact) t: f64,
     pub(in crate::impact) x: f64,
     pub(in crate::impact) velocity: f64,
@@ -98,7 +98,7 @@ pub(in crate::impact) struct Node {
     pub(in crate::impact) weight: f64,
 }
 
-impl Path {
+impl SimulationPath {
     pub(in crate::impact) fn new() -> Self {
         Self { pieces: Vec::new(), pool: Vec::new(), judge: None }
     }
@@ -120,7 +120,7 @@ impl Path {
     }
 
     /// The stretches of time, in order.
-    pub fn pieces(&self) -> &[Piece] {
+    pub fn pieces(&self) -> &[PathSegment] {
         &self.pieces
     }
 
@@ -137,7 +137,7 @@ impl Path {
     /// `(t, x, x')` at the ends of the pieces and at `between` times inside each, equally spaced in
     /// the variable of the piece, so that a contact gets as many as a swing.
     pub fn points(&self, between: usize) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
-        let inside = move |piece: &Piece| {
+        let inside = move |piece: &PathSegment| {
             let piece = *piece;
             (0..=between).map(move |index| {
                 let node = self.node(&piece, index as f64 / (between + 1) as f64);
@@ -216,20 +216,20 @@ impl Path {
     }
 
     fn push(&mut self, [start, end]: [f64; 2], regime: Regime, form: Representation) {
-        self.pieces.push(Piece { start, end, regime, form });
+        self.pieces.push(PathSegment { start, end, regime, form });
     }
 
     /// Points and weights of a quadrature over a part of a piece, from one fraction of it to
     /// another: exact to rounding where the motion is a power series that converges over it.
     pub(in crate::impact) fn quadrature(
         &self,
-        piece: &Piece,
+        piece: &PathSegment,
         [from, to]: [f64; 2],
-    ) -> impl Iterator<Item = Node> + '_ {
+    ) -> impl Iterator<Item = QuadratureNode> + '_ {
         let piece = *piece;
         nodes_and_weights(from, to).map(move |(fraction, weight)| {
             let node = self.node(&piece, fraction);
-            Node { weight: weight * node.weight, ..node }
+            QuadratureNode { weight: weight * node.weight, ..node }
         })
     }
 
@@ -242,7 +242,7 @@ impl Path {
     }
 
     /// The point at a fraction of the piece, counted in the variable of the piece.
-    pub(in crate::impact) fn node(&self, piece: &Piece, fraction: f64) -> Node {
+    pub(in crate::impact) fn node(&self, piece: &PathSegment, fraction: f64) -> QuadratureNode {
         let length = piece.end - piece.start;
         match piece.form {
             Representation::Series { offset, terms, length, behind } => {
@@ -250,7 +250,7 @@ impl Path {
                 let [place, velocity, time] = self.series(offset, terms);
                 let (place, velocity) = (value(place, u), value(velocity, u));
                 let (time, pace) = value_and_slope(time, u);
-                let node = Node {
+                let node = QuadratureNode {
                     t: piece.start + time,
                     x: place,
                     velocity,
@@ -259,7 +259,7 @@ impl Path {
                 };
                 match behind {
                     None => node,
-                    Some([barrier, sign]) => Node {
+                    Some([barrier, sign]) => QuadratureNode {
                         x: barrier + sign * place * place,
                         velocity: sign * velocity,
                         depth: place * place,
@@ -267,12 +267,16 @@ impl Path {
                     },
                 }
             }
-            _ => Node { weight: length, ..self.node_at(piece, piece.start + fraction * length) },
+            _ => QuadratureNode {
+                weight: length,
+                ..self.node_at(piece, piece.start + fraction * length)
+            },
         }
     }
 
-    fn node_at(&self, piece: &Piece, t: f64) -> Node {
-        let node = |x: f64, velocity: f64| Node { t, x, velocity, depth: 0.0, weight: 0.0 };
+    fn node_at(&self, piece: &PathSegment, t: f64) -> QuadratureNode {
+        let node =
+            |x: f64, velocity: f64| QuadratureNode { t, x, velocity, depth: 0.0, weight: 0.0 };
         match piece.form {
             Representation::Series { offset, terms, length, .. } => {
                 let [_, _, time] = self.series(offset, terms);
@@ -282,7 +286,7 @@ impl Path {
                     _ if t >= piece.end => length,
                     _ => crossing_of(|u| value(time, u) - wanted, 0.0, length),
                 };
-                Node { t, ..self.node(piece, u / length) }
+                QuadratureNode { t, ..self.node(piece, u / length) }
             }
             Representation::Constant { x } => node(x, 0.0),
             Representation::Closed(form) => {
@@ -293,14 +297,14 @@ impl Path {
                     }
                     _ => 0.0,
                 };
-                Node { depth, ..node(x, velocity) }
+                QuadratureNode { depth, ..node(x, velocity) }
             }
             Representation::Judged { origin, sign } => {
                 // The end of a step may be the beginning of another phase, with another coordinate.
                 let inside = t.clamp(piece.start, piece.end.next_down().max(piece.start));
                 let (value, velocity) =
                     self.judge.as_ref().and_then(|path| path.at(inside)).unwrap_or((0.0, 0.0));
-                Node {
+                QuadratureNode {
                     depth: if matches!(piece.regime, Regime::Contact(_)) {
                         value.max(0.0)
                     } else {

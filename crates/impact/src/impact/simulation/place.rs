@@ -14,7 +14,7 @@ use crate::numeric::ode::root::find_root;
 
 /// A place of rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::impact) struct Place {
+pub(in crate::impact) struct RestPoint {
     /// Where, rad.
     pub x: f64,
     /// The lowest place of this turn, rad.
@@ -23,7 +23,7 @@ pub(in crate::impact) struct Place {
     held: Option<Side>,
 }
 
-impl Place {
+impl RestPoint {
     /// The one at which a motion here settles, friction and excitation left aside; for a motion
     /// that is nowhere, the bottom.
     pub fn near(model: &Model, x: f64) -> Self {

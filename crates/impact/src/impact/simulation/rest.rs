@@ -33,8 +33,8 @@ use std::f64::consts::{PI, TAU};
 
 use thiserror::Error;
 
-use super::place::Place;
-use super::{Integrator, Simulation, Stop, Turn};
+use super::place::RestPoint;
+use super::{Integrator, Simulation, SimulationStop, Turn};
 use crate::impact::model::{Model, Side, Start};
 use crate::impact::polynomial::crossing_of;
 
@@ -118,8 +118,8 @@ impl Simulation {
     }
 
     /// Where it settles.
-    pub(super) fn place(&self) -> Place {
-        Place::near(&self.model, self.end_x)
+    pub(super) fn place(&self) -> RestPoint {
+        RestPoint::near(&self.model, self.end_x)
     }
 
     /// The points of the envelope of the amplitude in order, the first swing at the start: (t, |x|)
@@ -172,7 +172,7 @@ impl Simulation {
             // rest.
             let at_rest = self.turns.iter().rev().take_while(|turn| turn.x == self.end_x);
             envelope.extend(at_rest.last().map(counted));
-        } else if self.stop == Stop::RestEnergy {
+        } else if self.stop == SimulationStop::RestEnergy {
             envelope.push(Turn { t: self.end_time, x: self.last_swing() });
         }
         envelope
@@ -281,7 +281,7 @@ impl Simulation {
 /// would settle if it did not turn over.
 pub(in crate::impact) fn first_swing(model: &Model, start: Start) -> f64 {
     let Start { x, velocity } = start;
-    let place = Place::near(model, x);
+    let place = RestPoint::near(model, x);
     match velocity == 0.0 && model.depth(x).is_none() {
         true => (x - place.x).abs(),
         false => (swing_of(model.energy(x, velocity)).unwrap_or(PI) - place.height()).max(0.0),
@@ -297,7 +297,7 @@ pub(in crate::impact) fn has_rested(model: &Model, turns: &[Turn], level: f64) -
     let Some(last) = turns.last() else {
         return false;
     };
-    let place = Place::near(model, last.x);
+    let place = RestPoint::near(model, last.x);
     let small = |turn: &Turn| (turn.x - place.x).abs() <= level;
     // On the free side, not in the barrier.
     let free = |side: Side| {

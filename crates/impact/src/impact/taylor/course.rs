@@ -4,13 +4,13 @@
 //! The bounds of x are the barriers; the bound of w, in contact, is 0. What is not plain is looked
 //! at motion by motion, by `flight` and `contact`, which come to the same numbers where it is.
 
-use super::series::{Coefficients, Ends, Inputs};
-use super::{Equation, VANISHING};
+use super::series::{Ends, Inputs, SeriesCoefficients};
+use super::{StepEquation, VANISHING};
 use crate::impact::polynomial::lanes::{changes_of_sign, crossings};
 
 /// A place on the way.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Point {
+pub(super) struct StepPoint {
     /// In the variable of the series.
     pub(super) at: f64,
     /// x or w.
@@ -22,10 +22,10 @@ pub(super) struct Point {
 
 /// What happens in a step of one motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Course {
-    pub(super) turn: Option<Point>,
+pub(super) struct StepEvents {
+    pub(super) turn: Option<StepPoint>,
     /// Where a bound is crossed, and whether it is the upper one.
-    pub(super) crossing: Option<(Point, bool)>,
+    pub(super) crossing: Option<(StepPoint, bool)>,
 }
 
 /// That of several.
@@ -52,8 +52,8 @@ impl<const L: usize> Points<L> {
         Self { at: [0.0; L], place: [0.0; L], velocity: [0.0; L], time: [0.0; L] }
     }
 
-    fn lane(&self, lane: usize) -> Point {
-        Point {
+    fn lane(&self, lane: usize) -> StepPoint {
+        StepPoint {
             at: self.at[lane],
             place: self.place[lane],
             velocity: self.velocity[lane],
@@ -76,8 +76,8 @@ impl<const L: usize> Courses<L> {
     }
 
     /// The course of one motion; nothing where it is not plain.
-    pub(super) fn lane(&self, lane: usize) -> Option<Course> {
-        self.plain[lane].then(|| Course {
+    pub(super) fn lane(&self, lane: usize) -> Option<StepEvents> {
+        self.plain[lane].then(|| StepEvents {
             turn: self.turns[lane].then(|| self.turn.lane(lane)),
             crossing: self.crosses[lane].then(|| (self.crossing.lane(lane), self.rises[lane])),
         })
@@ -87,8 +87,8 @@ impl<const L: usize> Courses<L> {
 /// The courses of steps of these lengths, which end there if nothing happens before.
 #[inline(always)]
 pub(super) fn courses<const L: usize>(
-    series: &Coefficients<L>,
-    (order, equation): (usize, Equation),
+    series: &SeriesCoefficients<L>,
+    (order, equation): (usize, StepEquation),
     inputs: &Inputs<L>,
     lengths: &[f64; L],
     ends: &Ends<L>,

@@ -3,7 +3,7 @@
 
 use super::Runner;
 use crate::impact::simulation::Regime;
-use crate::impact::simulation::{Stop, Turn};
+use crate::impact::simulation::{SimulationStop, Turn};
 
 impl Runner {
     /// The acceleration by all but friction at rest, now.
@@ -48,7 +48,7 @@ impl Runner {
             self.released = true;
         } else {
             self.direction = 0.0;
-            self.stop = Some(Stop::Duration);
+            self.stop = Some(SimulationStop::Duration);
         }
     }
 }

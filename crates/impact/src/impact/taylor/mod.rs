@@ -39,13 +39,13 @@ use std::f64::consts::FRAC_2_PI;
 use super::model::{Friction, Model, Side, Start};
 use super::polynomial::{Roots, near_sign_changes};
 use super::simulation::{
-    Contact, Integrator, Path, REST_FRACTION, Regime, Settings, Simulation, Stop, Turn, enter,
-    first_swing, has_rested, scaled,
+    ContactRecord, Integrator, REST_FRACTION, Regime, Settings, Simulation, SimulationPath,
+    SimulationStop, Turn, enter, first_swing, has_rested, scaled,
 };
 use angle::sine_and_cosine;
-use course::{Course, Courses, courses};
+use course::{Courses, StepEvents, courses};
 pub(super) use lanes::follow;
-use series::{Coefficients, End, HIGHEST_ORDER, Inputs, Terms};
+use series::{HIGHEST_ORDER, Inputs, SeriesCoefficients, StepEndState, Terms};
 use step::step_lengths;
 
 /// The longest step in time, for a motion at rest has no scale of its own.
@@ -81,7 +81,7 @@ type Loaded = [[f64; HIGHEST_ORDER + 1]; 3];
 
 /// Which series is wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Equation {
+enum StepEquation {
     Flight,
     Contact,
 }
@@ -115,17 +115,17 @@ pub(super) struct Runner {
     length: f64,
     steps: usize,
     idle: usize,
-    stop: Option<Stop>,
+    stop: Option<SimulationStop>,
     /// A tenth of the amplitude of the first swing.
     level: f64,
-    impacts: Vec<Contact>,
+    impacts: Vec<ContactRecord>,
     turns: Vec<Turn>,
-    path: Path,
+    path: SimulationPath,
 }
 
 /// What ends a step before its time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Event {
+enum StepEvent {
     Turn,
     Touch(Side),
     /// Turned on the barrier and pushed in: at rest there, and the contact begins from rest.
@@ -143,15 +143,15 @@ enum Event {
 /// One motion from its start to its end.
 pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulation {
     let mut runner = Runner::new(model, start, settings);
-    let mut series = Coefficients::<1>::new();
+    let mut series = SeriesCoefficients::<1>::new();
     let mut inputs = Inputs::<1>::new();
     let mut found = Courses::<1>::new();
     let (order, terms) = (runner.order(), runner.terms());
     while let Some(equation) = runner.wants() {
         runner.inputs(0, &mut inputs);
         match equation {
-            Equation::Flight => recurrences::flight(&inputs, order, terms, &mut series),
-            Equation::Contact => recurrences::contact(&inputs, order, terms, &mut series),
+            StepEquation::Flight => recurrences::flight(&inputs, order, terms, &mut series),
+            StepEquation::Contact => recurrences::contact(&inputs, order, terms, &mut series),
         }
         let [proposed] = step_lengths(&series.velocity, order, &inputs.size, &inputs.allowed);
         let length = runner.reach(proposed);
@@ -222,7 +222,7 @@ impl Runner {
             level: REST_FRACTION * first_swing(&model, start),
             impacts: Vec::with_capacity(FEW),
             turns: Vec::with_capacity(4 * FEW),
-            path: Path::new(),
+            path: SimulationPath::new(),
         };
         runner.fly();
         if start.velocity == 0.0 {
@@ -251,7 +251,7 @@ impl Runner {
             .rest_energy
             .is_some_and(|energy| model.energy(start.x, start.velocity) <= energy)
         {
-            runner.stop = Some(Stop::RestEnergy);
+            runner.stop = Some(SimulationStop::RestEnergy);
         }
         runner
     }
@@ -270,7 +270,7 @@ impl Runner {
             end_time,
             end_x,
             end_velocity,
-            stop: self.stop.unwrap_or(Stop::Duration),
+            stop: self.stop.unwrap_or(SimulationStop::Duration),
             steps: self.steps,
             fall: None,
         };
@@ -301,26 +301,26 @@ impl Runner {
     }
 
     /// The series wanted next; nothing once the run has ended.
-    fn wants(&mut self) -> Option<Equation> {
+    fn wants(&mut self) -> Option<StepEquation> {
         if self.stop.is_some() {
             return None;
         }
         if self.t >= self.settings.duration {
-            self.stop = Some(Stop::Duration);
+            self.stop = Some(SimulationStop::Duration);
             return None;
         }
         if self.steps >= self.settings.maximum_steps {
-            self.stop = Some(Stop::Steps { t: self.t });
+            self.stop = Some(SimulationStop::Steps { t: self.t });
             return None;
         }
         if self.settings.interrupt.is_requested() {
-            self.stop = Some(Stop::Interrupted { t: self.t });
+            self.stop = Some(SimulationStop::Interrupted { t: self.t });
             return None;
         }
         self.steps += 1;
         match self.regime {
-            Regime::Contact(_) => Some(Equation::Contact),
-            _ => Some(Equation::Flight),
+            Regime::Contact(_) => Some(StepEquation::Contact),
+            _ => Some(StepEquation::Flight),
         }
     }
 
@@ -384,15 +384,20 @@ impl Runner {
 
     /// Goes on with the series at the present moment: its values at the end of the step, and where
     /// they do not say enough, its coefficients: x and v, or w, v and t.
-    fn advance(&mut self, end: End, course: Option<Course>, load: impl Fn() -> Loaded) {
+    fn advance(
+        &mut self,
+        end: StepEndState,
+        course: Option<StepEvents>,
+        load: impl Fn() -> Loaded,
+    ) {
         let (before, turns) = (self.t, self.turns.len());
         if !(end.place.is_finite() && end.variation.is_finite()) {
-            self.stop = Some(Stop::NotFinite { t: self.t });
+            self.stop = Some(SimulationStop::NotFinite { t: self.t });
             return;
         }
         let contact = self.side().filter(|_| matches!(self.regime, Regime::Contact(_)));
         if contact.is_none() && self.t + end.time.min(self.settings.duration - self.t) <= self.t {
-            self.stop = Some(Stop::StepTooSmall { t: self.t });
+            self.stop = Some(SimulationStop::StepTooSmall { t: self.t });
             return;
         }
         let plain = course.filter(|course| {
@@ -416,11 +421,11 @@ impl Runner {
         }
         let turned = self.settings.stop_at_rest && self.turns.len() > turns;
         if turned && self.stop.is_none() && has_rested(&self.model, &self.turns, self.level) {
-            self.stop = Some(Stop::AtRest);
+            self.stop = Some(SimulationStop::AtRest);
         }
         self.idle = if self.t > before { 0 } else { self.idle + 1 };
         if self.idle > MOST_IDLE && self.stop.is_none() {
-            self.stop = Some(Stop::Stalled { t: self.t });
+            self.stop = Some(SimulationStop::Stalled { t: self.t });
         }
     }
 
@@ -443,7 +448,7 @@ impl Runner {
     /// Ends the run where it is; turning points noted in the rest of the step are no longer part of
     /// it.
     fn end_at_rest_energy(&mut self) {
-        self.stop = Some(Stop::RestEnergy);
+        self.stop = Some(SimulationStop::RestEnergy);
         while self.turns.last().is_some_and(|turn| turn.t > self.t) {
             self.turns.pop();
         }
@@ -484,7 +489,7 @@ impl Runner {
 }
 
 /// Where the velocity changes sign.
-fn turning_points(v: &[f64], h: f64, end: End) -> Roots {
+fn turning_points(v: &[f64], h: f64, end: StepEndState) -> Roots {
     // A motion at the edge of underflow has come to rest.
     if v[0].abs() > end.variation || end.variation < VANISHING {
         return Roots::new();

@@ -8,7 +8,7 @@
 use super::kernels::{
     INVERSE, each, product, quotient, sine_and_cosine, square, time, waves_of_time,
 };
-use super::series::{Coefficients, HIGHEST_ORDER, Inputs, Terms};
+use super::series::{HIGHEST_ORDER, Inputs, SeriesCoefficients, Terms};
 use super::stretch::{in_contact, in_flight, stretched, stretched_next};
 use crate::impact::model::STEEPNESS;
 
@@ -30,11 +30,12 @@ pub(super) fn flight<const L: usize>(
     inputs: &Inputs<L>,
     order: usize,
     terms: Terms,
-    series: &mut Coefficients<L>,
+    series: &mut SeriesCoefficients<L>,
 ) {
     let order = order.min(HIGHEST_ORDER);
     let stretch = in_flight(inputs);
-    let Coefficients { place: x, velocity: v, time: t, scratch, ahead, ahead_of_waves } = series;
+    let SeriesCoefficients { place: x, velocity: v, time: t, scratch, ahead, ahead_of_waves } =
+        series;
     let [drive, counter, x_slope, sine, cosine, scaled_v, slowing_over, slowing_slope, slowing, ..] =
         scratch;
     let [scaled_v_squared_ahead, drive_cosine_ahead, ..] = ahead;
@@ -123,11 +124,12 @@ pub(super) fn contact<const L: usize>(
     inputs: &Inputs<L>,
     order: usize,
     terms: Terms,
-    series: &mut Coefficients<L>,
+    series: &mut SeriesCoefficients<L>,
 ) {
     let order = order.min(HIGHEST_ORDER);
     let stretch = in_contact(inputs);
-    let Coefficients { place: w, velocity: v, time: t, scratch, ahead, ahead_of_waves } = series;
+    let SeriesCoefficients { place: w, velocity: v, time: t, scratch, ahead, ahead_of_waves } =
+        series;
     let [
         depth,
         t_slope,
@@ -230,7 +232,7 @@ pub(super) fn contact<const L: usize>(
 mod tests {
     use std::collections::BTreeMap;
 
-    use super::super::series::{Series, TIME_TERMS};
+    use super::super::series::{LaneSeries, TIME_TERMS};
     use super::*;
     use crate::expr::{Expr, parse_expression};
     use crate::impact::model::Side;
@@ -307,7 +309,7 @@ mod tests {
         (0..rates.len()).map(|place| tape.series(place).to_vec()).collect()
     }
 
-    fn assert_same(own: &Series<1>, other: &[f64], what: &str) {
+    fn assert_same(own: &LaneSeries<1>, other: &[f64], what: &str) {
         let size = other.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
         for (n, (own, other)) in own.iter().zip(other).enumerate() {
             assert!(
@@ -334,7 +336,7 @@ mod tests {
                 damped_contact: bits & 4 != 0,
             };
             let mut now = inputs(terms);
-            let mut series = Coefficients::<1>::new();
+            let mut series = SeriesCoefficients::<1>::new();
             contact(&now, ORDER, terms, &mut series);
             let start = [("w", 0.3), ("x'", 0.02), ("t", 0.7)];
             let other = by_expressions(start, &in_contact_rates, (&now, in_contact(&now)));

@@ -6,7 +6,7 @@
 
 use super::angle::sines_and_cosines;
 use super::kernels::each;
-use super::{Equation, Loaded};
+use super::{Loaded, StepEquation};
 use crate::impact::polynomial::lanes::{values, values_of, variations};
 
 /// Highest order of a series.
@@ -20,7 +20,7 @@ pub(super) const TIME_TERMS: usize = 4;
 pub(super) const LAST: usize = 5;
 
 /// Coefficients of a series, those of `L` motions side by side.
-pub(super) type Series<const L: usize> = [[f64; L]; HIGHEST_ORDER + 1];
+pub(super) type LaneSeries<const L: usize> = [[f64; L]; HIGHEST_ORDER + 1];
 
 /// Which terms of equation (7) are on in at least one of the motions.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -108,13 +108,13 @@ const SCRATCH: usize = 18;
 /// What a step is made of: two or three series, all but the first two scratch outside contact. No
 /// coefficient of eight lanes lies across two lines of the cache.
 #[repr(align(64))]
-pub(super) struct Coefficients<const L: usize> {
+pub(super) struct SeriesCoefficients<const L: usize> {
     /// x in flight, w in contact.
-    pub(super) place: Series<L>,
-    pub(super) velocity: Series<L>,
+    pub(super) place: LaneSeries<L>,
+    pub(super) velocity: LaneSeries<L>,
     /// Time since the start of the step.
-    pub(super) time: Series<L>,
-    pub(super) scratch: [Series<L>; SCRATCH],
+    pub(super) time: LaneSeries<L>,
+    pub(super) scratch: [LaneSeries<L>; SCRATCH],
     /// What is known of the next coefficients of products, and of sines and cosines. They are kept
     /// here because as variables of the function they make eight motions side by side slower by 8
     /// %.
@@ -122,7 +122,7 @@ pub(super) struct Coefficients<const L: usize> {
     pub(super) ahead_of_waves: [[[f64; L]; 2]; 2],
 }
 
-impl<const L: usize> Coefficients<L> {
+impl<const L: usize> SeriesCoefficients<L> {
     pub(super) fn new() -> Self {
         let zero = [[0.0; L]; HIGHEST_ORDER + 1];
         Self {
@@ -149,7 +149,7 @@ pub(super) struct Ends<const L: usize> {
 
 /// Those of one motion.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct End {
+pub(super) struct StepEndState {
     pub(super) place: f64,
     pub(super) velocity: f64,
     /// The time that the step takes.
@@ -167,8 +167,8 @@ impl<const L: usize> Ends<L> {
         Self { place: zero, velocity: zero, time: zero, variation: zero, sine: zero, cosine: zero }
     }
 
-    pub(super) fn lane(&self, lane: usize) -> End {
-        End {
+    pub(super) fn lane(&self, lane: usize) -> StepEndState {
+        StepEndState {
             place: self.place[lane],
             velocity: self.velocity[lane],
             time: self.time[lane],
@@ -179,7 +179,7 @@ impl<const L: usize> Ends<L> {
     }
 }
 
-impl<const L: usize> Coefficients<L> {
+impl<const L: usize> SeriesCoefficients<L> {
     /// The series of one motion: x or w, v, t.
     pub(super) fn lane(&self, order: usize, lane: usize) -> Loaded {
         let mut own = [[0.0; HIGHEST_ORDER + 1]; 3];
@@ -193,15 +193,20 @@ impl<const L: usize> Coefficients<L> {
 
     /// Place, velocity and time at these points; the time is a short polynomial in flight.
     #[inline(always)]
-    pub(super) fn values(&self, at: &[f64; L], order: usize, equation: Equation) -> [[f64; L]; 3] {
+    pub(super) fn values(
+        &self,
+        at: &[f64; L],
+        order: usize,
+        equation: StepEquation,
+    ) -> [[f64; L]; 3] {
         let order = order.min(HIGHEST_ORDER);
         let (place, velocity) = (&self.place[..=order], &self.velocity[..=order]);
         match equation {
-            Equation::Flight => {
+            StepEquation::Flight => {
                 let [place, velocity] = values_of([place, velocity], at);
                 [place, velocity, values(&self.time[..TIME_TERMS], at)]
             }
-            Equation::Contact => values_of([place, velocity, &self.time[..=order]], at),
+            StepEquation::Contact => values_of([place, velocity, &self.time[..=order]], at),
         }
     }
 
@@ -212,13 +217,13 @@ impl<const L: usize> Coefficients<L> {
         inputs: &Inputs<L>,
         lengths: &[f64; L],
         order: usize,
-        equation: Equation,
+        equation: StepEquation,
     ) -> Ends<L> {
         let order = order.min(HIGHEST_ORDER);
         let [place, velocity, time] = self.values(lengths, order, equation);
         let angle = match equation {
-            Equation::Flight => place,
-            Equation::Contact => each(|lane| inputs.base[lane] + place[lane] * place[lane]),
+            StepEquation::Flight => place,
+            StepEquation::Contact => each(|lane| inputs.base[lane] + place[lane] * place[lane]),
         };
         let (sine, cosine) = sines_and_cosines(&angle);
         Ends {

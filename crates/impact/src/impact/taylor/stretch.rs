@@ -13,7 +13,7 @@
 //! in flight up to 1.6. They decide about the length of the steps alone: the series are those of
 //! the equation in any variable, and a step is as long as its own coefficients allow.
 
-use super::series::{Inputs, Series};
+use super::series::{Inputs, LaneSeries};
 
 /// p and q of the steps of free flight.
 #[inline(always)]
@@ -54,7 +54,7 @@ pub(super) fn in_contact<const L: usize>(inputs: &Inputs<L>) -> [[f64; L]; 2] {
 #[inline(always)]
 pub(super) fn stretched<const L: usize>(
     [p, q]: &[[f64; L]; 2],
-    series: &Series<L>,
+    series: &LaneSeries<L>,
     n: usize,
 ) -> [f64; L] {
     let mut result = series[n];

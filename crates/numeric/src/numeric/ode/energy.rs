@@ -206,12 +206,12 @@ impl PeriodError {
 
 /// A force of the position alone, and where it may turn fast.
 #[derive(Clone, Copy)]
-pub struct Force<'a> {
+pub struct PiecewiseForce<'a> {
     value: &'a dyn Fn(f64) -> f64,
     cuts: &'a dyn Fn(f64, f64) -> Vec<f64>,
 }
 
-impl<'a> Force<'a> {
+impl<'a> PiecewiseForce<'a> {
     /// A force without corners or bumps narrower than the motion.
     pub fn smooth(value: &'a dyn Fn(f64) -> f64) -> Self {
         Self { value, cuts: &|_, _| vec![] }
@@ -246,8 +246,8 @@ impl<'a> Force<'a> {
 }
 
 /// `dt/dphi = 1/sqrt(2 g)` of the substitution above, piece by piece between the cuts of the force.
-pub struct Rates<'a> {
-    force: &'a Force<'a>,
+pub struct TimePerAngle<'a> {
+    force: &'a PiecewiseForce<'a>,
     /// By how much longer an instant takes than without inertia of position.
     weight: &'a dyn Fn(f64) -> f64,
     /// From the far turning point to the start.
@@ -261,10 +261,10 @@ pub struct Rates<'a> {
     below_end: Vec<f64>,
 }
 
-impl<'a> Rates<'a> {
+impl<'a> TimePerAngle<'a> {
     /// Between two turning points, the first of them the start.
     pub fn new(
-        force: &'a Force<'a>,
+        force: &'a PiecewiseForce<'a>,
         weight: &'a dyn Fn(f64) -> f64,
         start: f64,
         end: f64,
@@ -409,7 +409,7 @@ fn graded(knots: &[f64]) -> Vec<f64> {
 /// # Errors
 /// More knots than can be waited for.
 fn resolved(
-    force: &Force,
+    force: &PiecewiseForce,
     knots: Vec<f64>,
     infinite_middle: bool,
 ) -> Result<Vec<f64>, PeriodError> {
@@ -525,7 +525,11 @@ fn size(function: &dyn Fn(f64) -> f64, from: f64, to: f64) -> f64 {
 /// assert!(end < -0.5 && (energy(end) - energy(0.5)).abs() < 1e-12);
 /// # Ok::<(), lindstedt::numeric::period::PeriodError>(())
 /// ```
-pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64, PeriodError> {
+pub fn turning_point(
+    force: &PiecewiseForce,
+    equilibrium: f64,
+    start: f64,
+) -> Result<f64, PeriodError> {
     /// Steps per window of the search, and how many amplitudes far it goes.
     const STEPS: usize = 64;
     const FARTHEST: f64 = 1e10;
@@ -617,7 +621,7 @@ pub fn turning_point(force: &Force, equilibrium: f64, start: f64) -> Result<f64,
 /// Whether the well is symmetric and has a single bottom as far as the amplitude. The mirror image
 /// of the start is then the turning point to the last digit, which no root finder gives near a
 /// separatrix.
-fn is_symmetric(force: &Force, equilibrium: f64, amplitude: f64) -> bool {
+fn is_symmetric(force: &PiecewiseForce, equilibrium: f64, amplitude: f64) -> bool {
     /// The search for a turning point does not pass a place where the force is infinite: there
     /// symmetry may be lost in rounding.
     const ROUNDING: f64 = 1e-12;
@@ -635,7 +639,7 @@ fn is_symmetric(force: &Force, equilibrium: f64, amplitude: f64) -> bool {
 
 /// A step cut where the force first pushes the motion back and then on again, so that the kinetic
 /// energy has no lowest point between two ends.
-fn where_it_turns(force: &Force, side: f64, from: f64, to: f64) -> Vec<(f64, f64)> {
+fn where_it_turns(force: &PiecewiseForce, side: f64, from: f64, to: f64) -> Vec<(f64, f64)> {
     const SAMPLES: usize = 4;
     let place = |k: usize| from + (to - from) * k as f64 / SAMPLES as f64;
     let drives: Vec<bool> = (1..SAMPLES).map(|k| force.at(place(k)) * side > 0.0).collect();

@@ -13,7 +13,7 @@ use std::sync::LazyLock;
 use super::State;
 use super::root::{find_minimum, find_root};
 use super::sample::Sample;
-use super::trajectory::Step;
+use super::trajectory::TrajectoryStep;
 
 /// A function of (t, x, v), or of all values, whose zero matters, the direction of crossing that
 /// counts, and what is to happen there.
@@ -107,7 +107,7 @@ pub(super) struct NotFinite;
 
 /// Follows the sign of one event function from step to step.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Watch {
+pub(super) struct SignTracker {
     /// Sign of the last sample that was not zero; `None` at the start of a phase, and after the
     /// function reached zero at the very end of a step: from there the next sign is the start, not
     /// a crossing.
@@ -116,7 +116,7 @@ pub(super) struct Watch {
     starts_on_surface: bool,
 }
 
-impl Watch {
+impl SignTracker {
     /// The fractions of the step at which the event happens, in order, and whether its function
     /// rises there. `moved` is given for the first step of a phase: its start, moved on at the
     /// rates that the values have there.
@@ -126,7 +126,7 @@ impl Watch {
     /// direction that counts, it is left at once.
     pub(super) fn crossings<S: Sample>(
         &mut self,
-        step: &Step<S>,
+        step: &TrajectoryStep<S>,
         event: &Event<S>,
         moved: Option<&S>,
     ) -> Result<Vec<(f64, bool)>, NotFinite> {
@@ -280,15 +280,20 @@ mod tests {
     use super::*;
 
     /// A step of length 1 with x from `from` to `to` in a straight line.
-    fn line(from: f64, to: f64) -> Step<State> {
+    fn line(from: f64, to: f64) -> TrajectoryStep<State> {
         let start = State { t: 0.0, x: from, v: 0.0 };
-        Step::new(0, start, 1.0, FRACTIONS.map(|fraction| [from + fraction * (to - from), 0.0]))
+        TrajectoryStep::new(
+            0,
+            start,
+            1.0,
+            FRACTIONS.map(|fraction| [from + fraction * (to - from), 0.0]),
+        )
     }
 
     /// The crossings of x = 0 in such steps, one after the other from the start of a phase.
     fn crossings(steps: &[(f64, f64)]) -> Vec<Vec<f64>> {
         let event = Event::record(|_, x, _| x);
-        let mut watch = Watch::default();
+        let mut watch = SignTracker::default();
         let mut follow = |(index, &(from, to)): (usize, &(f64, f64))| {
             let step = line(from, to);
             let moved = (index == 0).then(|| step.state_at(1.0));
@@ -322,7 +327,7 @@ mod tests {
             let step = line(0.0, -1.0);
             let moved = step.state_at(1.0);
             assert_eq!(
-                Watch::default().crossings(&step, &event, Some(&moved)).unwrap().len(),
+                SignTracker::default().crossings(&step, &event, Some(&moved)).unwrap().len(),
                 found
             );
         }

@@ -11,15 +11,15 @@ use differential_equations::status::Status;
 use thiserror::Error;
 
 use super::State;
-use super::event::{Action, Event, Watch};
-use super::sample::{Point, Sample, Values};
+use super::event::{Action, Event, SignTracker};
+use super::sample::{Point, Sample, StateVector};
 use super::scheme::{Scheme, explicit, implicit};
-use super::trajectory::{FRACTIONS, Occurrence, Step, StopReason, TERMS, Trajectory};
+use super::trajectory::{FRACTIONS, Occurrence, StopReason, TERMS, Trajectory, TrajectoryStep};
 use crate::interrupt::Interrupt;
 
 /// How closely and how long to integrate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct IntegrationOptions {
     /// Error allowed per step relative to the size of each value.
     pub relative_tolerance: f64,
     /// Error allowed per step beside it, in the units of the values: choose it well below their
@@ -37,14 +37,14 @@ pub struct Options {
     pub interrupt: Interrupt,
 }
 
-impl Default for Options {
+impl Default for IntegrationOptions {
     /// Tolerances of 1e-10, 200 000 steps of any length.
     fn default() -> Self {
         Self::with_tolerance(1e-10)
     }
 }
 
-impl Options {
+impl IntegrationOptions {
     /// The same relative and absolute tolerance, the rest as in the default.
     pub fn with_tolerance(tolerance: f64) -> Self {
         Self {
@@ -59,15 +59,15 @@ impl Options {
 }
 
 /// A smooth right side and the events to look for while it is in force.
-pub struct Phase<'a, S: Sample = State> {
-    rates: Box<Rates<'a, S>>,
+pub struct IntegrationPhase<'a, S: Sample = State> {
+    rates: Box<RateFunction<'a, S>>,
     events: Vec<Event<'a, S>>,
 }
 
 /// Writes the rates of the values at a time.
-type Rates<'a, S> = dyn Fn(f64, &<S as Sample>::Values, &mut <S as Sample>::Values) + 'a;
+type RateFunction<'a, S> = dyn Fn(f64, &<S as Sample>::Values, &mut <S as Sample>::Values) + 'a;
 
-impl<'a> Phase<'a> {
+impl<'a> IntegrationPhase<'a> {
     /// The acceleration g(t, x, v) and the events of this phase.
     pub fn new(acceleration: impl Fn(f64, f64, f64) -> f64 + 'a, events: Vec<Event<'a>>) -> Self {
         let rates = Box::new(first_order(acceleration));
@@ -184,7 +184,7 @@ pub fn integrate<'a>(
     start: State,
     end_time: f64,
     events: &[Event<'a>],
-    options: &Options,
+    options: &IntegrationOptions,
 ) -> Result<Trajectory, IntegrationError> {
     let rates = first_order(acceleration);
     run(&[(&rates, events)], 0, start, end_time, Looks::NOWHERE, options)
@@ -214,13 +214,13 @@ pub fn integrate<'a>(
 /// # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
 /// ```
 pub fn integrate_phases(
-    phases: &[Phase],
+    phases: &[IntegrationPhase],
     first: usize,
     start: State,
     end_time: f64,
-    options: &Options,
+    options: &IntegrationOptions,
 ) -> Result<Trajectory, IntegrationError> {
-    let parts: Vec<Part<State>> =
+    let parts: Vec<PhaseFunctions<State>> =
         phases.iter().map(|phase| (&*phase.rates as _, phase.events.as_slice())).collect();
     run(&parts, first, start, end_time, Looks::NOWHERE, options)
         .map_err(|error| of_motion(error, start))
@@ -246,12 +246,12 @@ pub fn integrate_phases(
 ///
 /// # Errors
 /// As [`integrate`].
-pub fn integrate_first_order<'a, Y: Values>(
+pub fn integrate_first_order<'a, Y: StateVector>(
     rates: impl Fn(f64, &Y, &mut Y) + 'a,
     start: Point<Y>,
     end_time: f64,
     events: &[Event<'a, Point<Y>>],
-    options: &Options,
+    options: &IntegrationOptions,
 ) -> Result<Trajectory<Point<Y>>, IntegrationError> {
     run(&[(&rates, events)], 0, start, end_time, Looks::NOWHERE, options)
 }
@@ -260,13 +260,13 @@ pub fn integrate_first_order<'a, Y: Values>(
 ///
 /// # Errors
 /// As [`integrate`].
-pub fn integrate_through<'a, Y: Values>(
+pub fn integrate_through<'a, Y: StateVector>(
     rates: impl Fn(f64, &Y, &mut Y) + 'a,
     start: Point<Y>,
     end_time: f64,
     looks: Looks<Point<Y>>,
     events: &[Event<'a, Point<Y>>],
-    options: &Options,
+    options: &IntegrationOptions,
 ) -> Result<Trajectory<Point<Y>>, IntegrationError> {
     run(&[(&rates, events)], 0, start, end_time, looks, options)
 }
@@ -309,19 +309,19 @@ fn of_motion(error: IntegrationError, State { t, x, v }: State) -> IntegrationEr
     }
 }
 
-type Part<'r, 'a, S> = (&'r Rates<'r, S>, &'r [Event<'a, S>]);
+type PhaseFunctions<'r, 'a, S> = (&'r RateFunction<'r, S>, &'r [Event<'a, S>]);
 
 /// Switches in a row without progress of time (beyond rounding) after which the run is called
 /// stalled.
 const MAXIMUM_IDLE_SWITCHES: usize = 16;
 
 fn run<S: Sample>(
-    parts: &[Part<S>],
+    parts: &[PhaseFunctions<S>],
     first: usize,
     start: S,
     end_time: f64,
     looks: Looks<S>,
-    options: &Options,
+    options: &IntegrationOptions,
 ) -> Result<Trajectory<S>, IntegrationError> {
     check(&start, end_time, options)?;
     let unknown = |phase: usize| IntegrationError::UnknownPhase { phase, count: parts.len() };
@@ -379,7 +379,11 @@ fn run<S: Sample>(
     Ok(trajectory)
 }
 
-fn check(start: &impl Sample, end_time: f64, options: &Options) -> Result<(), IntegrationError> {
+fn check(
+    start: &impl Sample,
+    end_time: f64,
+    options: &IntegrationOptions,
+) -> Result<(), IntegrationError> {
     let start_time = start.time();
     if !(start.is_finite() && end_time.is_finite()) {
         return Err(IntegrationError::ValuesNotFinite { start_time, end_time });
@@ -402,7 +406,7 @@ fn check(start: &impl Sample, end_time: f64, options: &Options) -> Result<(), In
 
 /// The right side, counting its evaluations and remembering whether one of them was not finite.
 struct Counted<'r, S: Sample> {
-    rates: &'r Rates<'r, S>,
+    rates: &'r RateFunction<'r, S>,
     evaluations: &'r Cell<usize>,
     non_finite: Cell<bool>,
 }
@@ -424,7 +428,7 @@ struct Leg<'r, 'a, S: Sample> {
     events: &'r [Event<'a, S>],
     end_time: f64,
     looks: Looks<'r, S>,
-    options: &'r Options,
+    options: &'r IntegrationOptions,
 }
 
 enum LegEnd<S> {
@@ -443,7 +447,7 @@ impl<S: Sample> Leg<'_, '_, S> {
         let Some(mut solver) = self.solver(scheme, &state, 0.0) else {
             return LegEnd::Stopped(self.failure(state.time()));
         };
-        let mut watches = vec![Watch::default(); self.events.len()];
+        let mut watches = vec![SignTracker::default(); self.events.len()];
         let mut first = true;
         loop {
             let time = state.time();
@@ -617,7 +621,7 @@ impl<S: Sample> Leg<'_, '_, S> {
         scheme: &Scheme<M, S::Values>,
         solver: &mut M,
         start: &S,
-    ) -> Option<(Step<S>, S)> {
+    ) -> Option<(TrajectoryStep<S>, S)> {
         let (from, to) = (solver.t_prev(), solver.t());
         let length = to - from;
         let mut values: [S::Values; TERMS] = std::array::from_fn(|_| start.values());
@@ -627,15 +631,15 @@ impl<S: Sample> Leg<'_, '_, S> {
         let next = S::new(to, solver.y());
         let finite = |values: &S::Values| values.as_ref().iter().all(|value| value.is_finite());
         let finite = next.is_finite() && values.iter().all(finite);
-        finite.then(|| (Step::new(self.phase, start.clone(), length, values), next))
+        finite.then(|| (TrajectoryStep::new(self.phase, start.clone(), length, values), next))
     }
 
     /// The events inside the step in the order of time, as states, and whether they rise; `None`
     /// where an event function is not finite.
     fn happenings(
         &self,
-        step: &Step<S>,
-        watches: &mut [Watch],
+        step: &TrajectoryStep<S>,
+        watches: &mut [SignTracker],
         moved: Option<&S>,
     ) -> Option<Vec<(S, usize, bool)>> {
         let mut found = Vec::new();

@@ -154,20 +154,22 @@ pub(crate) fn integrate_within(
     let mut panels = Vec::new();
     for (from, to) in pieces().filter(|(from, to)| from != to) {
         let coarse = gauss(&mut function, from, to)?.0;
-        panels.push(Panel::split(&mut function, from, to, coarse)?);
+        panels.push(QuadraturePanel::split(&mut function, from, to, coarse)?);
     }
     let most = most_panels + panels.len().saturating_sub(1);
     // The sums as they change panel by panel say when it is worth adding up all of them.
-    let total = |panels: &[Panel], of: fn(&Panel) -> f64| panels.iter().map(of).sum::<f64>();
+    let total = |panels: &[QuadraturePanel], of: fn(&QuadraturePanel) -> f64| {
+        panels.iter().map(of).sum::<f64>()
+    };
     let mut running_error = total(&panels, |panel| panel.error);
     let mut running_magnitude = total(&panels, |panel| panel.magnitude);
     loop {
-        let sum = |of: fn(&Panel) -> f64| total(&panels, of);
+        let sum = |of: fn(&QuadraturePanel) -> f64| total(&panels, of);
         let bound = |magnitude: f64| absolute.max(tolerance * magnitude);
         if running_error.is_nan() || running_error <= 2.0 * bound(running_magnitude) {
             let error_estimate = sum(|panel| panel.error);
             if error_estimate <= bound(sum(|panel| panel.magnitude)) {
-                return Ok((sum(Panel::value), error_estimate));
+                return Ok((sum(QuadraturePanel::value), error_estimate));
             }
         }
         let worst =
@@ -181,13 +183,13 @@ pub(crate) fn integrate_within(
             || middle >= panel.from.max(panel.to)
         {
             return Err(QuadratureError::NotConverged {
-                value: sum(Panel::value),
+                value: sum(QuadraturePanel::value),
                 error_estimate: sum(|panel| panel.error),
                 worst_at: middle,
             });
         }
-        let left = Panel::split(&mut function, panel.from, middle, panel.left)?;
-        let right = Panel::split(&mut function, middle, panel.to, panel.right)?;
+        let left = QuadraturePanel::split(&mut function, panel.from, middle, panel.left)?;
+        let right = QuadraturePanel::split(&mut function, middle, panel.to, panel.right)?;
         running_error += left.error + right.error - panel.error;
         running_magnitude += left.magnitude + right.magnitude - panel.magnitude;
         panels[index] = left;
@@ -211,7 +213,7 @@ pub fn nodes_and_weights(from: f64, to: f64) -> impl Iterator<Item = (f64, f64)>
 
 /// One panel, already integrated on its two halves.
 #[derive(Clone, Copy)]
-struct Panel {
+struct QuadraturePanel {
     from: f64,
     to: f64,
     left: f64,
@@ -220,7 +222,7 @@ struct Panel {
     error: f64,
 }
 
-impl Panel {
+impl QuadraturePanel {
     fn split(
         function: &mut impl FnMut(f64) -> f64,
         from: f64,

@@ -28,7 +28,7 @@ pub(super) static FRACTIONS: LazyLock<[f64; TERMS]> = LazyLock::new(|| {
 pub struct Trajectory<S: Sample = State> {
     pub(super) start: S,
     pub(super) end: S,
-    pub(super) steps: Vec<Step<S>>,
+    pub(super) steps: Vec<TrajectoryStep<S>>,
     pub(super) occurrences: Vec<Occurrence<S>>,
     pub(super) stop_reason: StopReason,
     pub(super) evaluations: usize,
@@ -207,7 +207,7 @@ impl<S: Sample> Trajectory<S> {
 
 /// One accepted step, or the part of it before an event.
 #[derive(Debug, Clone)]
-pub(super) struct Step<S: Sample> {
+pub(super) struct TrajectoryStep<S: Sample> {
     pub(super) phase: usize,
     pub(super) start: S,
     /// The length of the whole step: the unit of the fraction s.
@@ -216,7 +216,7 @@ pub(super) struct Step<S: Sample> {
     quotient: [S::Values; TERMS],
 }
 
-impl<S: Sample> Step<S> {
+impl<S: Sample> TrajectoryStep<S> {
     /// From the values at [`FRACTIONS`].
     pub(super) fn new(phase: usize, start: S, length: f64, values: [S::Values; TERMS]) -> Self {
         let origin = start.values();
@@ -288,7 +288,7 @@ mod tests {
         let r = |s: f64| 4.0 * s.powi(3) - s.powi(6);
         let start = State { t: 2.0, x: 0.3, v: -1.0 };
         let values = FRACTIONS.map(|s| [start.x + s * p(s), start.v + s * r(s)]);
-        let step = Step::new(0, start, 0.5, values);
+        let step = TrajectoryStep::new(0, start, 0.5, values);
         for index in 0..=50 {
             let s = f64::from(index) / 50.0;
             let [x, v] = step.at(s);

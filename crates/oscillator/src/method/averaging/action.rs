@@ -14,7 +14,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::conservative::{Force, is_odd, potential};
+use crate::conservative::{CentredForce, is_odd, potential};
 use crate::expr::{Expr, Function, Node};
 use crate::oscillator::{Oscillator, Parts};
 use crate::solution::Note;
@@ -96,14 +96,15 @@ pub fn falls_to(
         return None;
     };
     let rate = rate.evaluate(numbers).ok().filter(|rate| *rate > 0.0)?;
-    let force = Force::new(&parts.restoring, oscillator.coordinate, equilibrium, numbers, start)?;
+    let force =
+        CentredForce::new(&parts.restoring, oscillator.coordinate, equilibrium, numbers, start)?;
     let ratio = action(&force, start)? / action(&force, end)?;
     Some(ratio.ln() / rate).filter(|time| time.is_finite())
 }
 
 /// The action of the motion released at a distance, up to a factor: `int sqrt(V(a) - V(x)) dx`
 /// between its turning points.
-fn action(force: &Force, start: f64) -> Option<f64> {
+fn action(force: &CentredForce, start: f64) -> Option<f64> {
     /// With `x = m + h sin(phi)` the integrand is smooth and periodic.
     const POINTS: usize = 64;
     let other = force.turning_point(start).ok()?;

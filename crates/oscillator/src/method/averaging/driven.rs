@@ -21,13 +21,13 @@ use num_traits::{One as _, ToPrimitive as _, Zero as _};
 
 use super::small_terms::SmallTerms;
 use super::{DerivationLetters, HIGHEST, Projected, Series, small_in_words};
-use crate::derivation::{Formula, Line};
+use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::method::drive::{Drive, Driven, Quadrature};
 use crate::method::driven_answer::DrivenMotion;
 use crate::method::frequency_response::FrequencyResponse;
-use crate::method::multiple_scales::driven::{Asked, is_of_resonance};
+use crate::method::multiple_scales::driven::{DrivenRequest, is_of_resonance};
 use crate::method::multiple_scales::scaling::{Scaling, bounded};
 use crate::method::resonance::{by_distance, is_near, is_ratio, ratio_of};
 use crate::method::{Options, Reason, Refusal, not_polynomial};
@@ -67,7 +67,7 @@ pub(super) fn solve(
         oscillator,
         free: &free,
         small: SmallTerms::of(&free, options)?,
-        asked: Asked {
+        asked: DrivenRequest {
             method: Method::Averaging,
             oscillator,
             drive: &drive,
@@ -100,7 +100,7 @@ struct UnderDrive<'a> {
     /// Without its drive.
     free: &'a Oscillator,
     small: SmallTerms,
-    asked: Asked<'a>,
+    asked: DrivenRequest<'a>,
 }
 
 impl UnderDrive<'_> {
@@ -422,25 +422,31 @@ impl<'a> ResonantEquation<'a> {
         &self,
         [amplitude_rate, phase_rate]: [&Expr; 2],
         response: &Response,
-    ) -> Result<Vec<Line>, ExprError> {
+    ) -> Result<Vec<DerivationLine>, ExprError> {
         let letters = DerivationLetters::beside(&self.oscillator.names());
         let mut lines = self.projected.along(self.oscillator, &Expr::from(self.a), &letters)?;
         let theta = Expr::from(self.oscillator.phase());
         let turned = &(Expr::from(i64::from(self.p)) * theta) + &Expr::from(self.phase);
-        lines.push(Line::equation(self.drive.angle(), turned).because("the drive turns with"));
         lines.push(
-            Line::equation(self.a.derivative(), amplitude_rate.clone())
+            DerivationLine::equation(self.drive.angle(), turned).because("the drive turns with"),
+        );
+        lines.push(
+            DerivationLine::equation(self.a.derivative(), amplitude_rate.clone())
                 .because("what sin(θ) asks for, with the drive"),
         );
         lines.push(
-            Line::equation(self.phase.derivative(), phase_rate.clone())
+            DerivationLine::equation(self.phase.derivative(), phase_rate.clone())
                 .because("what cos(θ) asks for"),
         );
         let closed = response.closed.as_ref().map(|closed| closed.relation.clone());
         if let Some(relation) = response.relation.as_ref().map(Expr::from).or(closed) {
             let steady = "steady where both vanish; cos^2 + sin^2 = 1 eliminates the phase";
             lines.push(
-                Line::equal([Formula::from(Expr::zero()), Formula::from(relation)]).because(steady),
+                DerivationLine::equal([
+                    DerivationFormula::from(Expr::zero()),
+                    DerivationFormula::from(relation),
+                ])
+                .because(steady),
             );
         }
         Ok(lines)

@@ -26,10 +26,10 @@ use num_traits::{One as _, Signed as _, Zero as _};
 
 use super::small_terms::letters;
 use super::{DerivationLetters, action};
-use crate::conservative::force::Force;
+use crate::conservative::force::CentredForce;
 use crate::conservative::power::Power;
 use crate::decimal::rounded;
-use crate::derivation::Line;
+use crate::derivation::DerivationLine;
 use crate::exact::rational::ratio;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, ExprError, Function};
@@ -162,7 +162,8 @@ impl Shape {
         const MOST: usize = 15;
         const LEAST: f64 = 1e-10;
         let unit = Expr::divide(&parts.restoring, &restoring.stiffness).ok()?.expand().ok()?;
-        let force = Force::new(&unit, oscillator.coordinate, &Expr::zero(), &BTreeMap::new(), 1.0)?;
+        let force =
+            CentredForce::new(&unit, oscillator.coordinate, &Expr::zero(), &BTreeMap::new(), 1.0)?;
         let (_, cosine) = motion_about(&force, 1.0).ok()?;
         let first = *cosine.get(1)?;
         let over = |(k, value): (usize, &f64)| match k % 2 == 1 && (value / first).abs() >= LEAST {
@@ -222,7 +223,7 @@ impl AnswerSymbols {
 struct SlowEquations {
     amplitude_rate: Expr,
     phase_rate: Expr,
-    derivation: Vec<Line>,
+    derivation: Vec<DerivationLine>,
 }
 
 impl SlowEquations {
@@ -252,14 +253,14 @@ impl SlowEquations {
         let phase_rate = turn(&Expr::divide(&Expr::from(amplitude), &Expr::from(first))?)?;
         let phase_rate = spread(&phase_rate)?;
         let derivation = vec![
-            Line::equation(turning.derivative(), Expr::sum(turning_rates))
+            DerivationLine::equation(turning.derivative(), Expr::sum(turning_rates))
                 .because("the mean of the work that damping takes, over k*r^n"),
-            Line::equation(phase.derivative(), turn(&Expr::from(turning))?)
+            DerivationLine::equation(phase.derivative(), turn(&Expr::from(turning))?)
                 .because("the exact frequency of the motion that turns at r"),
-            Line::equation(amplitude, Expr::from(first) * Expr::from(turning))
+            DerivationLine::equation(amplitude, Expr::from(first) * Expr::from(turning))
                 .because("its first harmonic"),
-            Line::equation(amplitude.derivative(), amplitude_rate.clone()),
-            Line::equation(phase.derivative(), phase_rate.clone()),
+            DerivationLine::equation(amplitude.derivative(), amplitude_rate.clone()),
+            DerivationLine::equation(phase.derivative(), phase_rate.clone()),
         ];
         Ok(Self { amplitude_rate, phase_rate, derivation })
     }

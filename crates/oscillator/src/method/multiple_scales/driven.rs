@@ -21,10 +21,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::derivation::{averaged_lines, derivation};
-use super::names::Names;
+use super::names::ExpansionSymbols;
 use super::scaling::{Scaling, bounded, has_linear_damping, has_quadratic_terms, scaling};
-use super::slow_times::{Complex, DrivenTerm, Expansion, Scaled};
-use super::slow_waves::{Slow, backbone, response};
+use super::slow_times::{Complex, DrivenTerm, MultipleScalesExpansion, ScaledProblem};
+use super::slow_waves::{SlowRates, backbone, response};
 use super::undriven;
 use crate::exact::Polynomial;
 use crate::exact::rational::ratio;
@@ -114,7 +114,7 @@ fn expanded(
         Some(_) => drive,
         None => drive.in_small_motions(oscillator.coordinate, scaling.order + 1),
     };
-    let asked = Asked {
+    let asked = DrivenRequest {
         method: Method::MultipleScales,
         oscillator,
         drive: &drive,
@@ -167,7 +167,7 @@ pub(in crate::method) fn is_of_resonance(refusal: &Refusal) -> bool {
 }
 
 /// A driven motion that is to be expanded, by the method that asks.
-pub(in crate::method) struct Asked<'a> {
+pub(in crate::method) struct DrivenRequest<'a> {
     pub(in crate::method) method: Method,
     pub(in crate::method) oscillator: &'a Oscillator,
     pub(in crate::method) drive: &'a Drive,
@@ -175,7 +175,7 @@ pub(in crate::method) struct Asked<'a> {
     pub(in crate::method) resonance: Option<(u32, u32)>,
 }
 
-impl Asked<'_> {
+impl DrivenRequest<'_> {
     /// The ratio of the frequencies, where they are numbers and no resonance is asked for.
     fn near(&self, scaling: &Scaling) -> Option<f64> {
         match self.resonance {
@@ -212,11 +212,11 @@ impl Asked<'_> {
         if !is_ratio(resonance) {
             return false;
         }
-        let Ok(question) = Question::new(self, scaling, resonance) else {
+        let Ok(question) = DrivenProblem::new(self, scaling, resonance) else {
             return false;
         };
         let expansion = question.expand(false);
-        expansion.is_ok_and(|expansion| Slow::new(&expansion, &question).is_resonant())
+        expansion.is_ok_and(|expansion| SlowRates::new(&expansion, &question).is_resonant())
     }
 
     /// The answer at the likeliest resonance.
@@ -268,14 +268,14 @@ impl Asked<'_> {
         if !is_ratio(resonance) {
             return Ok(None);
         }
-        let question = Question::new(self, scaling, resonance)?;
+        let question = DrivenProblem::new(self, scaling, resonance)?;
         let expansion = question.expand(false)?;
-        let slow = Slow::new(&expansion, &question);
+        let slow = SlowRates::new(&expansion, &question);
         if !slow.is_resonant() {
             return Ok(None);
         }
         let still = question.expand(true)?;
-        let found = DrivenExpansion { still: Slow::new(&still, &question), slow, expansion };
+        let found = DrivenExpansion { still: SlowRates::new(&still, &question), slow, expansion };
         question.answer(&found).map(Some)
     }
 }
@@ -290,7 +290,7 @@ fn grows(scaling: &Scaling, drive: &Drive, (p, q): (u32, u32)) -> bool {
 }
 
 /// A question to the expansion.
-pub(super) struct Question<'a> {
+pub(super) struct DrivenProblem<'a> {
     method: Method,
     pub(super) oscillator: &'a Oscillator,
     pub(super) scaling: &'a Scaling,
@@ -300,16 +300,16 @@ pub(super) struct Question<'a> {
     pub(super) linear_frequency: Polynomial,
     root: Option<Definition>,
     definitions: Vec<Definition>,
-    pub(super) names: Names,
+    pub(super) names: ExpansionSymbols,
     pub(super) sigma: Symbol,
     /// By the multiple of a drive far from resonance `Lambda` of its cosine, and of its sine.
     lambda: BTreeMap<u32, [Symbol; 2]>,
     pub(super) taken: Vec<Symbol>,
 }
 
-impl<'a> Question<'a> {
+impl<'a> DrivenProblem<'a> {
     fn new(
-        asked: &Asked<'a>,
+        asked: &DrivenRequest<'a>,
         scaling: &'a Scaling,
         resonance: (u32, u32),
     ) -> Result<Self, Refusal> {
@@ -334,7 +334,7 @@ impl<'a> Question<'a> {
             linear_frequency,
             root,
             definitions,
-            names: Names::new(&taken, oscillator.coordinate, scaling.marker),
+            names: ExpansionSymbols::new(&taken, oscillator.coordinate, scaling.marker),
             sigma: fresh("sigma", &taken),
             lambda: hard.into_iter().map(|multiple| (multiple, lambda(multiple))).collect(),
             taken,
@@ -386,7 +386,7 @@ impl<'a> Question<'a> {
     }
 
     /// The expansion; `still` leaves damping out, and a small drive.
-    fn expand(&self, still: bool) -> Result<Expansion, Refusal> {
+    fn expand(&self, still: bool) -> Result<MultipleScalesExpansion, Refusal> {
         let (p, q) = self.resonance;
         let mut terms: Vec<DrivenTerm> = self.scaling.force.terms.iter().map(undriven).collect();
         let mut forced: BTreeMap<u32, Complex> = BTreeMap::new();
@@ -416,7 +416,7 @@ impl<'a> Question<'a> {
         }
         let turning = Polynomial::symbol(self.sigma)
             .product(&Polynomial::constant(ratio(1, i64::from(p) * i64::from(q))));
-        let scaled = Scaled {
+        let scaled = ScaledProblem {
             terms,
             linear_frequency: self.linear_frequency.clone(),
             own: q as i32,
@@ -484,13 +484,13 @@ impl<'a> Question<'a> {
 
 /// The result of the expansion of a driven motion.
 struct DrivenExpansion {
-    expansion: Expansion,
-    slow: Slow,
+    expansion: MultipleScalesExpansion,
+    slow: SlowRates,
     /// Without damping and drive.
-    still: Slow,
+    still: SlowRates,
 }
 
-impl Question<'_> {
+impl DrivenProblem<'_> {
     fn answer(&self, found: &DrivenExpansion) -> Result<Solution, Refusal> {
         let DrivenExpansion { expansion, slow, still } = found;
         let (p, q) = self.resonance;
@@ -511,7 +511,7 @@ impl Question<'_> {
         definitions.extend(drive.definitions.iter().cloned());
         definitions.extend(forced);
         definitions.extend(scaling.bookkeeping.clone());
-        let backbone = self.unmarked(&backbone(&Slow::still(&still.phase), self));
+        let backbone = self.unmarked(&backbone(&SlowRates::still(&still.phase), self));
         let averaged = self.method == Method::Averaging;
         // Averaging has its motion to one order less than its rates.
         let highest = if averaged { scaling.order - 1 } else { scaling.order };

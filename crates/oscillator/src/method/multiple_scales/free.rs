@@ -3,17 +3,17 @@
 
 use num_traits::Zero as _;
 
-use super::answer::{Found, solution};
+use super::answer::{MultipleScalesResult, solution};
 use super::derivation::{derivation, motion_of};
-use super::names::Names;
+use super::names::ExpansionSymbols;
 use super::release::release;
 use super::scaling::{Scaling, scaling};
 use super::slow_equations::{Cycles, SlowEquations, cycles};
-use super::slow_times::Scaled;
+use super::slow_times::ScaledProblem;
 use super::undriven;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::Expr;
-use crate::method::limit_cycle::Units;
+use crate::method::limit_cycle::FrequencyUnits;
 use crate::method::lindstedt_poincare::{LinearPart, with_square};
 use crate::method::{Options, Reason, Refusal, transient};
 use crate::oscillator::{Oscillator, Parts};
@@ -40,11 +40,11 @@ pub(super) fn solve(
     let mut scaling = scaling(oscillator, parts, options, DEFAULT, HIGHEST)?;
     scaling.force.write_with_frequency(&oscillator.names());
     let linear = LinearPart::of(&scaling.force, oscillator);
-    let units = Units::new(&scaling.force, linear.frequency.clone());
+    let units = FrequencyUnits::new(&scaling.force, linear.frequency.clone());
     let cycles = cycles(&scaling, &units, options, &linear.taken)?;
-    let names = Names::new(&linear.taken, oscillator.coordinate, scaling.marker);
+    let names = ExpansionSymbols::new(&linear.taken, oscillator.coordinate, scaling.marker);
     let order = scaling.order as usize;
-    let scaled = Scaled {
+    let scaled = ScaledProblem {
         terms: scaling.force.terms.iter().map(undriven).collect(),
         linear_frequency: linear.frequency.clone(),
         own: 1,
@@ -66,7 +66,7 @@ pub(super) fn solve(
     let rates = [&free.slow.amplitude, &free.slow.phase].map(|rate| free.written(&free.cut(rate)));
     let rates = rates.each_ref().map(Expr::from);
     let derivation = derivation(&expansion, &scaling, &names, &linear.frequency, &rates, None)?;
-    let mut found = Found {
+    let mut found = MultipleScalesResult {
         definitions: linear.definitions.clone(),
         law: Law::Frequency(free.written(&free.cut(&free.slow.phase))),
         displacement: free.written_motion(&free.motion),
@@ -93,7 +93,7 @@ struct Free<'a> {
     motion: FourierSeries<Polynomials>,
     scaling: &'a Scaling,
     linear: &'a LinearPart,
-    names: &'a Names,
+    names: &'a ExpansionSymbols,
 }
 
 impl Free<'_> {
@@ -147,7 +147,7 @@ impl Free<'_> {
 
     /// Puts the motion on the limit cycle that was chosen; the motion in the amplitude is kept
     /// beside it.
-    fn settle(&self, cycles: &Cycles, found: &mut Found) -> Result<(), Refusal> {
+    fn settle(&self, cycles: &Cycles, found: &mut MultipleScalesResult) -> Result<(), Refusal> {
         let (scaling, names) = (self.scaling, self.names);
         let cycle = &cycles.cycles[cycles.number - 1];
         let order = scaling.order as usize;
@@ -185,7 +185,7 @@ impl Free<'_> {
 
     /// Adds the initial amplitude and phase of a motion released from rest, to the order of the
     /// slow equations, and the closed form from there.
-    fn start(&self, found: &mut Found, names: &[Symbol]) {
+    fn start(&self, found: &mut MultipleScalesResult, names: &[Symbol]) {
         let order = (self.scaling.order as usize).saturating_sub(1);
         let rates = [&self.slow.amplitude, &self.slow.phase];
         let begins = release(&self.motion, rates, &self.linear.frequency, self.names, order);

@@ -3,15 +3,15 @@
 
 use num_traits::Zero as _;
 
-use super::slow_times::Amplitude;
+use super::slow_times::ComplexAmplitude;
 use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Rational};
 use crate::solution::AmplitudeConvention;
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 /// The symbols.
-pub(super) struct Names {
-    pub(super) complex: Amplitude,
+pub(super) struct ExpansionSymbols {
+    pub(super) complex: ComplexAmplitude,
     /// Marks the orders: the small parameter, or a symbol that is one.
     pub(super) marker: Symbol,
     /// The slow phase.
@@ -23,13 +23,13 @@ pub(super) struct Names {
     pub(super) orders: [String; 2],
 }
 
-impl Names {
+impl ExpansionSymbols {
     pub(super) fn new(taken: &[Symbol], coordinate: Symbol, marker: Option<Symbol>) -> Self {
         let own = fresh("B", taken);
         Self {
             unit: fresh("i", taken),
             orders: [coordinate, own].map(|name| fresh_stem(name.name(), taken)),
-            complex: Amplitude { own, conjugate: fresh("Bc", taken) },
+            complex: ComplexAmplitude { own, conjugate: fresh("Bc", taken) },
             marker: marker.unwrap_or_else(|| fresh("delta", taken)),
             phase: fresh("psi", taken),
             amplitude: AmplitudeConvention::FirstHarmonic.symbol(),

@@ -8,7 +8,7 @@
 
 use num_traits::Zero as _;
 
-use super::names::Names;
+use super::names::ExpansionSymbols;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
 use crate::exact::{POLYNOMIALS, Polynomial, Polynomials};
@@ -22,7 +22,7 @@ pub(super) fn release(
     motion: &FourierSeries<Polynomials>,
     [amplitude_rate, phase_rate]: [&Polynomial; 2],
     linear_frequency: &Polynomial,
-    names: &Names,
+    names: &ExpansionSymbols,
     order: usize,
 ) -> Option<[Polynomial; 2]> {
     let highest = i32::try_from(order).ok()?;

@@ -2,13 +2,13 @@
 
 use num_traits::Zero as _;
 
-use super::names::Names;
+use super::names::ExpansionSymbols;
 use super::scaling::Scaling;
-use super::slow_times::Expansion;
+use super::slow_times::MultipleScalesExpansion;
 use crate::exact::Polynomial;
 use crate::exact::polynomial::Monomial;
 use crate::exact::rational::ratio;
-use crate::method::limit_cycle::{AmplitudeEquation, Cycle, Units, chosen};
+use crate::method::limit_cycle::{AmplitudeEquation, Cycle, FrequencyUnits, chosen};
 use crate::method::{Options, Reason, Refusal};
 use crate::symbol::{Symbol, fresh};
 
@@ -19,7 +19,11 @@ pub(super) struct SlowEquations {
 }
 
 impl SlowEquations {
-    pub(super) fn new(expansion: &Expansion, linear_frequency: &Polynomial, names: &Names) -> Self {
+    pub(super) fn new(
+        expansion: &MultipleScalesExpansion,
+        linear_frequency: &Polynomial,
+        names: &ExpansionSymbols,
+    ) -> Self {
         let (mut amplitude, mut phase) = (Polynomial::zero(), linear_frequency.clone());
         let two = Polynomial::constant(ratio(2, 1));
         for (k, rate) in expansion.rates.iter().enumerate().skip(1) {
@@ -39,7 +43,7 @@ impl SlowEquations {
         cycle: &Cycle,
         linear_frequency: &Polynomial,
         order: usize,
-        names: &Names,
+        names: &ExpansionSymbols,
     ) -> Option<Polynomial> {
         let mut amplitude = cycle.unit.clone();
         let coefficient = |polynomial: &Polynomial, order: usize| {
@@ -85,7 +89,7 @@ pub(super) struct Cycles {
 /// The amplitudes have no closed form, or one that is not there is asked for.
 pub(super) fn cycles(
     scaling: &Scaling,
-    units: &Units,
+    units: &FrequencyUnits,
     options: &Options,
     taken: &[Symbol],
 ) -> Result<Option<Cycles>, Refusal> {

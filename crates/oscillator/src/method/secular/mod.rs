@@ -25,7 +25,7 @@ mod sine;
 mod symbolic;
 
 pub(super) use denominators::Factored;
-pub use reconstruct::Extent;
+pub use reconstruct::ExpansionScope;
 
 use std::collections::HashMap;
 
@@ -34,7 +34,7 @@ use num_integer::Integer as _;
 use crate::exact::ring::Indivisible;
 use crate::exact::{Integers, Polynomials, Ring};
 use crate::interrupt::Supervision;
-use crate::series::convolution::{Convolutions, Node};
+use crate::series::convolution::{Convolutions, SeriesNode};
 use crate::series::fourier::{FourierSeries, sum_of_products};
 use crate::solution::AmplitudeConvention;
 
@@ -55,7 +55,7 @@ pub struct ForceTerm<R: Ring> {
 
 /// Whether the amplitude is free (conservative) or determined by the equation (self-excited).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Amplitude {
+pub enum AmplitudeKind {
     /// A family of periodic motions, one for every amplitude.
     Free,
     /// An isolated limit cycle: `y = cos tau` already has the amplitude at which the first order
@@ -80,14 +80,14 @@ pub struct Scheme {
     /// harmonic of `y` is `cos tau` exactly.
     pub normalisation: AmplitudeConvention,
     /// Free or determined.
-    pub amplitude: Amplitude,
+    pub amplitude: AmplitudeKind,
     /// The term of the equation in which the frequency is expanded.
     pub detuning: Detuning,
 }
 
 /// The result, order by order.
 #[derive(Clone, Debug)]
-pub struct Expansion<R: Ring> {
+pub struct SecularExpansion<R: Ring> {
     /// `W_n`: omega^2 in powers of the small parameter, constant series; `W_0 = 1`.
     pub frequency_squared: Vec<FourierSeries<R>>,
     /// omega itself, likewise.
@@ -211,7 +211,7 @@ pub fn expand<R: Ring>(
     force: &[ForceTerm<R>],
     highest: usize,
     scheme: &Scheme,
-) -> Result<Expansion<R>, SecularError> {
+) -> Result<SecularExpansion<R>, SecularError> {
     expand_from_root(ring, force, highest, scheme, None)
 }
 
@@ -243,8 +243,8 @@ pub fn expand_numbers(
     force: &[ForceTerm<Integers>],
     highest: usize,
     scheme: &Scheme,
-    extent: Extent,
-) -> Result<Expansion<Integers>, SecularError> {
+    extent: ExpansionScope,
+) -> Result<SecularExpansion<Integers>, SecularError> {
     expand_numbers_supervised(force, highest, scheme, extent, Supervision::default())
 }
 
@@ -256,9 +256,9 @@ pub(crate) fn expand_numbers_supervised(
     force: &[ForceTerm<Integers>],
     highest: usize,
     scheme: &Scheme,
-    extent: Extent,
+    extent: ExpansionScope,
     supervision: Supervision,
-) -> Result<Expansion<Integers>, SecularError> {
+) -> Result<SecularExpansion<Integers>, SecularError> {
     bounded(force.iter().map(|term| (term.order, term.position + term.velocity)), highest)?;
     // If all terms have orders that are multiples of one number, as for an amplitude that enters
     // squared, so has the solution.
@@ -271,7 +271,7 @@ pub(crate) fn expand_numbers_supervised(
         Some(expansion) => expansion,
         None => expand_supervised(&Integers, &compressed, orders, scheme, None, supervision)?,
     };
-    if extent == Extent::Frequency {
+    if extent == ExpansionScope::Frequency {
         expansion.forget_motion();
     }
     Ok(match step {
@@ -315,8 +315,8 @@ pub fn expand_polynomials(
     force: &[ForceTerm<Polynomials<Integers>>],
     highest: usize,
     scheme: &Scheme,
-    extent: Extent,
-) -> Result<Expansion<Polynomials<Integers>>, SecularError> {
+    extent: ExpansionScope,
+) -> Result<SecularExpansion<Polynomials<Integers>>, SecularError> {
     expand_polynomials_supervised(force, highest, scheme, extent, Supervision::default())
 }
 
@@ -328,9 +328,9 @@ pub(crate) fn expand_polynomials_supervised(
     force: &[ForceTerm<Polynomials<Integers>>],
     highest: usize,
     scheme: &Scheme,
-    extent: Extent,
+    extent: ExpansionScope,
     supervision: Supervision,
-) -> Result<Expansion<Polynomials<Integers>>, SecularError> {
+) -> Result<SecularExpansion<Polynomials<Integers>>, SecularError> {
     /// Below, there are few products.
     const MANY: usize = 2;
     bounded(force.iter().map(|term| (term.order, term.position + term.velocity)), highest)?;
@@ -341,13 +341,13 @@ pub(crate) fn expand_polynomials_supervised(
     }
     let mut expansion =
         expand_supervised(&Polynomials(Integers), force, highest, scheme, None, supervision)?;
-    if extent == Extent::Frequency {
+    if extent == ExpansionScope::Frequency {
         expansion.forget_motion();
     }
     Ok(expansion)
 }
 
-impl<R: Ring> Expansion<R> {
+impl<R: Ring> SecularExpansion<R> {
     /// Leaves the frequency alone.
     pub fn forget_motion(&mut self) {
         self.displacement.clear();
@@ -356,7 +356,7 @@ impl<R: Ring> Expansion<R> {
     }
 }
 
-impl Expansion<Integers> {
+impl SecularExpansion<Integers> {
     /// Returns the expansion with order n moved to order `step * n`, up to `highest`.
     fn spread(self, step: usize, highest: usize) -> Self {
         let zero = || FourierSeries::zero(Integers);
@@ -411,7 +411,7 @@ pub fn expand_from_root<R: Ring>(
     highest: usize,
     scheme: &Scheme,
     inverse_slope: Option<FourierSeries<R>>,
-) -> Result<Expansion<R>, SecularError> {
+) -> Result<SecularExpansion<R>, SecularError> {
     expand_supervised(ring, force, highest, scheme, inverse_slope, Supervision::default())
 }
 
@@ -427,8 +427,8 @@ pub(crate) fn expand_supervised<R: Ring>(
     scheme: &Scheme,
     inverse_slope: Option<FourierSeries<R>>,
     supervision: Supervision,
-) -> Result<Expansion<R>, SecularError> {
-    let of_amplitude = usize::from(scheme.amplitude == Amplitude::Determined);
+) -> Result<SecularExpansion<R>, SecularError> {
+    let of_amplitude = usize::from(scheme.amplitude == AmplitudeKind::Determined);
     let powers = force.iter().map(|term| (term.order, term.position + term.velocity));
     bounded(powers, highest.saturating_add(of_amplitude))?;
     let mut order_by_order = OrderByOrder::new(ring, force, highest, *scheme, inverse_slope);
@@ -446,10 +446,10 @@ pub(crate) fn expand_supervised<R: Ring>(
 struct OrderByOrder<'a, R: Ring> {
     ring: &'a R,
     force: &'a [ForceTerm<R>],
-    products: Vec<Option<Node>>,
+    products: Vec<Option<SeriesNode>>,
     convolutions: Convolutions<R>,
-    position: Node,
-    velocity: Node,
+    position: SeriesNode,
+    velocity: SeriesNode,
     scheme: Scheme,
     /// `1/J`, where it was given.
     inverse_slope: Option<FourierSeries<R>>,
@@ -457,7 +457,7 @@ struct OrderByOrder<'a, R: Ring> {
     variations: Vec<FourierSeries<R>>,
     /// `y_n''` or `-y_n`: what the corrections of the frequency multiply.
     detuned: Vec<FourierSeries<R>>,
-    result: Expansion<R>,
+    result: SecularExpansion<R>,
 }
 
 impl<'a, R: Ring> OrderByOrder<'a, R> {
@@ -471,11 +471,12 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
         let mut convolutions = Convolutions::new(ring.clone());
         let (position, velocity) = (convolutions.leaf(), convolutions.leaf());
         // The last amplitude of a limit cycle follows from one order more than is kept.
-        let last = if scheme.amplitude == Amplitude::Determined { highest + 1 } else { highest };
+        let last =
+            if scheme.amplitude == AmplitudeKind::Determined { highest + 1 } else { highest };
         let mut product_of = |term: &ForceTerm<R>| {
             let powers = [(position, term.position), (velocity, term.velocity)];
             let powers = powers.into_iter().filter(|power| power.1 > 0);
-            let nodes: Vec<Node> =
+            let nodes: Vec<SeriesNode> =
                 powers.map(|(node, exponent)| convolutions.power(node, exponent)).collect();
             let node = nodes.into_iter().reduce(|left, right| convolutions.product(left, right))?;
             if let Some(needed) = last.checked_sub(term.order) {
@@ -490,7 +491,7 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
         convolutions.advance(0);
         let leaves = HashMap::from([(position, start.clone()), (velocity, start.derivative())]);
         let variations = convolutions.variations(&leaves);
-        let result = Expansion {
+        let result = SecularExpansion {
             frequency_squared: vec![FourierSeries::integer(ring.clone(), 1)],
             frequency: vec![FourierSeries::integer(ring.clone(), 1)],
             displacement: vec![start.clone()],
@@ -516,7 +517,7 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
 
     fn solve_order(&mut self, order: usize) -> Result<(), SecularError> {
         let mut right_side = divided(order, self.right_side(order))?;
-        if self.scheme.amplitude == Amplitude::Determined && order > 1 {
+        if self.scheme.amplitude == AmplitudeKind::Determined && order > 1 {
             right_side = self.fix_amplitude(order, right_side)?;
         }
         let (particular, resonance) = right_side.solve_oscillator();
@@ -595,7 +596,7 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
     }
 
     fn fix_last_amplitude(&mut self, highest: usize) -> Result<(), SecularError> {
-        if self.scheme.amplitude == Amplitude::Determined && highest > 0 {
+        if self.scheme.amplitude == AmplitudeKind::Determined && highest > 0 {
             let right_side = divided(highest + 1, self.right_side(highest + 1))?;
             self.fix_amplitude(highest + 1, right_side)?;
         }
@@ -632,8 +633,10 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
         let with_phase =
             particular.difference(&sine.product(&FourierSeries::sin(self.ring.clone(), 1)));
         match self.scheme.amplitude {
-            Amplitude::Determined => with_phase,
-            Amplitude::Free => with_phase.difference(&with_phase.at_zero().product(&self.wave())),
+            AmplitudeKind::Determined => with_phase,
+            AmplitudeKind::Free => {
+                with_phase.difference(&with_phase.at_zero().product(&self.wave()))
+            }
         }
     }
 
@@ -689,7 +692,7 @@ mod tests {
         ForceTerm { order, position, velocity, coefficient }
     }
 
-    fn scheme(amplitude: Amplitude) -> Scheme {
+    fn scheme(amplitude: AmplitudeKind) -> Scheme {
         Scheme {
             normalisation: AmplitudeConvention::Initial,
             amplitude,
@@ -699,15 +702,15 @@ mod tests {
 
     #[test]
     fn duffing_and_van_der_pol_from_the_literature() {
-        let duffing = expand(&Integers, &[term(1, 3, 0, (1, 1))], 4, &scheme(Amplitude::Free))
+        let duffing = expand(&Integers, &[term(1, 3, 0, (1, 1))], 4, &scheme(AmplitudeKind::Free))
             .expect("periodic");
         let expected =
             [ratio(1, 1), ratio(3, 4), ratio(-3, 128), ratio(9, 512), ratio(-1779, 131_072)];
         assert_eq!(numbers(&duffing.frequency_squared), expected);
         // x'' + x + mu (x^2 - 1) x' with x = 2 y: Andersen and Geer 1982.
         let force = [term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))];
-        let cycle =
-            expand(&Integers, &force, 4, &scheme(Amplitude::Determined)).expect("a limit cycle");
+        let cycle = expand(&Integers, &force, 4, &scheme(AmplitudeKind::Determined))
+            .expect("a limit cycle");
         let expected = [ratio(1, 1), ratio(0, 1), ratio(-1, 16), ratio(0, 1), ratio(17, 3072)];
         assert_eq!(numbers(&cycle.frequency), expected);
         let amplitudes: Vec<_> =
@@ -718,7 +721,7 @@ mod tests {
 
     #[test]
     fn viscous_damping_leaves_a_secular_sine() {
-        let damped = expand(&Integers, &[term(1, 0, 1, (2, 1))], 3, &scheme(Amplitude::Free));
+        let damped = expand(&Integers, &[term(1, 0, 1, (2, 1))], 3, &scheme(AmplitudeKind::Free));
         assert_eq!(damped.err(), Some(SecularError::Growth { order: 1 }));
     }
 }

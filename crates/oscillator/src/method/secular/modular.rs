@@ -15,12 +15,13 @@ use std::ops::Range;
 
 use pulp::NullaryFnOnce;
 
-use super::plan::{Harmonics, Plan};
+use super::plan::{HarmonicTable, Plan};
 use super::sine::SineFactors;
-use super::{Amplitude, Detuning};
+use super::{AmplitudeKind, Detuning};
 use crate::exact::Rational;
 use crate::exact::residue::sums::{
-    Part, TOGETHER, add_multiple, convolve, mixture, multiply, reversed_products, subtract, vary,
+    MixtureTerm, TOGETHER, add_multiple, convolve, mixture, multiply, reversed_products, subtract,
+    vary,
 };
 use crate::exact::residue::{Arithmetic, Lanes, Moduli, Modulus, Residues, Tables};
 use crate::interrupt::Interrupt;
@@ -28,7 +29,7 @@ use crate::series::waves::{Wave, Waves};
 use crate::solution::AmplitudeConvention;
 
 /// The expansion modulo one prime: plain residues, order by order.
-pub(super) struct Image {
+pub(super) struct PrimeImage {
     pub modulus: Modulus,
     /// The coefficients of the harmonics of `y_n` from the order on that is wanted from this prime.
     displacement: Vec<u64>,
@@ -40,7 +41,7 @@ pub(super) struct Image {
     pub frequency: Vec<u64>,
 }
 
-impl Image {
+impl PrimeImage {
     /// The coefficients of an order; empty where nobody wants them from this prime.
     pub fn displacement(&self, plan: &Plan, order: usize) -> &[u64] {
         let places = plan.places(order);
@@ -60,21 +61,21 @@ pub(super) struct Recursion<'a, A> {
     /// latest alone.
     tables: Tables<'a>,
     /// The coefficients of the harmonics of all orders.
-    motion: Harmonics<'a>,
+    motion: HarmonicTable<'a>,
     /// The coefficients of the derivative of all terms with one velocity.
-    damped: Harmonics<'a>,
+    damped: HarmonicTable<'a>,
     frequency_squared: Vec<Lanes>,
     frequency: Vec<Lanes>,
     of_amplitude: Option<Variation>,
     values: Vec<Lanes>,
     reversed: Vec<Lanes>,
-    parts: Vec<Part>,
+    parts: Vec<MixtureTerm>,
     right_side: Vec<Lanes>,
     change: Vec<Lanes>,
 }
 
 /// Constants of the recursion modulo eight primes.
-pub(super) struct Field<A> {
+pub(super) struct ResidueField<A> {
     pub residues: Residues<A>,
     waves: Waves,
     factors: Factors,
@@ -83,7 +84,7 @@ pub(super) struct Field<A> {
     sine: Option<SineFactors>,
 }
 
-impl<A: Arithmetic> Field<A> {
+impl<A: Arithmetic> ResidueField<A> {
     /// For up to eight primes; `None` where a divisor is a multiple of one of them.
     pub fn new(arithmetic: A, plan: &Plan, moduli: &[Modulus]) -> Option<Self> {
         arithmetic.vectorize(Prepare(arithmetic, plan, moduli))
@@ -93,7 +94,7 @@ impl<A: Arithmetic> Field<A> {
 struct Prepare<'a, A>(A, &'a Plan<'a>, &'a [Modulus]);
 
 impl<A: Arithmetic> NullaryFnOnce for Prepare<'_, A> {
-    type Output = Option<Field<A>>;
+    type Output = Option<ResidueField<A>>;
 
     #[inline(always)]
     fn call(self) -> Self::Output {
@@ -104,7 +105,7 @@ impl<A: Arithmetic> NullaryFnOnce for Prepare<'_, A> {
             let power = if *derivative { i64::from(term.position) + 1 } else { 1 };
             coefficients.push(coefficient(moduli, &term.coefficient, power)?);
         }
-        Some(Field {
+        Some(ResidueField {
             residues,
             waves: Waves::new(&residues, plan.grid)?,
             factors: Factors::new(&residues, plan)?,
@@ -217,9 +218,9 @@ impl<A: Arithmetic> NullaryFnOnce for Plain<'_, '_, A> {
     }
 }
 
-struct Expand<'r, 'a, A>(&'r mut Recursion<'a, A>, &'r mut Field<A>, &'r [Lanes]);
+struct ExpandOrders<'r, 'a, A>(&'r mut Recursion<'a, A>, &'r mut ResidueField<A>, &'r [Lanes]);
 
-impl<A: Arithmetic> NullaryFnOnce for Expand<'_, '_, A> {
+impl<A: Arithmetic> NullaryFnOnce for ExpandOrders<'_, '_, A> {
     type Output = Option<()>;
 
     #[inline(always)]
@@ -234,7 +235,10 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     pub fn room(plan: &Plan) -> usize {
         let tables = Tables::room(plan.grid.size(), &Self::lengths(plan));
         tables
-            + Self::harmonics(plan).map(|count| Harmonics::room(plan, count)).iter().sum::<usize>()
+            + Self::harmonics(plan)
+                .map(|count| HarmonicTable::room(plan, count))
+                .iter()
+                .sum::<usize>()
     }
 
     /// The entries in a row of each table.
@@ -271,14 +275,14 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let lengths = Self::lengths(plan);
         let (tables, rest) = memory.split_at_mut(Tables::room(points, &lengths));
         let [harmonics, of_damped] = Self::harmonics(plan);
-        let (motion, damped) = rest.split_at_mut(Harmonics::room(plan, harmonics));
+        let (motion, damped) = rest.split_at_mut(HarmonicTable::room(plan, harmonics));
         Self {
             arithmetic,
             plan,
             interrupt,
             tables: Tables::new(points, &lengths, tables),
-            motion: Harmonics::new(plan, harmonics, motion),
-            damped: Harmonics::new(plan, of_damped, damped),
+            motion: HarmonicTable::new(plan, harmonics, motion),
+            damped: HarmonicTable::new(plan, of_damped, damped),
             frequency_squared: Vec::with_capacity(orders),
             frequency: Vec::with_capacity(orders),
             of_amplitude: None,
@@ -297,10 +301,10 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         &mut self,
         primes: &[u64],
         wanted: &dyn Fn(usize) -> usize,
-    ) -> Option<Vec<Image>> {
+    ) -> Option<Vec<PrimeImage>> {
         let moduli: Vec<Modulus> =
             primes.iter().map(|prime| Modulus::new(*prime, A::RADIX)).collect();
-        let mut field = Field::new(self.arithmetic, self.plan, &moduli)?;
+        let mut field = ResidueField::new(self.arithmetic, self.plan, &moduli)?;
         let coefficients = std::mem::take(&mut field.coefficients);
         self.expand(&mut field, &coefficients)?;
         self.arithmetic.vectorize(Plain(self, &field.residues));
@@ -313,7 +317,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             for order in first..=plan.highest {
                 displacement.extend(self.displacement(order).map(|own| own.0[lane]));
             }
-            Image {
+            PrimeImage {
                 modulus: *modulus,
                 displacement,
                 start,
@@ -341,12 +345,12 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     }
 
     /// Expands with these coefficients of the terms.
-    pub fn expand(&mut self, field: &mut Field<A>, coefficients: &[Lanes]) -> Option<()> {
-        self.arithmetic.vectorize(Expand(self, field, coefficients))
+    pub fn expand(&mut self, field: &mut ResidueField<A>, coefficients: &[Lanes]) -> Option<()> {
+        self.arithmetic.vectorize(ExpandOrders(self, field, coefficients))
     }
 
     #[inline(always)]
-    fn expand_here(&mut self, field: &mut Field<A>, coefficients: &[Lanes]) -> Option<()> {
+    fn expand_here(&mut self, field: &mut ResidueField<A>, coefficients: &[Lanes]) -> Option<()> {
         let (plan, one) = (self.plan, field.residues.one());
         self.frequency_squared.clear();
         self.frequency.clear();
@@ -372,7 +376,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
                 self.solve_order(field, order)?;
             }
             self.push_displacement(field, order);
-            if order == 0 && plan.scheme.amplitude == Amplitude::Determined {
+            if order == 0 && plan.scheme.amplitude == AmplitudeKind::Determined {
                 self.of_amplitude = Some(self.variation(field, coefficients)?);
                 if plan.highest == 0 {
                     break;
@@ -387,7 +391,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
 
     /// From the right side of an order its solution, in the same place, and the frequency.
     #[inline(always)]
-    fn solve_order(&mut self, field: &Field<A>, order: usize) -> Option<()> {
+    fn solve_order(&mut self, field: &ResidueField<A>, order: usize) -> Option<()> {
         let (residues, resonant) = (&field.residues, self.plan.resonant());
         let square = match self.plan.wave(order) {
             Wave::Sine if self.right_side[resonant] != Lanes::default() => return None,
@@ -418,7 +422,12 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
 
     /// `r_n` as in the head of the module, in the coefficients of its harmonics.
     #[inline(always)]
-    fn form_right_side(&mut self, field: &mut Field<A>, coefficients: &[Lanes], order: usize) {
+    fn form_right_side(
+        &mut self,
+        field: &mut ResidueField<A>,
+        coefficients: &[Lanes],
+        order: usize,
+    ) {
         let residues = field.residues;
         let (plan, wave) = (self.plan, self.plan.wave(order));
         let count = plan.harmonics(order);
@@ -457,7 +466,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     #[inline(always)]
     fn mix(
         &mut self,
-        field: &Field<A>,
+        field: &ResidueField<A>,
         coefficients: &[Lanes],
         order: usize,
         derivative: bool,
@@ -467,7 +476,11 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             self.plan.terms.iter().zip(&self.plan.of_terms).zip(coefficients)
         {
             if *own == derivative && term.order <= order {
-                self.parts.push(Part { factor: *factor, table: *table, order: order - term.order });
+                self.parts.push(MixtureTerm {
+                    factor: *factor,
+                    table: *table,
+                    order: order - term.order,
+                });
             }
         }
         if let (Some((sine, _)), Some(factors), false) = (&self.plan.sine, &field.sine, derivative)
@@ -482,7 +495,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
 
     /// The sum that `S_n` is, without its last term: nobody knows `y_n` yet.
     #[inline(always)]
-    fn prepare_sine(&mut self, field: &Field<A>, order: usize) {
+    fn prepare_sine(&mut self, field: &ResidueField<A>, order: usize) {
         if let Some((sine, _)) = &self.plan.sine {
             self.values.fill(Lanes::default());
             self.tables.write(sine.scaled, order, &self.values);
@@ -493,12 +506,12 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
 
     /// Sine and cosine at an order whose `y_n` stands in its table, the cosine of the next one too.
     #[inline(always)]
-    fn push_sine(&mut self, field: &Field<A>, order: usize) {
+    fn push_sine(&mut self, field: &ResidueField<A>, order: usize) {
         let (Some((sine, _)), Some(factors)) = (&self.plan.sine, &field.sine) else {
             return;
         };
         let residues = &field.residues;
-        let whole = Part { factor: residues.one(), table: 0, order };
+        let whole = MixtureTerm { factor: residues.one(), table: 0, order };
         self.form(residues, &[factors.scaled(order)], (sine.scaled, order));
         match order {
             0 => {
@@ -517,7 +530,12 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
 
     /// Writes a mixture of tables into one of them.
     #[inline(always)]
-    fn form(&mut self, residues: &Residues<A>, parts: &[Part], (table, order): (usize, usize)) {
+    fn form(
+        &mut self,
+        residues: &Residues<A>,
+        parts: &[MixtureTerm],
+        (table, order): (usize, usize),
+    ) {
         mixture(residues, parts, &self.tables, &mut self.values);
         self.tables.write(table, order, &self.values);
     }
@@ -565,7 +583,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     /// Chooses the amplitude of `y_(order-1)` so that the right side of `order` has no secular
     /// sine.
     #[inline(always)]
-    fn fix_amplitude(&mut self, field: &Field<A>, order: usize) {
+    fn fix_amplitude(&mut self, field: &ResidueField<A>, order: usize) {
         let Some(variation) = &self.of_amplitude else {
             return;
         };
@@ -593,7 +611,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
 
     /// Adds to the solution of an order the homogeneous one that the amplitude convention asks for.
     #[inline(always)]
-    fn normalise(&mut self, field: &Field<A>, order: usize) {
+    fn normalise(&mut self, field: &ResidueField<A>, order: usize) {
         if self.plan.scheme.normalisation == AmplitudeConvention::FirstHarmonic {
             return;
         }
@@ -606,19 +624,19 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
                     at_zero = residues.sum(at_zero, residues.product(*value, *k));
                 }
             }
-            (Wave::Cosine, Amplitude::Free) => {
+            (Wave::Cosine, AmplitudeKind::Free) => {
                 for value in displacement.iter() {
                     at_zero = residues.sum(at_zero, *value);
                 }
             }
-            (Wave::Cosine, Amplitude::Determined) => return,
+            (Wave::Cosine, AmplitudeKind::Determined) => return,
         }
         displacement[self.plan.resonant()] = residues.negative(at_zero);
     }
 
     /// Takes what stands in `right_side` for `y_n`.
     #[inline(always)]
-    fn push_displacement(&mut self, field: &mut Field<A>, order: usize) {
+    fn push_displacement(&mut self, field: &mut ResidueField<A>, order: usize) {
         let residues = field.residues;
         let plan = self.plan;
         let (wave, count) = (plan.wave(order), plan.harmonics(order));
@@ -647,7 +665,11 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     /// The first variation at order zero; `None` where the secular sine does not depend on the
     /// amplitude.
     #[inline(always)]
-    fn variation(&mut self, field: &mut Field<A>, coefficients: &[Lanes]) -> Option<Variation> {
+    fn variation(
+        &mut self,
+        field: &mut ResidueField<A>,
+        coefficients: &[Lanes],
+    ) -> Option<Variation> {
         let (residues, plan) = (field.residues, self.plan);
         let points = self.values.len();
         let none = Lanes::default();

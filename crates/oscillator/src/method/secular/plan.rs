@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use super::sine::Sine;
-use super::{Amplitude, Scheme};
+use super::{AmplitudeKind, Scheme};
 use crate::exact::Rational;
 use crate::exact::residue::Lanes;
 use crate::exact::residue::sums::Product;
@@ -17,7 +17,7 @@ use crate::solution::AmplitudeConvention;
 
 /// A term `delta^order coefficient y^position (omega y')^velocity` of the force.
 #[derive(Clone, Debug)]
-pub(super) struct Term {
+pub(super) struct PlannedTerm {
     pub order: usize,
     pub position: u32,
     pub velocity: u32,
@@ -27,7 +27,7 @@ pub(super) struct Term {
 /// The part of an expansion that is the same for every prime: the products, their symmetries and
 /// the points at which they are formed.
 pub(super) struct Plan<'a> {
-    pub terms: &'a [Term],
+    pub terms: &'a [PlannedTerm],
     pub scheme: Scheme,
     /// The highest order that is kept; the amplitude of a limit cycle follows from one order more.
     pub highest: usize,
@@ -57,7 +57,7 @@ impl<'a> Plan<'a> {
     /// terms. With `frequency_alone` nothing but the frequency is right in the image; `sine` is the
     /// rate of a [sine](super::sine) beside the terms, for a free motion.
     pub fn new(
-        terms: &'a [Term],
+        terms: &'a [PlannedTerm],
         sine: Option<Rational>,
         highest: usize,
         scheme: Scheme,
@@ -70,11 +70,11 @@ impl<'a> Plan<'a> {
         {
             return None;
         }
-        let power = |term: &Term| (term.position + term.velocity) as usize;
+        let power = |term: &PlannedTerm| (term.position + term.velocity) as usize;
         let half_wave = terms.iter().all(|term| power(term) % 2 == 1);
         let growths = terms.iter().map(|term| (power(term) - 1).div_ceil(term.order));
         let growth = growths.chain(sine.as_ref().map(|_| 2)).max()?;
-        let determined = scheme.amplitude == Amplitude::Determined;
+        let determined = scheme.amplitude == AmplitudeKind::Determined;
         let last = highest + usize::from(determined);
         // The frequency of a limit cycle is the same however its motion is normalised, and without
         // the sum over all harmonics that the initial value is, the high ones are not needed. That
@@ -115,7 +115,7 @@ impl<'a> Plan<'a> {
         Some(plan)
     }
 
-    fn table_of(&mut self, term: &Term) -> (usize, bool) {
+    fn table_of(&mut self, term: &PlannedTerm) -> (usize, bool) {
         let needed = self.last.saturating_sub(term.order);
         match (term.position, term.velocity) {
             (position, 0) => (self.power(0, position, needed), false),
@@ -227,7 +227,7 @@ impl<'a> Plan<'a> {
     /// the first harmonic was no further away than half of the orders reach, but for the initial
     /// value of a free motion, which is a sum over all harmonics.
     pub fn largest_factor_of_frequency(&self, order: usize) -> u64 {
-        let free = self.scheme.amplitude == Amplitude::Free;
+        let free = self.scheme.amplitude == AmplitudeKind::Free;
         match free && self.scheme.normalisation == AmplitudeConvention::Initial {
             true => self.largest_factor(order),
             false => self.largest_factor(order / 2),
@@ -259,7 +259,7 @@ impl<'a> Plan<'a> {
 
 /// Coefficients of harmonics: for each a row of the orders at which it is not zero, for each
 /// symmetry of its own, all in one memory.
-pub(super) struct Harmonics<'m> {
+pub(super) struct HarmonicTable<'m> {
     rows: [Vec<OrderRange>; 2],
     entries: &'m mut [Lanes],
 }
@@ -271,7 +271,7 @@ struct OrderRange {
     length: usize,
 }
 
-impl<'m> Harmonics<'m> {
+impl<'m> HarmonicTable<'m> {
     /// Number of entries of so many harmonics.
     pub fn room(plan: &Plan, count: usize) -> usize {
         let parities = 0..plan.step();

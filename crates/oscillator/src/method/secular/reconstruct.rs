@@ -20,11 +20,11 @@ use num_integer::Integer as _;
 use num_traits::One;
 
 use super::denominators::{Factored, Growth};
-use super::modular::{Image, Recursion};
-use super::orders::{Order, expansion};
-use super::plan::{Plan, Term};
-use super::{Amplitude, Expansion, ForceTerm, Scheme, fixed_width};
-use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
+use super::modular::{PrimeImage, Recursion};
+use super::orders::{ExpansionOrder, expansion};
+use super::plan::{Plan, PlannedTerm};
+use super::{AmplitudeKind, ForceTerm, Scheme, SecularExpansion, fixed_width};
+use crate::exact::residue::remainder::{ReconstructedIntegers, Remainders, fraction};
 use crate::exact::residue::{
     Arithmetic, Lanes, Memory, Modulus, WIDTH, Work, by_widest, primes_below,
 };
@@ -36,7 +36,7 @@ use crate::series::waves::Wave;
 
 /// The extent of an expansion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
+pub enum ExpansionScope {
     /// Frequency and motion.
     Motion,
     /// The frequency alone, with half the digits and a part of the harmonics; the lists of
@@ -51,27 +51,29 @@ pub fn expand(
     force: &[ForceTerm<Integers>],
     highest: usize,
     scheme: &Scheme,
-    extent: Extent,
+    extent: ExpansionScope,
     supervision: Supervision,
-) -> Option<Expansion<Integers>> {
+) -> Option<SecularExpansion<Integers>> {
     /// Below, whole numbers are short enough.
     const LONG: usize = 8;
     let equation = SecularEquation::new(force, highest, *scheme, extent);
     let plan = equation.plan(highest)?;
     let beginning = fixed_width::beginning(&plan, supervision.interrupt);
     let slope = match (scheme.amplitude, extent) {
-        (Amplitude::Free, _) | (_, Extent::Frequency) => None,
-        (Amplitude::Determined, Extent::Motion) => Some(slope(force, scheme, &beginning)?),
+        (AmplitudeKind::Free, _) | (_, ExpansionScope::Frequency) => None,
+        (AmplitudeKind::Determined, ExpansionScope::Motion) => {
+            Some(slope(force, scheme, &beginning)?)
+        }
     };
-    let orders: Vec<Order> =
-        beginning.orders.iter().map(|order| Order::of_short(&plan, order)).collect();
+    let orders: Vec<ExpansionOrder> =
+        beginning.orders.iter().map(|order| ExpansionOrder::of_short(&plan, order)).collect();
     if orders.len() > highest {
         return Some(expansion(&plan, orders, slope.as_ref(), extent));
     }
     if highest < LONG {
         return None;
     }
-    by_widest(Expand { equation: &equation, plan: &plan, slope, orders, supervision })
+    by_widest(ExpandByPrimes { equation: &equation, plan: &plan, slope, orders, supervision })
 }
 
 /// The derivative of the secular sine by the amplitude: if the amplitude is determined, its
@@ -79,7 +81,7 @@ pub fn expand(
 fn slope(
     force: &[ForceTerm<Integers>],
     scheme: &Scheme,
-    beginning: &fixed_width::Beginning,
+    beginning: &fixed_width::FirstOrders,
 ) -> Option<Rational> {
     if let Some(slope) = &beginning.slope {
         return Some(Rational::new_raw(slope.numerator(0).into(), slope.denominator().into()));
@@ -97,49 +99,54 @@ const GUESSED: usize = 32;
 
 /// The equation to be expanded.
 struct SecularEquation {
-    terms: Vec<Term>,
+    terms: Vec<PlannedTerm>,
     /// The rate of a sine beside the terms.
     sine: Option<Rational>,
     scheme: Scheme,
-    extent: Extent,
+    extent: ExpansionScope,
 }
 
 impl SecularEquation {
-    fn new(force: &[ForceTerm<Integers>], highest: usize, scheme: Scheme, extent: Extent) -> Self {
+    fn new(
+        force: &[ForceTerm<Integers>],
+        highest: usize,
+        scheme: Scheme,
+        extent: ExpansionScope,
+    ) -> Self {
         let terms = force.iter().map(|term| {
             let (numerator, denominator) = term.coefficient.mean();
-            Term {
+            PlannedTerm {
                 order: term.order,
                 position: term.position,
                 velocity: term.velocity,
                 coefficient: in_lowest_terms(&numerator, denominator),
             }
         });
-        let terms: Vec<Term> = terms.collect();
+        let terms: Vec<PlannedTerm> = terms.collect();
         let (sine, terms) = match scheme.amplitude {
-            Amplitude::Free => super::sine::split(terms, highest),
-            Amplitude::Determined => (None, terms),
+            AmplitudeKind::Free => super::sine::split(terms, highest),
+            AmplitudeKind::Determined => (None, terms),
         };
         Self { terms, sine, scheme, extent }
     }
 
     fn plan(&self, highest: usize) -> Option<Plan<'_>> {
-        let frequency_alone = self.extent == Extent::Frequency;
+        let frequency_alone = self.extent == ExpansionScope::Frequency;
         Plan::new(&self.terms, self.sine.clone(), highest, self.scheme, frequency_alone)
     }
 }
 
-struct Expand<'a> {
+struct ExpandByPrimes<'a> {
     equation: &'a SecularEquation,
     plan: &'a Plan<'a>,
     slope: Option<Rational>,
     /// The first ones, in numbers of a fixed width.
-    orders: Vec<Order>,
+    orders: Vec<ExpansionOrder>,
     supervision: Supervision,
 }
 
-impl Work for Expand<'_> {
-    type Output = Option<Expansion<Integers>>;
+impl Work for ExpandByPrimes<'_> {
+    type Output = Option<SecularExpansion<Integers>>;
 
     fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
         /// So many show how denominators grow.
@@ -147,7 +154,7 @@ impl Work for Expand<'_> {
         let Self { equation, plan, slope, orders: short, supervision } = self;
         let extent = equation.extent;
         let beginning = match short.len() >= SOME {
-            true => Some(Beginning::of(&short)?),
+            true => Some(FirstGuesses::of(&short)?),
             false => None,
         };
         // A guess about the denominators that turns out wrong costs little where the order is low.
@@ -160,7 +167,7 @@ impl Work for Expand<'_> {
                 let shorter =
                     Reconstruction::new(arithmetic, &plan, extent, Supervision::default());
                 orders.extend(shorter.orders_from(orders.len(), beginning)?);
-                (Some(Beginning::of(&orders)?), orders)
+                (Some(FirstGuesses::of(&orders)?), orders)
             }
         };
         let longer = Reconstruction::new(arithmetic, plan, extent, supervision);
@@ -176,16 +183,21 @@ impl Work for Expand<'_> {
 struct Reconstruction<'a, A> {
     arithmetic: A,
     plan: &'a Plan<'a>,
-    extent: Extent,
+    extent: ExpansionScope,
     supervision: Supervision,
     primes: Vec<u64>,
     source: Box<dyn Iterator<Item = u64> + Send + Sync>,
     /// The expansions modulo the first primes, of all orders.
-    first: Vec<Image>,
+    first: Vec<PrimeImage>,
 }
 
 impl<'a, A: Arithmetic> Reconstruction<'a, A> {
-    fn new(arithmetic: A, plan: &'a Plan<'a>, extent: Extent, supervision: Supervision) -> Self {
+    fn new(
+        arithmetic: A,
+        plan: &'a Plan<'a>,
+        extent: ExpansionScope,
+        supervision: Supervision,
+    ) -> Self {
         Self {
             arithmetic,
             plan,
@@ -198,7 +210,11 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
     }
 
     /// The orders from `first` on; those before are known.
-    fn orders_from(mut self, first: usize, beginning: Option<Beginning>) -> Option<Vec<Order>> {
+    fn orders_from(
+        mut self,
+        first: usize,
+        beginning: Option<FirstGuesses>,
+    ) -> Option<Vec<ExpansionOrder>> {
         let beginning = match beginning {
             Some(beginning) => beginning,
             None => self.beginning()?,
@@ -208,13 +224,15 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         let of_frequency = |order| self.plan.largest_factor_of_frequency(order);
         // One guess about a motion that nobody wants is enough.
         let guesses = match self.extent {
-            Extent::Frequency => &Growth::ALL[..1],
-            Extent::Motion => &Growth::ALL[..],
+            ExpansionScope::Frequency => &Growth::ALL[..1],
+            ExpansionScope::Motion => &Growth::ALL[..],
         };
         for growth in guesses {
             let motion = match self.extent {
-                Extent::Frequency => Some(vec![Factored::default(); highest + 1]),
-                Extent::Motion => growth.denominators(&beginning.motion.known, highest, &of_motion),
+                ExpansionScope::Frequency => Some(vec![Factored::default(); highest + 1]),
+                ExpansionScope::Motion => {
+                    growth.denominators(&beginning.motion.known, highest, &of_motion)
+                }
             };
             let Some(motion) = motion else { continue };
             for growth in Growth::ALL {
@@ -254,7 +272,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         &mut self,
         count: usize,
         wanted: &(dyn Fn(usize) -> usize + Sync),
-    ) -> Option<Vec<Image>> {
+    ) -> Option<Vec<PrimeImage>> {
         /// Eights of a lot use the same memory; after so many lots for each thread all threads
         /// meet, so that what is there when the work is stopped has no gaps.
         const LOT: usize = 8;
@@ -270,7 +288,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         let places: Vec<usize> = (begun..end.min(self.primes.len())).collect();
         let this = &*self;
         let interrupt = this.supervision.interrupt;
-        let lot = |places: &[usize]| -> Option<Vec<Image>> {
+        let lot = |places: &[usize]| -> Option<Vec<PrimeImage>> {
             let mut memory = Memory::zeroed(Recursion::<A>::room(this.plan));
             let mut recursion =
                 Recursion::new(this.arithmetic, this.plan, interrupt, memory.lanes());
@@ -294,7 +312,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             let mut images = Vec::with_capacity(places.len());
             for block in places.chunks(length * LOTS * threads) {
                 let lots: Vec<&[usize]> = block.chunks(length).collect();
-                let found: Option<Vec<Vec<Image>>> =
+                let found: Option<Vec<Vec<PrimeImage>>> =
                     each(&lots, |places| lot(places)).into_iter().collect();
                 for (own, places) in found?.into_iter().zip(lots) {
                     let whole = own.len() == places.len();
@@ -310,20 +328,20 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
     }
 
     /// The first orders as fractions, by as many primes as they need.
-    fn beginning(&mut self) -> Option<Beginning> {
+    fn beginning(&mut self) -> Option<FirstGuesses> {
         /// Enough to see how denominators grow.
         const ORDERS: usize = 10;
         /// More than any such beginning needs: its denominators are no small numbers.
         const MOST_PRIMES: usize = 100;
         let last = self.plan.highest.min(ORDERS);
-        let mut beginning = Beginning::default();
+        let mut beginning = FirstGuesses::default();
         let mut digits = if last > 5 { 200.0 } else { 100.0 };
         while beginning.frequency.known.len() <= last {
             let count = self.primes_for(digits)?;
             if count > MOST_PRIMES {
                 return None;
             }
-            let from = if self.extent == Extent::Motion { 0 } else { usize::MAX };
+            let from = if self.extent == ExpansionScope::Motion { 0 } else { usize::MAX };
             let more = self.images(count, &|_| from)?;
             self.first.extend(more);
             if self.first.len() < count {
@@ -335,14 +353,14 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             let remainders = Remainders::new(self.arithmetic, &moduli);
             let product: Integer =
                 moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
-            let known = |count, number: &dyn Fn(&Image, usize) -> u64| {
+            let known = |count, number: &dyn Fn(&PrimeImage, usize) -> u64| {
                 known(images, count, &remainders, &product, number)
             };
             while beginning.frequency.known.len() <= last {
                 let order = beginning.frequency.known.len();
                 let count = match self.extent {
-                    Extent::Motion => self.plan.harmonics(order),
-                    Extent::Frequency => 0,
+                    ExpansionScope::Motion => self.plan.harmonics(order),
+                    ExpansionScope::Frequency => 0,
                 };
                 let motion =
                     known(count, &|image, index| image.displacement(self.plan, order)[index]);
@@ -368,7 +386,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         motion: &[Factored],
         frequency: &[Factored],
         bits: &[f64],
-    ) -> Option<Vec<Order>> {
+    ) -> Option<Vec<ExpansionOrder>> {
         /// Residues kept at once, four gigabytes of them.
         const MOST_RESIDUES: usize = 1 << 29;
         let mut counts = Vec::with_capacity(bits.len());
@@ -384,7 +402,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             least = count.next_multiple_of(step).min(longest).max(least);
             *count = least;
         }
-        if self.extent == Extent::Motion {
+        if self.extent == ExpansionScope::Motion {
             let orders = counts.iter().enumerate();
             let kept: usize = orders.map(|(order, count)| self.plan.harmonics(order) * count).sum();
             if kept > MOST_RESIDUES {
@@ -394,12 +412,12 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         let most = *counts.last()?;
         let extent = self.extent;
         let wanted = |place: usize| match extent {
-            Extent::Motion => counts.partition_point(|count| *count < place).max(first),
-            Extent::Frequency => usize::MAX,
+            ExpansionScope::Motion => counts.partition_point(|count| *count < place).max(first),
+            ExpansionScope::Frequency => usize::MAX,
         };
         self.supervision.progress.begin((most + 1).saturating_sub(self.first.len()));
-        let images: Vec<Image> = self.images(most + 1, &wanted)?;
-        let all: Vec<&Image> = self.first.iter().chain(&images).collect();
+        let images: Vec<PrimeImage> = self.images(most + 1, &wanted)?;
+        let all: Vec<&PrimeImage> = self.first.iter().chain(&images).collect();
         let stopped = self.supervision.interrupt.is_requested();
         if all.len() <= most && !stopped {
             return None;
@@ -420,7 +438,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
                 frequency,
             )
         };
-        let lifted: Option<Vec<Vec<Order>>> = match self.plan.highest > ALONE {
+        let lifted: Option<Vec<Vec<ExpansionOrder>>> = match self.plan.highest > ALONE {
             true => each(&groups, group).into_iter().collect(),
             false => groups.iter().map(group).collect(),
         };
@@ -431,11 +449,11 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
 /// The common denominator of so many numbers and the digits that the largest has before the point;
 /// `None` where the primes are too few.
 fn known<A: Arithmetic>(
-    images: &[Image],
+    images: &[PrimeImage],
     count: usize,
     remainders: &Remainders<A>,
     product: &Integer,
-    number: &dyn Fn(&Image, usize) -> u64,
+    number: &dyn Fn(&PrimeImage, usize) -> u64,
 ) -> Option<(Integer, f64)> {
     let mut denominator = Integer::one();
     let mut largest = 0.0_f64;
@@ -456,12 +474,12 @@ fn known<A: Arithmetic>(
 
 /// The first orders of motion and frequency.
 #[derive(Default)]
-struct Beginning {
+struct FirstGuesses {
     motion: Guess,
     frequency: Guess,
 }
 
-impl Beginning {
+impl FirstGuesses {
     /// The binary digits of the numerators of all orders over these denominators, and room for the
     /// factor before the growth.
     fn bits(&self, motion: &[Factored], frequency: &[Factored]) -> Vec<f64> {
@@ -496,7 +514,7 @@ impl Beginning {
     }
 
     /// From the orders of a shorter expansion.
-    fn of(orders: &[Order]) -> Option<Self> {
+    fn of(orders: &[ExpansionOrder]) -> Option<Self> {
         let mut beginning = Self::default();
         for order in orders {
             let bits = |numbers: &mut dyn Iterator<Item = &Integer>| {
@@ -565,17 +583,17 @@ impl Guess {
 struct Lift<'a, A> {
     arithmetic: A,
     plan: &'a Plan<'a>,
-    images: &'a [&'a Image],
+    images: &'a [&'a PrimeImage],
     remainders: Remainders<A>,
     /// The prime that only tests.
-    test: &'a Image,
+    test: &'a PrimeImage,
     /// The residues of the powers of a digit modulo that prime.
     powers: Vec<u64>,
 }
 
 impl<'a, A: Arithmetic> Lift<'a, A> {
     /// The last of the images is the one that tests.
-    fn new(arithmetic: A, plan: &'a Plan<'a>, images: &'a [&'a Image]) -> Self {
+    fn new(arithmetic: A, plan: &'a Plan<'a>, images: &'a [&'a PrimeImage]) -> Self {
         let (test, images) = images.split_last().expect("one image at least");
         let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();
         let digit = test.modulus.residue(1 << A::DIGIT);
@@ -596,7 +614,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
         orders: std::ops::Range<usize>,
         motion: &[Factored],
         frequency: &[Factored],
-    ) -> Option<Vec<Order>> {
+    ) -> Option<Vec<ExpansionOrder>> {
         // Factors that the guessed denominator had in excess at one order are mostly in excess at
         // the next as well.
         let mut excess = Factored::default();
@@ -630,13 +648,13 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
             let [frequency, frequency_squared] = constants.collect::<Vec<_>>().try_into().ok()?;
             let denominator = denominator.over(&common);
             let first = match (self.plan.scheme.amplitude, self.plan.wave(order)) {
-                (Amplitude::Determined, Wave::Cosine) => {
+                (AmplitudeKind::Determined, Wave::Cosine) => {
                     displacement.get(self.plan.resonant()).cloned()
                 }
                 _ => None,
             };
             let (numerator, over_first) = denominator.lowest_terms(first.unwrap_or_default());
-            lifted.push(Order {
+            lifted.push(ExpansionOrder {
                 denominator: denominator.value(),
                 displacement,
                 first_harmonic: Rational::new_raw(numerator, over_first),
@@ -688,12 +706,12 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
         &self,
         over: &Over,
         count: usize,
-        eight: impl Fn(&Image, usize, &mut Lanes),
+        eight: impl Fn(&PrimeImage, usize, &mut Lanes),
     ) -> Option<Vec<Integer>> {
         let modulus = &self.test.modulus;
         let mut numerators = Vec::with_capacity(count);
         let mut residues = vec![Lanes::default(); self.images.len()];
-        let mut numbers = Numbers::default();
+        let mut numbers = ReconstructedIntegers::default();
         for block in 0..count.div_ceil(WIDTH) {
             for (own, image) in residues.iter_mut().zip(self.images) {
                 eight(image, block, own);
@@ -734,20 +752,25 @@ mod tests {
 
     /// Every number of the expansion, its steps included, is that of the recursion over whole
     /// numbers.
-    fn agrees(force: &[ForceTerm<Integers>], highest: usize, amplitude: Amplitude) {
+    fn agrees(force: &[ForceTerm<Integers>], highest: usize, amplitude: AmplitudeKind) {
         for normalisation in [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic] {
             for detuning in [Detuning::Acceleration, Detuning::Displacement] {
                 let scheme = Scheme { normalisation, amplitude, detuning };
                 let exact =
                     super::super::expand(&Integers, force, highest, &scheme).expect("an expansion");
-                let widest =
-                    super::expand(force, highest, &scheme, Extent::Motion, Supervision::default());
+                let widest = super::expand(
+                    force,
+                    highest,
+                    &scheme,
+                    ExpansionScope::Motion,
+                    Supervision::default(),
+                );
                 let widest = widest.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
-                let equation = SecularEquation::new(force, highest, scheme, Extent::Motion);
-                let by_primes = Expand {
+                let equation = SecularEquation::new(force, highest, scheme, ExpansionScope::Motion);
+                let by_primes = ExpandByPrimes {
                     equation: &equation,
                     plan: &equation.plan(highest).expect("a symmetry"),
-                    slope: slope(force, &scheme, &fixed_width::Beginning::default()),
+                    slope: slope(force, &scheme, &fixed_width::FirstOrders::default()),
                     orders: vec![],
                     supervision: Supervision::default(),
                 };
@@ -756,7 +779,7 @@ mod tests {
                     force,
                     highest,
                     &scheme,
-                    Extent::Frequency,
+                    ExpansionScope::Frequency,
                     Supervision::default(),
                 );
                 let alone = alone.unwrap_or_else(|| panic!("{force:?} {scheme:?}"));
@@ -769,15 +792,20 @@ mod tests {
                 for low in [1, 2, 5] {
                     let exact =
                         super::super::expand(&Integers, force, low, &scheme).expect("an expansion");
-                    let short =
-                        super::expand(force, low, &scheme, Extent::Motion, Supervision::default());
+                    let short = super::expand(
+                        force,
+                        low,
+                        &scheme,
+                        ExpansionScope::Motion,
+                        Supervision::default(),
+                    );
                     assert_same(&short.expect("numbers of a fixed width"), &exact);
                 }
             }
         }
     }
 
-    fn assert_same(found: &Expansion<Integers>, exact: &Expansion<Integers>) {
+    fn assert_same(found: &SecularExpansion<Integers>, exact: &SecularExpansion<Integers>) {
         assert_eq!(found.frequency_squared, exact.frequency_squared);
         assert_eq!(found.frequency, exact.frequency);
         assert_eq!(found.displacement, exact.displacement);
@@ -792,7 +820,7 @@ mod tests {
 
     #[test]
     fn primes_agree_with_whole_numbers() {
-        let free = Amplitude::Free;
+        let free = AmplitudeKind::Free;
         // Duffing; a quadratic force, whose motions have all harmonics; several orders, x x'^2
         // among them; the pendulum.
         agrees(&[term(1, 3, 0, (1, 1))], 24, free);
@@ -816,7 +844,7 @@ mod tests {
         sine.push(term(1, 1, 2, (1, 2)));
         agrees(&sine, 10, free);
         agrees(&sine[..8], 12, free);
-        let cycle = Amplitude::Determined;
+        let cycle = AmplitudeKind::Determined;
         // van der Pol, x = 2 y; Rayleigh; both with a nonlinear spring of the second order.
         agrees(&[term(1, 2, 1, (4, 1)), term(1, 0, 1, (-1, 1))], 16, cycle);
         agrees(&[term(1, 0, 3, (4, 3)), term(1, 0, 1, (-1, 1))], 13, cycle);
@@ -836,8 +864,8 @@ mod tests {
             expand(
                 &mixed,
                 12,
-                &scheme(Amplitude::Determined),
-                Extent::Motion,
+                &scheme(AmplitudeKind::Determined),
+                ExpansionScope::Motion,
                 Supervision::default()
             )
             .is_none()
@@ -846,8 +874,8 @@ mod tests {
             expand(
                 &[term(1, 0, 1, (2, 1))],
                 12,
-                &scheme(Amplitude::Free),
-                Extent::Motion,
+                &scheme(AmplitudeKind::Free),
+                ExpansionScope::Motion,
                 Supervision::default()
             )
             .is_none()

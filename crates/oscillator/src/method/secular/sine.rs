@@ -12,8 +12,8 @@
 
 use num_traits::{One, Zero};
 
-use super::plan::Term;
-use crate::exact::residue::sums::{Part, Product};
+use super::plan::PlannedTerm;
+use crate::exact::residue::sums::{MixtureTerm, Product};
 use crate::exact::residue::{Arithmetic, Lanes, Residues};
 use crate::exact::{Integer, Rational};
 
@@ -50,7 +50,10 @@ impl Sine {
 }
 
 /// The rate `k` of a sine that the terms contain up to an order, and the terms beside it.
-pub(super) fn split(mut terms: Vec<Term>, highest: usize) -> (Option<Rational>, Vec<Term>) {
+pub(super) fn split(
+    mut terms: Vec<PlannedTerm>,
+    highest: usize,
+) -> (Option<Rational>, Vec<PlannedTerm>) {
     /// Below, powers are as fast.
     const LONG: usize = 6;
     let enough = (LONG..=terms.len()).contains(&highest);
@@ -62,12 +65,12 @@ pub(super) fn split(mut terms: Vec<Term>, highest: usize) -> (Option<Rational>, 
 }
 
 /// The index of a term in the series of the sine: `n` for `delta^n y^(2n+1)`.
-fn place(term: &Term) -> Option<usize> {
+fn place(term: &PlannedTerm) -> Option<usize> {
     let own = term.velocity == 0 && term.position as usize == 2 * term.order + 1;
     own.then_some(term.order)
 }
 
-fn rate(terms: &[Term], highest: usize) -> Option<Rational> {
+fn rate(terms: &[PlannedTerm], highest: usize) -> Option<Rational> {
     let coefficient = |n: usize| {
         let mut own = terms.iter().filter(|term| place(term) == Some(n));
         own.next().filter(|_| own.next().is_none()).map(|term| &term.coefficient)
@@ -121,18 +124,18 @@ impl SineFactors {
     }
 
     /// `V_n` from `y_n`, which stands in the first table.
-    pub fn scaled(&self, order: usize) -> Part {
-        Part { factor: self.scaled[order], table: 0, order }
+    pub fn scaled(&self, order: usize) -> MixtureTerm {
+        MixtureTerm { factor: self.scaled[order], table: 0, order }
     }
 
     /// `S_n` without what it has of `y_n`.
-    pub fn sine(&self, sine: &Sine, order: usize) -> Part {
-        Part { factor: self.sine[order], table: sine.of_sine.to, order }
+    pub fn sine(&self, sine: &Sine, order: usize) -> MixtureTerm {
+        MixtureTerm { factor: self.sine[order], table: sine.of_sine.to, order }
     }
 
     /// `C_(n+1)`.
-    pub fn cosine(&self, sine: &Sine, order: usize) -> Part {
-        Part { factor: self.cosine[order], table: sine.of_cosine.to, order }
+    pub fn cosine(&self, sine: &Sine, order: usize) -> MixtureTerm {
+        MixtureTerm { factor: self.cosine[order], table: sine.of_cosine.to, order }
     }
 }
 
@@ -143,7 +146,7 @@ mod tests {
 
     #[test]
     fn a_sine_is_known_by_all_of_its_terms() {
-        let term = |order: usize, coefficient: Rational| Term {
+        let term = |order: usize, coefficient: Rational| PlannedTerm {
             order,
             position: 2 * order as u32 + 1,
             velocity: 0,
@@ -151,13 +154,18 @@ mod tests {
         };
         let third = Rational::new(Integer::from(-1), Integer::from(3));
         let mut power = Rational::one();
-        let mut terms: Vec<Term> = (1..=8)
+        let mut terms: Vec<PlannedTerm> = (1..=8)
             .map(|n| {
                 power *= &third;
                 term(n, &power / Rational::from_integer(factorial(2 * n as u32 + 1)))
             })
             .collect();
-        terms.push(Term { order: 1, position: 1, velocity: 2, coefficient: Rational::one() });
+        terms.push(PlannedTerm {
+            order: 1,
+            position: 1,
+            velocity: 2,
+            coefficient: Rational::one(),
+        });
         let (rate, others) = split(terms.clone(), 8);
         assert_eq!(rate, Some(third));
         assert_eq!((others.len(), others[0].velocity), (1, 2));

@@ -25,10 +25,10 @@ use std::collections::HashMap;
 
 use num_traits::{One, Zero};
 
-use super::modular::{Field, Recursion};
-use super::plan::{Plan, Term};
-use super::{Amplitude, Expansion, Extent, ForceTerm, Scheme};
-use crate::exact::residue::remainder::{Numbers, Remainders, fraction};
+use super::modular::{Recursion, ResidueField};
+use super::plan::{Plan, PlannedTerm};
+use super::{AmplitudeKind, ExpansionScope, ForceTerm, Scheme, SecularExpansion};
+use crate::exact::residue::remainder::{ReconstructedIntegers, Remainders, fraction};
 use crate::exact::residue::{
     Arithmetic, Lanes, Memory, Modulus, WIDTH, Work, by_widest, primes_below,
 };
@@ -51,19 +51,21 @@ pub(super) fn expand(
     force: &[ForceTerm<Symbols>],
     highest: usize,
     scheme: &Scheme,
-    extent: Extent,
+    extent: ExpansionScope,
     supervision: Supervision,
-) -> Option<Expansion<Symbols>> {
+) -> Option<SecularExpansion<Symbols>> {
     match scheme.amplitude {
-        Amplitude::Free => by_widest(Expand(force, highest, *scheme, extent, supervision)),
-        Amplitude::Determined => None,
+        AmplitudeKind::Free => {
+            by_widest(ExpandSymbols(force, highest, *scheme, extent, supervision))
+        }
+        AmplitudeKind::Determined => None,
     }
 }
 
-struct Expand<'a>(&'a [ForceTerm<Symbols>], usize, Scheme, Extent, Supervision);
+struct ExpandSymbols<'a>(&'a [ForceTerm<Symbols>], usize, Scheme, ExpansionScope, Supervision);
 
-impl Work for Expand<'_> {
-    type Output = Option<Expansion<Symbols>>;
+impl Work for ExpandSymbols<'_> {
+    type Output = Option<SecularExpansion<Symbols>>;
 
     fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
         /// More are as slow as polynomials.
@@ -81,11 +83,12 @@ impl Work for Expand<'_> {
         let stages: Vec<usize> = halves.collect();
         let lower_set = |highest: usize| LowerSet::new(&weights, base, highest, MOST_POINTS);
         lower_set(highest)?;
-        let mut best: Option<Expansion<Symbols>> = None;
+        let mut best: Option<SecularExpansion<Symbols>> = None;
         for highest in stages.into_iter().rev() {
             let lower_set = lower_set(highest)?;
-            let plan = Plan::new(&terms, None, highest, scheme, extent == Extent::Frequency)?;
-            let mut search = Search {
+            let plan =
+                Plan::new(&terms, None, highest, scheme, extent == ExpansionScope::Frequency)?;
+            let mut search = PrimeSearch {
                 arithmetic,
                 plan: &plan,
                 groups: &groups,
@@ -118,7 +121,7 @@ struct Groups {
 }
 
 /// The terms of the force with numbers for coefficients, and what symbols each of them has.
-fn grouped(force: &[ForceTerm<Symbols>]) -> Option<(Vec<Term>, Groups)> {
+fn grouped(force: &[ForceTerm<Symbols>]) -> Option<(Vec<PlannedTerm>, Groups)> {
     let mut terms = Vec::new();
     let mut groups = Groups { kinds: vec![], of_terms: vec![] };
     for own in force {
@@ -130,7 +133,7 @@ fn grouped(force: &[ForceTerm<Symbols>]) -> Option<(Vec<Term>, Groups)> {
             if known.is_none() {
                 groups.kinds.push(kind);
             }
-            terms.push(Term {
+            terms.push(PlannedTerm {
                 order: own.order,
                 position: own.position,
                 velocity: own.velocity,
@@ -266,41 +269,41 @@ impl LowerSet {
 /// The expansion modulo one prime, of all orders or of the lower ones if it was stopped: for each
 /// order the plain residues of the coefficients, point by point; of the frequency, of its square,
 /// and of the harmonics if they are wanted.
-struct Image {
+struct SymbolicImage {
     modulus: Modulus,
     orders: Vec<Vec<u64>>,
 }
 
 /// One order: the numbers as numerators over one denominator, point by point as in an [`Image`].
-struct Order {
+struct SymbolicOrder {
     denominator: Integer,
     numerators: Vec<Integer>,
     /// Number of coefficients at each point.
     numbers: usize,
 }
 
-struct Search<'a, A> {
+struct PrimeSearch<'a, A> {
     arithmetic: A,
     plan: &'a Plan<'a>,
     groups: &'a Groups,
     lower_set: &'a LowerSet,
-    extent: Extent,
+    extent: ExpansionScope,
     supervision: Supervision,
     primes: Box<dyn Iterator<Item = u64> + Send + Sync>,
-    images: Vec<Image>,
+    images: Vec<SymbolicImage>,
 }
 
-impl<A: Arithmetic> Search<'_, A> {
+impl<A: Arithmetic> PrimeSearch<'_, A> {
     fn numbers(&self, order: usize) -> usize {
         match self.extent {
-            Extent::Frequency => 2,
-            Extent::Motion => 2 + self.plan.harmonics(order),
+            ExpansionScope::Frequency => 2,
+            ExpansionScope::Motion => 2 + self.plan.harmonics(order),
         }
     }
 
     /// The numbers of all orders at these points, as far as the work is not stopped.
     fn values(&self, modulus: Modulus, points: &[Vec<usize>]) -> Option<Vec<Vec<u64>>> {
-        let mut field = Field::new(self.arithmetic, self.plan, &[modulus])?;
+        let mut field = ResidueField::new(self.arithmetic, self.plan, &[modulus])?;
         let mut memory = Memory::zeroed(Recursion::<A>::room(self.plan));
         let mut recursion =
             Recursion::new(self.arithmetic, self.plan, self.supervision.interrupt, memory.lanes());
@@ -332,7 +335,7 @@ impl<A: Arithmetic> Search<'_, A> {
                 for order in weight..=self.plan.highest {
                     values.push(recursion.frequency()[order].0[lane]);
                     values.push(recursion.frequency_squared()[order].0[lane]);
-                    if self.extent == Extent::Motion {
+                    if self.extent == ExpansionScope::Motion {
                         values.extend(recursion.displacement(order).map(|own| own.0[lane]));
                     }
                 }
@@ -367,13 +370,13 @@ impl<A: Arithmetic> Search<'_, A> {
         self.values(modulus, points)
     }
 
-    fn image(&self, prime: u64) -> Option<Image> {
+    fn image(&self, prime: u64) -> Option<SymbolicImage> {
         let modulus = Modulus::new(prime, A::RADIX);
         self.interpolated(modulus, &self.values_at_points(modulus)?)
     }
 
     /// The orders that these numbers at the first points are enough for.
-    fn interpolated(&self, modulus: Modulus, at_points: &[Vec<u64>]) -> Option<Image> {
+    fn interpolated(&self, modulus: Modulus, at_points: &[Vec<u64>]) -> Option<SymbolicImage> {
         let highest = self.plan.highest;
         let mut inverses: Vec<u64> = (1..=highest as i64 + 1).map(|k| modulus.small(k)).collect();
         modulus.invert(&mut inverses)?;
@@ -394,12 +397,12 @@ impl<A: Arithmetic> Search<'_, A> {
             values.iter_mut().for_each(|value| *value = modulus.plain(*value));
             orders.push(values);
         }
-        Some(Image { modulus, orders })
+        Some(SymbolicImage { modulus, orders })
     }
 
     /// All orders, by as many primes as their fractions need; those for which there are enough
     /// where the work is stopped.
-    fn orders(&mut self) -> Option<Vec<Order>> {
+    fn orders(&mut self) -> Option<Vec<SymbolicOrder>> {
         /// Residues kept at once, half a gigabyte of them.
         const MOST_RESIDUES: usize = 1 << 26;
         let plan = self.plan;
@@ -435,7 +438,7 @@ impl<A: Arithmetic> Search<'_, A> {
                 let Some(found) = fractions(images, &remainders, &product, order) else {
                     break;
                 };
-                let found = Order { numbers: self.numbers(order), ..found };
+                let found = SymbolicOrder { numbers: self.numbers(order), ..found };
                 if !found.agrees(&test.modulus, in_test) {
                     break;
                 }
@@ -449,17 +452,17 @@ impl<A: Arithmetic> Search<'_, A> {
 
 /// The numbers of an order as fractions; `None` where the primes are too few.
 fn fractions<A: Arithmetic>(
-    images: &[Image],
+    images: &[SymbolicImage],
     remainders: &Remainders<A>,
     product: &Integer,
     order: usize,
-) -> Option<Order> {
+) -> Option<SymbolicOrder> {
     let mut denominator = Integer::one();
     let mut over: Vec<Integer> = vec![];
     let mut numerators = Vec::new();
     let mut weights: Vec<u64> = remainders.weights(|modulus| modulus.one).collect();
     let mut residues = vec![Lanes::default(); images.len()];
-    let mut eight = Numbers::default();
+    let mut eight = ReconstructedIntegers::default();
     // The place of the first of eight that were put together over the present denominator.
     let mut first = None;
     for index in 0..images[0].orders[order].len() {
@@ -491,10 +494,10 @@ fn fractions<A: Arithmetic>(
     for (numerator, over) in numerators.iter_mut().zip(over) {
         *numerator *= &denominator / over;
     }
-    Some(Order { denominator, numerators, numbers: 0 })
+    Some(SymbolicOrder { denominator, numerators, numbers: 0 })
 }
 
-impl Order {
+impl SymbolicOrder {
     /// Whether a prime that knows nothing of these numbers sees the same.
     fn agrees(&self, modulus: &Modulus, plain: &[u64]) -> bool {
         let denominator = modulus.integer(&self.denominator);
@@ -527,10 +530,10 @@ impl Order {
 /// The orders as series.
 fn expansion(
     plan: &Plan,
-    orders: &[Order],
+    orders: &[SymbolicOrder],
     monomials: &(Vec<(Monomial, usize)>, Monomial),
-    extent: Extent,
-) -> Expansion<Symbols> {
+    extent: ExpansionScope,
+) -> SecularExpansion<Symbols> {
     let ring = Polynomials(Integers);
     let constant = |number: usize| -> Vec<FourierSeries<Symbols>> {
         let orders = orders.iter().enumerate();
@@ -541,17 +544,17 @@ fn expansion(
             })
             .collect()
     };
-    let mut expansion = Expansion {
+    let mut expansion = SecularExpansion {
         frequency: constant(0),
         frequency_squared: constant(1),
         displacement: vec![],
         removed: vec![],
         amplitudes: vec![],
     };
-    if extent == Extent::Motion {
+    if extent == ExpansionScope::Motion {
         let squares = expansion.frequency_squared.iter().skip(1);
         expansion.removed = squares.map(|square| square.times(-1)).collect();
-        let series = |(order, own): (usize, &Order)| {
+        let series = |(order, own): (usize, &SymbolicOrder)| {
             let mut coefficients = Vec::new();
             for index in 0..plan.harmonics(order) {
                 coefficients.resize(plan.harmonic(index), Polynomial::zero());
@@ -599,14 +602,16 @@ mod tests {
     fn agrees(force: &[ForceTerm<Symbols>], highest: usize) {
         for normalisation in [AmplitudeConvention::Initial, AmplitudeConvention::FirstHarmonic] {
             for detuning in [Detuning::Acceleration, Detuning::Displacement] {
-                let scheme = Scheme { normalisation, amplitude: Amplitude::Free, detuning };
+                let scheme = Scheme { normalisation, amplitude: AmplitudeKind::Free, detuning };
                 let exact = super::super::expand(&Polynomials(Integers), force, highest, &scheme)
                     .expect("an expansion");
                 let nobody = Supervision::default();
-                let widest = expand(force, highest, &scheme, Extent::Motion, nobody)
+                let widest = expand(force, highest, &scheme, ExpansionScope::Motion, nobody)
                     .expect("the same by primes");
-                let portable = Expand(force, highest, scheme, Extent::Motion, nobody).by(Portable);
-                let alone = expand(force, highest, &scheme, Extent::Frequency, nobody)
+                let portable =
+                    ExpandSymbols(force, highest, scheme, ExpansionScope::Motion, nobody)
+                        .by(Portable);
+                let alone = expand(force, highest, &scheme, ExpansionScope::Frequency, nobody)
                     .expect("the frequency");
                 assert_eq!(alone.frequency_squared, exact.frequency_squared);
                 assert_eq!(alone.frequency, exact.frequency);
@@ -683,19 +688,19 @@ mod tests {
             [term(1, 2, 0, (a.clone(), 1)), term(1, 3, 0, (b.clone(), 3)), term(2, 5, 0, (a, 7))];
         let scheme = Scheme {
             normalisation: AmplitudeConvention::Initial,
-            amplitude: Amplitude::Free,
+            amplitude: AmplitudeKind::Free,
             detuning: Detuning::Acceleration,
         };
         let (terms, groups) = grouped(&force).expect("terms");
         let weights: Vec<usize> = groups.kinds.iter().map(|kind| kind.0).collect();
         let lower_set = LowerSet::new(&weights, 0, 6, 1000).expect("few points");
         let plan = Plan::new(&terms, None, 6, scheme, false).expect("symmetry");
-        let search = Search {
+        let search = PrimeSearch {
             arithmetic: Portable,
             plan: &plan,
             groups: &groups,
             lower_set: &lower_set,
-            extent: Extent::Motion,
+            extent: ExpansionScope::Motion,
             supervision: Supervision::default(),
             primes: Box::new(primes_below(30, plan.circle())),
             images: vec![],
@@ -717,12 +722,16 @@ mod tests {
     fn what_has_no_term_of_the_first_order_is_left_to_the_ring() {
         let scheme = Scheme {
             normalisation: AmplitudeConvention::Initial,
-            amplitude: Amplitude::Free,
+            amplitude: AmplitudeKind::Free,
             detuning: Detuning::Acceleration,
         };
         let terms = [term(2, 3, 0, (letter("a"), 1)), term(3, 5, 0, (letter("b"), 1))];
-        assert!(expand(&terms, 6, &scheme, Extent::Motion, Supervision::default()).is_none());
+        assert!(
+            expand(&terms, 6, &scheme, ExpansionScope::Motion, Supervision::default()).is_none()
+        );
         let damped = [term(1, 0, 1, (letter("a"), 1)), term(1, 3, 0, (letter("b"), 1))];
-        assert!(expand(&damped, 6, &scheme, Extent::Motion, Supervision::default()).is_none());
+        assert!(
+            expand(&damped, 6, &scheme, ExpansionScope::Motion, Supervision::default()).is_none()
+        );
     }
 }

@@ -13,7 +13,7 @@ use super::super::candidate::{
 };
 use super::super::force::{is_even, is_odd};
 use super::super::formula::JudgedFormula;
-use super::super::fourier_series::{FourierSeries, WORKING, Wave};
+use super::super::fourier_series::{BasisFunction, FourierSeries, WORKING};
 use super::super::law;
 use super::super::radii_polynomial::NotProved;
 use super::super::{Certified, HIGHEST_HARMONIC, coordinate};
@@ -140,7 +140,7 @@ pub fn certify_driven(
     let frequency = frequency.ok_or_else(|| NotCertified::DrivingFrequency(given.to_string()))?;
     let [damping, force] = driven_parts(oscillator, &values, &frequency)?;
     let samples = verify::motions(oscillator, solution, at)?.ok_or(NotCertified::NoSteadyMotion)?;
-    let places = |samples: &[verify::Sample]| -> Vec<f64> {
+    let places = |samples: &[verify::TimedState]| -> Vec<f64> {
         samples[..samples.len() - 1].iter().map(|(_, x, _)| *x).collect()
     };
     let truth = harmonics_of(&places(&samples.truth));
@@ -389,7 +389,7 @@ fn of_velocity(oscillator: &Oscillator, parts: &Parts) -> Option<String> {
 }
 
 /// `1/omega` and the harmonics of one period, turned so that the first one is a positive cosine.
-fn from_samples(samples: &[verify::Sample], odd: bool) -> (f64, Harmonics) {
+fn from_samples(samples: &[verify::TimedState], odd: bool) -> (f64, Harmonics) {
     let count = samples.len() - 1;
     let places: Vec<f64> = samples[..count].iter().map(|(_, x, _)| *x).collect();
     let found = Transform::new(count).harmonics(&places, HIGHEST_HARMONIC.min(count / 2));
@@ -435,8 +435,8 @@ fn refine(certificate: &mut DampedCertificate) -> Result<(), NotProved> {
         let corrections = block[first..].iter().zip(&step.block[first..]);
         for (wave, ball) in corrections.chain(step.beyond.iter().map(|(wave, ball)| (wave, ball))) {
             match *wave {
-                Wave::Cosine(k) => subtract(&mut certificate.cosines, k, short(ball)),
-                Wave::Sine(k) => subtract(&mut certificate.sines, k, short(ball)),
+                BasisFunction::Cosine(k) => subtract(&mut certificate.cosines, k, short(ball)),
+                BasisFunction::Sine(k) => subtract(&mut certificate.sines, k, short(ball)),
             }
         }
         shorten(&mut certificate.cosines);

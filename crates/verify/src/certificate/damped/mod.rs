@@ -23,7 +23,7 @@ use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::symbol::Symbol;
 pub use candidate::{certify_cycle, certify_cycle_motion, certify_driven};
-use theorem::Problem;
+use theorem::DampedProblem;
 
 /// The drive of a motion, whose period is a whole number of its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -106,8 +106,8 @@ pub fn check_damped(certificate: &DampedCertificate) -> Result<Certified, CheckE
 impl DampedCertificate {
     /// Returns the equation and the approximate motion of this certificate in the form that the
     /// theorem takes.
-    fn problem(&self) -> Problem<'_> {
-        Problem {
+    fn problem(&self) -> DampedProblem<'_> {
+        DampedProblem {
             damping: &self.damping,
             force: &self.force,
             drive: self.drive.as_ref().map(|drive| drive.periods),

@@ -63,7 +63,7 @@ use num_traits::Signed as _;
 
 use super::super::approximate_inverse::{Inverse, SHORT, image};
 use super::super::force::{NoValue, along, along_all, is_even, is_odd};
-use super::super::fourier_series::{FourierSeries, WORKING, Wave};
+use super::super::fourier_series::{BasisFunction, FourierSeries, WORKING};
 use super::super::radii_polynomial::{Correction, NotProved, Proof, radius};
 use super::super::{HIGHEST_HARMONIC, coordinate};
 use crate::exact::Integer;
@@ -84,7 +84,7 @@ pub(super) fn waves_of_drive() -> [Symbol; 2] {
 }
 
 /// A certificate in the form that the theorem takes, of a limit cycle or of a driven motion.
-pub(super) struct Problem<'a> {
+pub(super) struct DampedProblem<'a> {
     /// g.
     pub(super) damping: &'a Expr,
     /// h, with the letters of the [drive](waves_of_drive) where there is one.
@@ -107,7 +107,7 @@ pub(super) struct Problem<'a> {
     pub(super) sigma: i32,
 }
 
-impl Problem<'_> {
+impl DampedProblem<'_> {
     /// Whether p is an unknown.
     const fn is_free(&self) -> bool {
         self.drive.is_none()
@@ -120,14 +120,14 @@ impl Problem<'_> {
 
     /// The equations of the block. Of a limit cycle that of the sine of the first harmonic is the
     /// first: there p has its place among the unknowns.
-    pub(super) fn block(&self) -> Vec<Wave> {
+    pub(super) fn block(&self) -> Vec<BasisFunction> {
         let harmonics = (usize::from(self.odd)..=self.highest).step_by(self.step());
-        let waves = harmonics.flat_map(|k| [Wave::Cosine(k), Wave::Sine(k)]);
-        let waves = waves.filter(|wave| *wave != Wave::Sine(0));
+        let waves = harmonics.flat_map(|k| [BasisFunction::Cosine(k), BasisFunction::Sine(k)]);
+        let waves = waves.filter(|wave| *wave != BasisFunction::Sine(0));
         match self.is_free() {
-            true => [Wave::Sine(1)]
+            true => [BasisFunction::Sine(1)]
                 .into_iter()
-                .chain(waves.filter(|wave| *wave != Wave::Sine(1)))
+                .chain(waves.filter(|wave| *wave != BasisFunction::Sine(1)))
                 .collect(),
             false => waves.collect(),
         }
@@ -186,11 +186,11 @@ impl Problem<'_> {
 ///
 /// # Errors
 /// [`NotProved`].
-pub(super) fn prove(problem: Problem) -> Result<Proof, NotProved> {
+pub(super) fn prove(problem: DampedProblem) -> Result<Proof, NotProved> {
     if problem.odd && !problem.is_odd()? {
         return Err(NotProved::NotOdd);
     }
-    let system = System::of(problem)?;
+    let system = DampedBoundData::of(problem)?;
     let problem = &system.equations.problem;
     let x = coordinate();
     let slope = problem.force.differentiate(x)?;
@@ -220,22 +220,23 @@ pub(super) fn prove(problem: Problem) -> Result<Proof, NotProved> {
 ///
 /// # Errors
 /// As [`prove`].
-pub(super) fn correction(problem: Problem) -> Result<Correction<Wave>, NotProved> {
-    Ok(System::of(problem)?.correction())
+pub(super) fn correction(problem: DampedProblem) -> Result<Correction<BasisFunction>, NotProved> {
+    Ok(DampedBoundData::of(problem)?.correction())
 }
 
 /// About the derivative on the block, row by row, for what is not proved.
 ///
 /// # Errors
 /// As [`prove`].
-pub(super) fn derivative_of_block(problem: Problem) -> Result<Vec<Vec<f64>>, NotProved> {
-    let equations = Equations::of(problem)?;
+pub(super) fn derivative_of_block(problem: DampedProblem) -> Result<Vec<Vec<f64>>, NotProved> {
+    let equations = DampedEquations::of(problem)?;
     let derivative = equations.derivative()?;
-    let entry = |row: Wave, place: usize| match place < equations.unknowns_before_waves() {
+    let entry = |row: BasisFunction, place: usize| match place < equations.unknowns_before_waves() {
         true => WORKING.nearest(&equations.by_reciprocal(row)),
         false => SHORT.nearest(&derivative.entry(row, equations.block[place])),
     };
-    let row = |row: &Wave| (0..equations.block.len()).map(|place| entry(*row, place)).collect();
+    let row =
+        |row: &BasisFunction| (0..equations.block.len()).map(|place| entry(*row, place)).collect();
     Ok(equations.block.iter().map(row).collect())
 }
 
@@ -256,7 +257,7 @@ impl Multiplier {
     }
 
     /// The coefficient of one wave in the product with another.
-    fn at(&self, row: Wave, column: Wave) -> Ball {
+    fn at(&self, row: BasisFunction, column: BasisFunction) -> Ball {
         let cosine = |m: usize| self.cosines.get(m).cloned().unwrap_or_else(Ball::zero);
         let sine = |m: usize| match m {
             0 => Ball::zero(),
@@ -268,12 +269,18 @@ impl Multiplier {
             false => sine(k.abs_diff(j)),
         };
         let both = match (row, column) {
-            (Wave::Cosine(_), Wave::Cosine(_)) => SHORT.sum(&cosine(k.abs_diff(j)), &cosine(k + j)),
-            (Wave::Sine(_), Wave::Sine(_)) => {
+            (BasisFunction::Cosine(_), BasisFunction::Cosine(_)) => {
+                SHORT.sum(&cosine(k.abs_diff(j)), &cosine(k + j))
+            }
+            (BasisFunction::Sine(_), BasisFunction::Sine(_)) => {
                 SHORT.difference(&cosine(k.abs_diff(j)), &cosine(k + j))
             }
-            (Wave::Sine(_), Wave::Cosine(_)) => SHORT.sum(&apart(k < j), &sine(k + j)),
-            (Wave::Cosine(_), Wave::Sine(_)) => SHORT.sum(&apart(j < k), &sine(k + j)),
+            (BasisFunction::Sine(_), BasisFunction::Cosine(_)) => {
+                SHORT.sum(&apart(k < j), &sine(k + j))
+            }
+            (BasisFunction::Cosine(_), BasisFunction::Sine(_)) => {
+                SHORT.sum(&apart(j < k), &sine(k + j))
+            }
         };
         // Of the constant both are one.
         if k == 0 { SHORT.divided(&both, 2) } else { both }
@@ -301,15 +308,15 @@ impl Derivative {
     }
 
     /// The coefficient of one wave in `p (g e)' + p^2 h' e` of another, e.
-    fn bent(&self, row: Wave, column: Wave) -> Ball {
+    fn bent(&self, row: BasisFunction, column: BasisFunction) -> Ball {
         let k = row.harmonic() as i64;
         // (cos)' = -k sin, (sin)' = k cos.
         let drag = match row {
-            Wave::Cosine(harmonic) => {
-                SHORT.scaled(&self.by_damping.at(Wave::Sine(harmonic), column), k)
+            BasisFunction::Cosine(harmonic) => {
+                SHORT.scaled(&self.by_damping.at(BasisFunction::Sine(harmonic), column), k)
             }
-            Wave::Sine(harmonic) => {
-                SHORT.scaled(&self.by_damping.at(Wave::Cosine(harmonic), column), -k)
+            BasisFunction::Sine(harmonic) => {
+                SHORT.scaled(&self.by_damping.at(BasisFunction::Cosine(harmonic), column), -k)
             }
         };
         SHORT.sum(
@@ -320,7 +327,7 @@ impl Derivative {
 
     /// The entry of the derivative, `e'' + p (g e)' + p^2 h' e`: that of [`Self::bent`] and on the
     /// diagonal `-k^2` of `e''`.
-    fn entry(&self, row: Wave, column: Wave) -> Ball {
+    fn entry(&self, row: BasisFunction, column: BasisFunction) -> Ball {
         let bent = self.bent(row, column);
         match row == column {
             true => SHORT.difference(&bent, &SHORT.integer(i64::from(row.squared()))),
@@ -330,8 +337,8 @@ impl Derivative {
 }
 
 /// F at the approximate motion.
-struct Equations<'a> {
-    problem: Problem<'a>,
+struct DampedEquations<'a> {
+    problem: DampedProblem<'a>,
     /// p^2.
     squared: Ball,
     /// g(X) X'.
@@ -340,11 +347,11 @@ struct Equations<'a> {
     force: FourierSeries,
     /// The equations of the block, the sine of the first harmonic first. Among the unknowns p takes
     /// the place of that sine.
-    block: Vec<Wave>,
+    block: Vec<BasisFunction>,
 }
 
-impl<'a> Equations<'a> {
-    fn of(problem: Problem<'a>) -> Result<Self, NotProved> {
+impl<'a> DampedEquations<'a> {
+    fn of(problem: DampedProblem<'a>) -> Result<Self, NotProved> {
         let motion = &problem.motion;
         let drag = problem.along(problem.damping, motion)?.product(&motion.derivative());
         let force = problem.along(problem.force, motion)?;
@@ -379,15 +386,15 @@ impl<'a> Equations<'a> {
     }
 
     /// Both waves of the harmonics from one beyond the block up to another.
-    fn beyond(&self, from: usize, to: usize) -> impl Iterator<Item = Wave> + use<> {
+    fn beyond(&self, from: usize, to: usize) -> impl Iterator<Item = BasisFunction> + use<> {
         let (step, highest) = (self.problem.step(), self.problem.highest);
         let from = from.max(highest + 1);
         let harmonics = (highest + step..=to).step_by(step).skip_while(move |k| *k < from);
-        harmonics.flat_map(|k| [Wave::Cosine(k), Wave::Sine(k)])
+        harmonics.flat_map(|k| [BasisFunction::Cosine(k), BasisFunction::Sine(k)])
     }
 
     /// `p D_k + p^2 h_k`.
-    fn bent(&self, wave: Wave) -> Ball {
+    fn bent(&self, wave: BasisFunction) -> Ball {
         WORKING.sum(
             &WORKING.product(&self.problem.reciprocal, &self.drag.coefficient(wave)),
             &WORKING.product(&self.squared, &self.force.coefficient(wave)),
@@ -395,7 +402,7 @@ impl<'a> Equations<'a> {
     }
 
     /// `D_k + 2 p h_k`, the derivative by p.
-    fn by_reciprocal(&self, wave: Wave) -> Ball {
+    fn by_reciprocal(&self, wave: BasisFunction) -> Ball {
         let twice = WORKING
             .scaled(&WORKING.product(&self.problem.reciprocal, &self.force.coefficient(wave)), 2);
         WORKING.sum(&self.drag.coefficient(wave), &twice)
@@ -408,8 +415,8 @@ impl<'a> Equations<'a> {
 }
 
 /// The quantities from which the bounds Y0, Z1 and Z2 are computed.
-struct System<'a> {
-    equations: Equations<'a>,
+struct DampedBoundData<'a> {
+    equations: DampedEquations<'a>,
     inverse: Inverse,
     /// alpha.
     size: Bound,
@@ -417,13 +424,13 @@ struct System<'a> {
     size_of_derivative: Bound,
 }
 
-impl<'a> System<'a> {
-    fn of(problem: Problem<'a>) -> Result<Self, NotProved> {
+impl<'a> DampedBoundData<'a> {
+    fn of(problem: DampedProblem<'a>) -> Result<Self, NotProved> {
         // Without p among the unknowns all weigh the same.
         let sigma = if problem.is_free() { problem.sigma } else { 0 };
         let inverse = Inverse::of(problem.inverse, problem.inverse_bits, sigma);
         let next = (problem.highest + 1) as f64;
-        let equations = Equations::of(problem)?;
+        let equations = DampedEquations::of(problem)?;
         let beyond = Bound::exactly(1.0).over(next);
         let (mut size, mut size_of_derivative) = (beyond.over(next), beyond);
         for (column, wave) in equations.block.iter().enumerate() {
@@ -437,7 +444,7 @@ impl<'a> System<'a> {
 
     /// `B F`: the correction of p and of every harmonic, by which the approximation is the further
     /// off.
-    fn correction(&self) -> Correction<Wave> {
+    fn correction(&self) -> Correction<BasisFunction> {
         let beyond = self.equations.beyond(0, self.equations.last()).map(|wave| {
             let image = WORKING.divided(&self.equations.bent(wave), wave.squared());
             (wave, WORKING.difference(&self.equations.problem.motion.coefficient(wave), &image))
@@ -536,7 +543,12 @@ impl<'a> System<'a> {
     }
 
     /// The column of a wave, in the block at this place or beyond it.
-    fn column(&self, derivative: &Derivative, column: Wave, place: Option<usize>) -> Bound {
+    fn column(
+        &self,
+        derivative: &Derivative,
+        column: BasisFunction,
+        place: Option<usize>,
+    ) -> Bound {
         let (j, width) = (column.harmonic(), derivative.width());
         let tail: Bound = self
             .equations
@@ -685,12 +697,12 @@ mod tests {
     }
 
     /// The cosine or sine of a harmonic.
-    fn wave(wave: Wave) -> FourierSeries {
+    fn wave(wave: BasisFunction) -> FourierSeries {
         let mut balls = vec![Ball::zero(); wave.harmonic()];
         balls.push(WORKING.integer(1));
         match wave {
-            Wave::Cosine(_) => FourierSeries::exactly(balls, vec![]),
-            Wave::Sine(_) => FourierSeries::exactly(vec![], balls),
+            BasisFunction::Cosine(_) => FourierSeries::exactly(balls, vec![]),
+            BasisFunction::Sine(_) => FourierSeries::exactly(vec![], balls),
         }
     }
 
@@ -703,7 +715,7 @@ mod tests {
     }
 
     impl Place {
-        fn of(problem: &Problem, motion: &FourierSeries, reciprocal: &Ball) -> Self {
+        fn of(problem: &DampedProblem, motion: &FourierSeries, reciprocal: &Ball) -> Self {
             let value = |expression| problem.along(expression, motion).expect("a value");
             let slope = problem.force.differentiate(coordinate()).expect("a slope");
             let reciprocal = FourierSeries::constant(reciprocal.clone());
@@ -718,7 +730,7 @@ mod tests {
         }
 
         /// DF on a direction, `None` that of p.
-        fn derivative(&self, direction: Option<Wave>) -> FourierSeries {
+        fn derivative(&self, direction: Option<BasisFunction>) -> FourierSeries {
             let Some(direction) = direction else {
                 return self.by_reciprocal.clone();
             };
@@ -731,18 +743,22 @@ mod tests {
     }
 
     /// The place of a wave among the unknowns of the block.
-    fn place_of(system: &System, wave: Wave) -> Option<usize> {
+    fn place_of(system: &DampedBoundData, wave: BasisFunction) -> Option<usize> {
         let first = system.equations.unknowns_before_waves();
         let mut waves = system.equations.block[first..].iter();
         waves.position(|other| *other == wave).map(|place| place + first)
     }
 
     /// The norm of B of a series, less a direction.
-    fn size_of_image(system: &System, series: &FourierSeries, less: Option<Option<Wave>>) -> f64 {
+    fn size_of_image(
+        system: &DampedBoundData,
+        series: &FourierSeries,
+        less: Option<Option<BasisFunction>>,
+    ) -> f64 {
         let block = &system.equations.block;
         let vector: Vec<Ball> = block.iter().map(|wave| series.coefficient(*wave)).collect();
         let mut image = image(&system.inverse.entries, &vector, WORKING);
-        let place = |direction: Option<Wave>| match direction {
+        let place = |direction: Option<BasisFunction>| match direction {
             None => Some(0),
             Some(direction) => place_of(system, direction),
         };
@@ -760,7 +776,7 @@ mod tests {
 
     /// Every direction up to a harmonic, that of p first, where it is one; with the weight that it
     /// has in the norm.
-    fn directions(system: &System, highest: usize) -> Vec<(Option<Wave>, f64)> {
+    fn directions(system: &DampedBoundData, highest: usize) -> Vec<(Option<BasisFunction>, f64)> {
         let first = system.equations.unknowns_before_waves();
         let block = system.equations.block[first..].iter().copied();
         let waves = block.chain(system.equations.beyond(0, highest)).map(|wave| (Some(wave), 1.0));
@@ -769,7 +785,7 @@ mod tests {
     }
 
     /// Every column of `1 - B DF` by its definition, that of p first.
-    fn columns(system: &System, highest: usize) -> Vec<(Option<Wave>, f64)> {
+    fn columns(system: &DampedBoundData, highest: usize) -> Vec<(Option<BasisFunction>, f64)> {
         let equations = &system.equations;
         let place =
             Place::of(&equations.problem, &equations.problem.motion, &equations.problem.reciprocal);
@@ -793,7 +809,7 @@ mod tests {
                 Some(_) => light = spoilt.clone(),
             }
             for (certificate, is_proved) in [(&sound, true), (&spoilt, false), (&light, false)] {
-                let system = System::of(certificate.problem()).expect("a system");
+                let system = DampedBoundData::of(certificate.problem()).expect("a system");
                 let derivative = system.equations.derivative().expect("a derivative");
                 let contraction =
                     system.contraction(&derivative).map_or(f64::INFINITY, Bound::value);
@@ -816,7 +832,7 @@ mod tests {
     fn what_a_series_leaves_out_counts() {
         let certificate = certificate();
         let more = Bound::exactly(0.001);
-        let system = || System::of(certificate.problem()).expect("a system");
+        let system = || DampedBoundData::of(certificate.problem()).expect("a system");
         let own = system();
         let size = own.size.value();
         let reciprocal = WORKING.nearest(&own.equations.problem.reciprocal);
@@ -847,7 +863,7 @@ mod tests {
         // A harmonic beyond the block is off by itself.
         let mut shaken = certificate.clone();
         shaken.cosines[41] += Integer::from(1) << (shaken.bits - 20);
-        let defect = System::of(shaken.problem()).expect("a system").defect().value();
+        let defect = DampedBoundData::of(shaken.problem()).expect("a system").defect().value();
         assert!((defect * f64::from(1 << 20) - 1.0).abs() < 0.2, "{defect}");
     }
 
@@ -859,7 +875,7 @@ mod tests {
 
     fn second_derivative_is_bounded(certificate: &DampedCertificate) {
         let (h, within) = (Bound::power_of_two(-20), WORKING.fraction(&ratio(1, 1 << 20)));
-        let system = System::of(certificate.problem()).expect("a system");
+        let system = DampedBoundData::of(certificate.problem()).expect("a system");
         let ball = system.equations.problem.motion.clone().widened(h);
         let slope = |expression: &Expr| expression.differentiate(coordinate()).expect("a slope");
         let norm = |expression: &Expr| {

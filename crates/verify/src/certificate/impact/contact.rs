@@ -37,7 +37,7 @@ const ORDER: usize = 64;
 const NEGLIGIBLE: i32 = -140;
 
 /// The contact of the pendulum with a barrier of Hertz's law.
-pub(super) struct Contact {
+pub(super) struct HertzContact {
     /// Place of the barrier.
     pub(super) barrier: Ball,
     /// gamma.
@@ -63,7 +63,7 @@ pub(super) fn sine_and_cosine(angle: &Ball) -> Option<[Ball; 2]> {
     Some([product(angle, &first(1)?), first(0)?])
 }
 
-impl Contact {
+impl HertzContact {
     /// `(4/5) gamma`.
     fn elasticity(&self) -> Ball {
         WORKING.divided(&WORKING.scaled(&self.stiffness, 4), 5)

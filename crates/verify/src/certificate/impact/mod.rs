@@ -21,7 +21,7 @@ mod elliptic;
 
 use num_traits::Signed as _;
 
-use self::contact::{Contact, is_positive, placed, sine_and_cosine};
+use self::contact::{HertzContact, is_positive, placed, sine_and_cosine};
 use super::Enclosure;
 use super::fourier_series::WORKING;
 use crate::exact::Rational;
@@ -120,8 +120,12 @@ pub fn enclose_impact(
     let speed_squared = WORKING.scaled(&WORKING.difference(&waves[1], &cosine), 2);
     let speed = WORKING.root(&speed_squared, 2).ok_or(NotEnclosed::Digits)?;
     let time_to_contact = flight(amplitude, barrier).ok_or(NotEnclosed::Digits)?;
-    let contact =
-        Contact { barrier: place, stiffness: WORKING.fraction(stiffness), speed_squared, waves };
+    let contact = HertzContact {
+        barrier: place,
+        stiffness: WORKING.fraction(stiffness),
+        speed_squared,
+        waves,
+    };
     let qm = contact.root_of_depth()?;
     let duration = contact.duration(&qm)?;
     let period = WORKING.sum(&WORKING.scaled(&time_to_contact, 2), &duration);

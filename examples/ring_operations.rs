@@ -9,7 +9,7 @@ use std::cell::Cell;
 use std::error::Error;
 use std::rc::Rc;
 
-use lindstedt::exact::{Indivisible, Integer, Integers, Ring, factorial};
+use lindstedt::exact::{Integer, Integers, NotInvertible, Ring, factorial};
 use lindstedt::method::secular::{
     AmplitudeKind, Detuning, ForceTerm, Scheme, SecularExpansion, expand,
 };
@@ -73,7 +73,7 @@ impl Ring for Counted {
         &self,
         elements: impl IntoIterator<Item = &'a mut Integer>,
         divisor: &Integer,
-    ) -> Result<(), Indivisible> {
+    ) -> Result<(), NotInvertible> {
         Integers.divide(elements, divisor)
     }
     fn reduce<'a>(

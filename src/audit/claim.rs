@@ -46,12 +46,12 @@ pub struct PrintedEntry {
     /// How that is read, where it is printed in words.
     pub read_as: Option<String>,
     /// What that says.
-    pub stated: Stated,
+    pub stated: PrintedStatement,
 }
 
 /// What a printed text says.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Stated {
+pub enum PrintedStatement {
     /// A number.
     Number(Printed),
     /// A formula.

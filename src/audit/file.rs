@@ -15,7 +15,8 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::claim::{
-    Claim, ClaimComputation, ClaimQuantity, PrintedEntry, Stated, Supposition, Trend, Unknown,
+    Claim, ClaimComputation, ClaimQuantity, PrintedEntry, PrintedStatement, Supposition, Trend,
+    Unknown,
 };
 use super::printed::Printed;
 use super::{Claims, MOST_COMBINATIONS, identity, options};
@@ -363,7 +364,7 @@ fn entries(section: &Section, kind: &str) -> ReadResult<Vec<PrintedEntry>> {
                 values: own(row.get_ref())?,
                 printed: printed.clone(),
                 read_as: section.read_as.as_ref().map(|text| text.get_ref().clone()),
-                stated: Stated::Trend(trend),
+                stated: PrintedStatement::Trend(trend),
             }),
         };
         return rows.get_ref().iter().map(row).collect();
@@ -395,7 +396,7 @@ fn entries(section: &Section, kind: &str) -> ReadResult<Vec<PrintedEntry>> {
         return rows.get_ref().iter().map(row).collect();
     }
     let stated = match (&section.printed, kind) {
-        (None, "" | "options") => Stated::Words,
+        (None, "" | "options") => PrintedStatement::Words,
         (None, _) => return no_number(section),
         (Some(printed), kind) => stated(kind, section.read_as.as_ref().unwrap_or(printed))?,
     };
@@ -419,16 +420,16 @@ fn no_number<T>(section: &Section) -> ReadResult<T> {
 }
 
 /// What a printed text says, for this quantity.
-fn stated(kind: &str, text: &Text) -> ReadResult<Stated> {
+fn stated(kind: &str, text: &Text) -> ReadResult<PrintedStatement> {
     match kind {
-        "" | "options" => Ok(Stated::Words),
+        "" | "options" => Ok(PrintedStatement::Words),
         "law" => {
             let right = text.get_ref().rsplit('=').next().unwrap_or_default();
-            Ok(Stated::Formula(parsed(right, text.span())?))
+            Ok(PrintedStatement::Formula(parsed(right, text.span())?))
         }
-        "taylor" | "identity" | "motion" => Ok(Stated::Formula(equal_to_zero(text)?)),
+        "taylor" | "identity" | "motion" => Ok(PrintedStatement::Formula(equal_to_zero(text)?)),
         _ => match Printed::read(text.get_ref()) {
-            Some(printed) => Ok(Stated::Number(printed)),
+            Some(printed) => Ok(PrintedStatement::Number(printed)),
             None => helped(
                 text.span(),
                 format!("`{}` is no number", text.get_ref()),

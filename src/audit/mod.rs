@@ -40,12 +40,12 @@ mod unknown;
 use std::collections::{BTreeMap, BTreeSet};
 
 pub use claim::{
-    Claim, ClaimComputation, ClaimQuantity, PrintedEntry, Stated, Supposition, Trend, Unknown,
-    Verdict,
+    Claim, ClaimComputation, ClaimQuantity, PrintedEntry, PrintedStatement, Supposition, Trend,
+    Unknown, Verdict,
 };
 pub use printed::{Printed, Relation, Rounding};
-pub use quantity::{Computed, Lack, NAMES};
-pub use unknown::Demand;
+pub use quantity::{Computed, NAMES, NotComputable};
+pub use unknown::RequiredValue;
 
 use crate::decimal::{decimal, significant};
 use crate::exact::Rational;
@@ -69,21 +69,21 @@ pub struct Audit {
     /// The publication.
     pub title: String,
     /// A finding for each claim, in the order of the claims.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<ClaimFinding>,
 }
 
 /// What is found of a claim.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct Finding {
+pub struct ClaimFinding {
     /// The claim.
     pub claim: Claim,
     /// The verdict.
     pub verdict: Verdict,
     /// What was tried, the claim alone first; the last one reproduces, where one does.
-    pub tried: Vec<Tried>,
+    pub tried: Vec<ClaimAttempt>,
     /// What the claim asks of its unknown, where that was solved for.
-    pub demand: Option<Demand>,
+    pub demand: Option<RequiredValue>,
     /// What is not printed and needed, where that decides.
     pub missing: Vec<String>,
     /// Why the verdict is what it is, sentence by sentence.
@@ -92,18 +92,18 @@ pub struct Finding {
 
 /// A claim computed under some suppositions.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tried {
+pub struct ClaimAttempt {
     /// What is supposed, nothing for the claim alone.
     pub supposing: Vec<Supposition>,
     /// The same in words, and the value of an unknown that was solved for.
     pub words: Vec<String>,
     /// What is computed for each entry, or what it lacks.
-    pub computed: Vec<Result<Computed, Lack>>,
+    pub computed: Vec<Result<Computed, NotComputable>>,
     /// Which entries are reproduced.
     pub reproduced: Vec<bool>,
 }
 
-impl Tried {
+impl ClaimAttempt {
     /// Whether all of it is reproduced.
     pub fn is_reproduced(&self) -> bool {
         self.reproduced.iter().all(|entry| *entry)
@@ -115,17 +115,17 @@ impl Tried {
     }
 }
 
-impl Finding {
+impl ClaimFinding {
     /// What is supposed where the claim is reproduced under an assumption; empty where nothing is.
     pub fn assumption(&self) -> String {
         if self.verdict != Verdict::UnderAssumption {
             return String::new();
         }
-        self.shown().map(Tried::in_a_line).unwrap_or_default()
+        self.shown().map(ClaimAttempt::in_a_line).unwrap_or_default()
     }
 
     /// What is to be shown of what was tried: what reproduces, or the claim alone.
-    pub fn shown(&self) -> Option<&Tried> {
+    pub fn shown(&self) -> Option<&ClaimAttempt> {
         let best = self.tried.iter().find(|tried| tried.is_reproduced());
         best.or(self.tried.first())
     }
@@ -149,7 +149,7 @@ impl Audit {
     /// Whether every verdict is the expected one; with `strict`, whether every claim is reproduced,
     /// whatever is expected.
     pub fn passes(&self, strict: bool) -> bool {
-        let passes = |finding: &Finding| match strict {
+        let passes = |finding: &ClaimFinding| match strict {
             true => finding.verdict.is_reproduced(),
             false => finding.is_as_expected(),
         };
@@ -159,7 +159,7 @@ impl Audit {
 
 /// Computes every claim, and holds those that share an unknown number against each other.
 pub fn audit(claims: Claims) -> Audit {
-    let mut findings: Vec<Finding> = claims.claims.into_iter().map(judge).collect();
+    let mut findings: Vec<ClaimFinding> = claims.claims.into_iter().map(judge).collect();
     share_unknowns(&mut findings);
     Audit { title: claims.title, findings }
 }
@@ -184,17 +184,17 @@ fn combinations(subjects: &[Vec<Supposition>]) -> Vec<Vec<&Supposition>> {
     found
 }
 
-fn judge(claim: Claim) -> Finding {
+fn judge(claim: Claim) -> ClaimFinding {
     let choices = combinations(&claim.suppositions);
-    let mut tried: Vec<Tried> = Vec::new();
+    let mut tried: Vec<ClaimAttempt> = Vec::new();
     for chosen in &choices {
         tried.push(attempt(&claim, chosen));
-        if tried.last().is_some_and(Tried::is_reproduced) {
+        if tried.last().is_some_and(ClaimAttempt::is_reproduced) {
             break;
         }
     }
     let mut demand = None;
-    let is_reproduced = tried.last().is_some_and(Tried::is_reproduced);
+    let is_reproduced = tried.last().is_some_and(ClaimAttempt::is_reproduced);
     if let (Some(unknown), false) = (claim.unknown, is_reproduced) {
         // What is supposed of the unknown itself leaves nothing to solve for.
         let supplies = |one: &&Supposition| match one {
@@ -207,7 +207,7 @@ fn judge(claim: Claim) -> Finding {
             Some((found, chosen))
         });
         // The first that lies where it may, or else the first of all.
-        let demands: Vec<(Demand, &Vec<&Supposition>)> = demands.collect();
+        let demands: Vec<(RequiredValue, &Vec<&Supposition>)> = demands.collect();
         let within = demands.iter().find(|(found, _)| found.is_within);
         if let Some((found, chosen)) = within {
             let question = claim.question.supposing(chosen);
@@ -231,7 +231,11 @@ fn judge(claim: Claim) -> Finding {
 }
 
 /// What a claim would need of its unknown, where that is more than it may be.
-fn outside_words(demand: &Demand, question: &ClaimComputation, chosen: &[&Supposition]) -> String {
+fn outside_words(
+    demand: &RequiredValue,
+    question: &ClaimComputation,
+    chosen: &[&Supposition],
+) -> String {
     let [low, high] = demand.unknown.within.map(|end| significant(end, 3));
     let supposed = match words(question, chosen, None).join(" and ") {
         none if none.is_empty() => none,
@@ -245,7 +249,7 @@ fn outside_words(demand: &Demand, question: &ClaimComputation, chosen: &[&Suppos
 }
 
 /// The claim under these suppositions.
-fn attempt(claim: &Claim, chosen: &[&Supposition]) -> Tried {
+fn attempt(claim: &Claim, chosen: &[&Supposition]) -> ClaimAttempt {
     let question = claim.question.supposing(chosen);
     let evaluator = Evaluator::new(&question);
     // What is not printed must be supposed before anything can be computed.
@@ -253,10 +257,14 @@ fn attempt(claim: &Claim, chosen: &[&Supposition]) -> Tried {
         chosen.iter().any(|one| !matches!(one, Supposition::Rounding(_) | Supposition::Pi(_)));
     if !claim.needs.is_empty() && !supplied {
         let needs: BTreeSet<String> = claim.needs.iter().cloned().collect();
-        return Tried {
+        return ClaimAttempt {
             supposing: chosen.iter().map(|one| (*one).clone()).collect(),
             words: words(&question, chosen, None),
-            computed: claim.entries.iter().map(|_| Err(Lack::Missing(needs.clone()))).collect(),
+            computed: claim
+                .entries
+                .iter()
+                .map(|_| Err(NotComputable::Missing(needs.clone())))
+                .collect(),
             reproduced: vec![false; claim.entries.len()],
         };
     }
@@ -297,38 +305,37 @@ fn compare(
     evaluator: &Evaluator,
     chosen: &[&Supposition],
     unknown: Option<(Symbol, f64)>,
-) -> Tried {
-    let computed: Vec<Result<Computed, Lack>> =
+) -> ClaimAttempt {
+    let computed: Vec<Result<Computed, NotComputable>> =
         claim.entries.iter().map(|entry| evaluator.compute(&entry.values, unknown)).collect();
     let numbers: Option<Vec<f64>> =
         computed.iter().map(|found| found.as_ref().ok()?.number()).collect();
-    let comes_out =
-        |(entry, found): (&PrintedEntry, &Result<Computed, Lack>)| match (&entry.stated, found) {
-            (Stated::Number(printed), Ok(Computed::Number(number))) => {
-                printed.is_reproduced_by(*number, question.rounding, question.tolerance)
-            }
-            (Stated::Number(printed), Ok(Computed::Exact(number))) => {
-                printed.is_reproduced_exactly_by(number, question.rounding, question.tolerance)
-            }
-            (Stated::Number(printed), Ok(Computed::Absent)) => printed.is_reproduced_exactly_by(
-                &Rational::default(),
-                question.rounding,
-                question.tolerance,
-            ),
-            (Stated::Formula(printed), Ok(Computed::Formula(formula))) => {
-                let printed = identity::with_definitions(printed, &question.values);
-                printed
-                    .and_then(|printed| identity::difference(&printed, formula))
-                    .is_ok_and(|rest| rest.is_none())
-            }
-            (Stated::Trend(trend), Ok(_)) => {
-                let same = question.tolerance.unwrap_or(SAME);
-                numbers.as_ref().is_some_and(|numbers| trend.holds(numbers, same))
-            }
-            (Stated::Words, Ok(Computed::Conflicts(conflicts))) => conflicts.is_empty(),
-            _ => false,
-        };
-    Tried {
+    let comes_out = |(entry, found): (&PrintedEntry, &Result<Computed, NotComputable>)| match (
+        &entry.stated,
+        found,
+    ) {
+        (PrintedStatement::Number(printed), Ok(Computed::Number(number))) => {
+            printed.is_reproduced_by(*number, question.rounding, question.tolerance)
+        }
+        (PrintedStatement::Number(printed), Ok(Computed::Exact(number))) => {
+            printed.is_reproduced_exactly_by(number, question.rounding, question.tolerance)
+        }
+        (PrintedStatement::Number(printed), Ok(Computed::Absent)) => printed
+            .is_reproduced_exactly_by(&Rational::default(), question.rounding, question.tolerance),
+        (PrintedStatement::Formula(printed), Ok(Computed::Formula(formula))) => {
+            let printed = identity::with_definitions(printed, &question.values);
+            printed
+                .and_then(|printed| identity::difference(&printed, formula))
+                .is_ok_and(|rest| rest.is_none())
+        }
+        (PrintedStatement::Trend(trend), Ok(_)) => {
+            let same = question.tolerance.unwrap_or(SAME);
+            numbers.as_ref().is_some_and(|numbers| trend.holds(numbers, same))
+        }
+        (PrintedStatement::Words, Ok(Computed::Conflicts(conflicts))) => conflicts.is_empty(),
+        _ => false,
+    };
+    ClaimAttempt {
         supposing: chosen.iter().map(|one| (*one).clone()).collect(),
         words: words(question, chosen, unknown),
         reproduced: claim.entries.iter().zip(&computed).map(comes_out).collect(),
@@ -341,13 +348,13 @@ fn compare(
 pub const SAME: f64 = 1e-3;
 
 /// The unknown of a claim, under these suppositions.
-fn solve_for(claim: &Claim, chosen: &[&Supposition], unknown: Unknown) -> Option<Demand> {
+fn solve_for(claim: &Claim, chosen: &[&Supposition], unknown: Unknown) -> Option<RequiredValue> {
     let question = claim.question.supposing(chosen);
     let evaluator = Evaluator::new(&question);
     unknown::solve(unknown, &|value| {
         let found = compare(claim, &question, &evaluator, chosen, Some((unknown.name, value)));
         let differences = claim.entries.iter().zip(&found.computed).map(|(entry, found)| {
-            let (Stated::Number(printed), Ok(found)) = (&entry.stated, found) else {
+            let (PrintedStatement::Number(printed), Ok(found)) = (&entry.stated, found) else {
                 return f64::NAN;
             };
             found.number().map_or(f64::NAN, |number| number - printed.middle(question.rounding))
@@ -359,10 +366,10 @@ fn solve_for(claim: &Claim, chosen: &[&Supposition], unknown: Unknown) -> Option
 /// The verdict on what was tried.
 fn finding(
     claim: Claim,
-    tried: Vec<Tried>,
-    demand: Option<Demand>,
+    tried: Vec<ClaimAttempt>,
+    demand: Option<RequiredValue>,
     outside: Vec<String>,
-) -> Finding {
+) -> ClaimFinding {
     let alone = tried.first();
     let best = tried.iter().find(|tried| tried.is_reproduced());
     let mut missing: BTreeSet<String> = BTreeSet::new();
@@ -370,8 +377,8 @@ fn finding(
     if best.is_none() {
         for found in alone.iter().flat_map(|tried| &tried.computed) {
             match found {
-                Err(Lack::Missing(names)) => missing.extend(names.iter().cloned()),
-                Err(Lack::Refused(reason)) => refusal = Some(reason.clone()),
+                Err(NotComputable::Missing(names)) => missing.extend(names.iter().cloned()),
+                Err(NotComputable::Refused(reason)) => refusal = Some(reason.clone()),
                 Ok(_) => {}
             }
         }
@@ -409,33 +416,33 @@ fn finding(
             "{name} is not printed; every {name} from {least} to {greatest} makes it come out, of those from {low} to {high}"
         ));
     }
-    Finding { missing: missing.into_iter().collect(), evidence, claim, verdict, tried, demand }
+    ClaimFinding { missing: missing.into_iter().collect(), evidence, claim, verdict, tried, demand }
 }
 
 /// What is computed in place of what is printed.
-fn against(claim: &Claim, tried: &Tried) -> Vec<String> {
+fn against(claim: &Claim, tried: &ClaimAttempt) -> Vec<String> {
     let several = claim.entries.len() > 1;
     if several && tried.reproduced.iter().any(|entry| *entry) {
         let count = tried.reproduced.iter().filter(|entry| **entry).count();
         return vec![format!("{count} of {} entries come out", claim.entries.len())];
     }
-    if let Some(Stated::Trend(_)) = claim.entries.first().map(|entry| &entry.stated) {
+    if let Some(PrintedStatement::Trend(_)) = claim.entries.first().map(|entry| &entry.stated) {
         return vec![format!("computed: {}", numbers_of(claim, tried))];
     }
     let entries = claim.entries.iter().zip(&tried.computed);
     let each = entries.flat_map(|(entry, found)| match (&entry.stated, found) {
-        (Stated::Number(_), Ok(Computed::Absent)) => {
+        (PrintedStatement::Number(_), Ok(Computed::Absent)) => {
             vec![format!("printed {}, but the derived law has no such term", entry.printed)]
         }
-        (Stated::Number(printed), Ok(found)) => {
+        (PrintedStatement::Number(printed), Ok(found)) => {
             let number = found.number().unwrap_or(f64::NAN);
             vec![versus(entry, printed, number)]
         }
-        (Stated::Formula(printed), Ok(Computed::Formula(formula))) => {
+        (PrintedStatement::Formula(printed), Ok(Computed::Formula(formula))) => {
             let printed = identity::with_definitions(printed, &claim.question.values);
             formula_versus(printed, formula)
         }
-        (Stated::Words, Ok(Computed::Conflicts(conflicts))) => conflicts.clone(),
+        (PrintedStatement::Words, Ok(Computed::Conflicts(conflicts))) => conflicts.clone(),
         _ => vec![],
     });
     each.collect()
@@ -487,18 +494,18 @@ fn formula_versus(printed: Result<Expr, String>, formula: &Expr) -> Vec<String> 
 pub(crate) const ABSENT: &str = "0, no such term";
 
 /// What is computed for all entries.
-fn numbers_of(claim: &Claim, tried: &Tried) -> String {
+fn numbers_of(claim: &Claim, tried: &ClaimAttempt) -> String {
     let words = claim.entries.iter().zip(&tried.computed).map(|(entry, found)| match found {
         Ok(Computed::Number(number)) => match &entry.stated {
-            Stated::Number(printed) => printed.alike(*number, 6),
+            PrintedStatement::Number(printed) => printed.alike(*number, 6),
             _ => decimal(*number),
         },
         Ok(Computed::Exact(fraction)) => fraction.to_string(),
         Ok(Computed::Absent) => ABSENT.to_owned(),
         Ok(Computed::Formula(formula)) => formula.to_string(),
         Ok(Computed::Conflicts(conflicts)) => format!("{} conflicts", conflicts.len()),
-        Err(Lack::Missing(_)) => "none".to_owned(),
-        Err(Lack::Refused(reason)) => reason.clone(),
+        Err(NotComputable::Missing(_)) => "none".to_owned(),
+        Err(NotComputable::Refused(reason)) => reason.clone(),
     });
     words.collect::<Vec<_>>().join(", ")
 }
@@ -507,10 +514,12 @@ fn numbers_of(claim: &Claim, tried: &Tried) -> String {
 const TOLD: usize = 8;
 
 /// What comes of the other things that were tried: a sentence each.
-fn others(claim: &Claim, tried: &[Tried]) -> Vec<String> {
+fn others(claim: &Claim, tried: &[ClaimAttempt]) -> Vec<String> {
     let entries = claim.entries.len();
-    let is_trend =
-        matches!(claim.entries.first().map(|entry| &entry.stated), Some(Stated::Trend(_)));
+    let is_trend = matches!(
+        claim.entries.first().map(|entry| &entry.stated),
+        Some(PrintedStatement::Trend(_))
+    );
     let told = tried.iter().enumerate().filter(|(index, one)| {
         // The claim alone is told elsewhere, but for how much of it comes out.
         let worth = *index > 0 || entries > 1 && !is_trend && tried.len() > 1;
@@ -545,11 +554,11 @@ fn others(claim: &Claim, tried: &[Tried]) -> Vec<String> {
 }
 
 /// Claims that share an unknown must ask for the same values of it.
-fn share_unknowns(findings: &mut [Finding]) {
-    let demanded = |finding: &Finding| {
+fn share_unknowns(findings: &mut [ClaimFinding]) {
+    let demanded = |finding: &ClaimFinding| {
         finding.demand.filter(|demand| demand.is_within && finding.verdict.is_reproduced())
     };
-    let demands: Vec<(usize, String, Demand)> = findings
+    let demands: Vec<(usize, String, RequiredValue)> = findings
         .iter()
         .enumerate()
         .filter_map(|(index, finding)| Some((index, finding.claim.id.clone(), demanded(finding)?)))
@@ -563,7 +572,8 @@ fn share_unknowns(findings: &mut [Finding]) {
             unknown::in_common(&[demand.range, of_other.range]).is_some()
         });
         let finding = &mut findings[*index];
-        let range = |demand: &Demand| demand.range.map(|end| significant(end, 4)).join(" to ");
+        let range =
+            |demand: &RequiredValue| demand.range.map(|end| significant(end, 4)).join(" to ");
         if let Some((_, id, of_other)) = against.first() {
             finding.verdict = Verdict::Inconsistent;
             finding.evidence.push(format!(

@@ -15,8 +15,8 @@ use crate::exact::{Monomial, Polynomial, Rational};
 use crate::expr::{CompiledFunction, Expr, ExprError, Node};
 use crate::impact::primary::{Primary, PrimaryCase, PrimarySettings, simulate_primary};
 use crate::impact::{
-    ContactSpeed, Form, Impact, ImpactProblem, Integrator, Model, Reading, Settings, Setup, Start,
-    ThreePhases, course, hertz, three_phases,
+    ContactSpeed, Form, Impact, ImpactProblem, Integrator, Model, PhaseReading, Settings, Setup,
+    Start, ThreePhases, course, hertz, three_phases,
 };
 use crate::mechanics::Mechanism;
 use crate::method::numbers::frequency_squared_of;
@@ -111,7 +111,7 @@ impl Computed {
 
 /// Why nothing is computed.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Lack {
+pub enum NotComputable {
     /// These are not given.
     Missing(BTreeSet<String>),
     /// There is no such number, for this reason.
@@ -135,13 +135,13 @@ impl<'a> Evaluator<'a> {
         &self,
         entry: &BTreeMap<Symbol, Expr>,
         unknown: Option<(Symbol, f64)>,
-    ) -> Result<Computed, Lack> {
+    ) -> Result<Computed, NotComputable> {
         let question = self.question;
         let mut values = question.values.clone();
         values.extend(entry.iter().map(|(name, value)| (*name, value.clone())));
         match &question.quantity {
             ClaimQuantity::Value(formula) | ClaimQuantity::Trend(formula) => {
-                let mut scope = Scope {
+                let mut scope = EvaluationScope {
                     evaluator: self,
                     known: unknown.into_iter().collect(),
                     values,
@@ -152,8 +152,9 @@ impl<'a> Evaluator<'a> {
             }
             ClaimQuantity::Coefficient { squared, term } => {
                 let law = self.polynomial(*squared)?;
-                let monomial = monomial(term)
-                    .ok_or_else(|| Lack::Refused(format!("`{term}` is no product of powers")))?;
+                let monomial = monomial(term).ok_or_else(|| {
+                    NotComputable::Refused(format!("`{term}` is no product of powers"))
+                })?;
                 coefficient(&law, &monomial)
             }
             ClaimQuantity::Law { squared } => {
@@ -162,16 +163,16 @@ impl<'a> Evaluator<'a> {
             ClaimQuantity::Taylor { formula, degree } => {
                 let about = [(Symbol::new("x"), Rational::default())];
                 let parts = taylor(formula, &about, *degree)
-                    .map_err(|error| Lack::Refused(error.to_string()))?;
+                    .map_err(|error| NotComputable::Refused(error.to_string()))?;
                 Ok(Computed::Formula(Expr::sum(parts)))
             }
             ClaimQuantity::Identity(formula) => identity::with_definitions(formula, &values)
                 .map(Computed::Formula)
-                .map_err(Lack::Refused),
+                .map_err(NotComputable::Refused),
             ClaimQuantity::Motion { kinetic, potential, force } => {
                 motion([kinetic, potential, force], &values)
                     .map(Computed::Formula)
-                    .map_err(Lack::Refused)
+                    .map_err(NotComputable::Refused)
             }
             ClaimQuantity::Coordinates(formula) => {
                 let symbols = formula.symbols();
@@ -181,12 +182,12 @@ impl<'a> Evaluator<'a> {
             ClaimQuantity::Settings(settings) => {
                 Ok(Computed::Conflicts(options::conflicts(settings)))
             }
-            ClaimQuantity::Nothing => Err(Lack::Missing(BTreeSet::new())),
+            ClaimQuantity::Nothing => Err(NotComputable::Missing(BTreeSet::new())),
         }
     }
 
     /// The derived law.
-    fn law(&self) -> Result<&(Oscillator, Solution), Lack> {
+    fn law(&self) -> Result<&(Oscillator, Solution), NotComputable> {
         let Some(equation) = &self.question.equation else {
             return Err(missing("equation"));
         };
@@ -195,11 +196,11 @@ impl<'a> Evaluator<'a> {
                 solve(equation, &self.question.options).map_err(|error| error.to_string())?;
             Ok((equation.clone(), solution))
         });
-        found.as_ref().map_err(|reason| Lack::Refused(reason.clone()))
+        found.as_ref().map_err(|reason| NotComputable::Refused(reason.clone()))
     }
 
     /// omega or omega^2 as a polynomial.
-    fn polynomial(&self, squared: bool) -> Result<Polynomial, Lack> {
+    fn polynomial(&self, squared: bool) -> Result<Polynomial, NotComputable> {
         let (_, solution) = self.law()?;
         let found = match squared {
             true => solution.law.frequency_squared(),
@@ -207,13 +208,13 @@ impl<'a> Evaluator<'a> {
         };
         found.cloned().ok_or_else(|| {
             let name = if squared { "omega^2" } else { "omega" };
-            Lack::Refused(format!("{} gives no polynomial for {name}", solution.title()))
+            NotComputable::Refused(format!("{} gives no polynomial for {name}", solution.title()))
         })
     }
 
     /// The swing of an impact, the pendulum where no equation is given, and its law, of order 2
     /// where none is asked for.
-    fn swing(&self) -> Result<&(Oscillator, Solution), Lack> {
+    fn swing(&self) -> Result<&(Oscillator, Solution), NotComputable> {
         let found = self.swing.get_or_init(|| {
             let words = |error: &dyn std::error::Error| error.to_string();
             let equation = match &self.question.equation {
@@ -227,16 +228,16 @@ impl<'a> Evaluator<'a> {
             let solution = solve(&equation, &options).map_err(|error| words(&error))?;
             Ok((equation, solution))
         });
-        found.as_ref().map_err(|reason| Lack::Refused(reason.clone()))
+        found.as_ref().map_err(|reason| NotComputable::Refused(reason.clone()))
     }
 }
 
-fn missing(name: &str) -> Lack {
-    Lack::Missing(BTreeSet::from([name.to_owned()]))
+fn missing(name: &str) -> NotComputable {
+    NotComputable::Missing(BTreeSet::from([name.to_owned()]))
 }
 
-fn refused(error: &impl std::fmt::Display) -> Lack {
-    Lack::Refused(error.to_string())
+fn refused(error: &impl std::fmt::Display) -> NotComputable {
+    NotComputable::Refused(error.to_string())
 }
 
 /// A product of powers as a monomial.
@@ -250,7 +251,7 @@ fn monomial(term: &Expr) -> Option<Monomial> {
 ///
 /// # Errors
 /// A letter that the law does not have, or a power of it beyond the last one that was derived.
-fn coefficient(law: &Polynomial, wanted: &Monomial) -> Result<Computed, Lack> {
+fn coefficient(law: &Polynomial, wanted: &Monomial) -> Result<Computed, NotComputable> {
     if law.terms().any(|(monomial, _)| monomial == wanted) {
         return Ok(Computed::Exact(law.coefficient(wanted)));
     }
@@ -259,13 +260,13 @@ fn coefficient(law: &Polynomial, wanted: &Monomial) -> Result<Computed, Lack> {
         let [least, greatest] =
             powers.fold([0, 0], |[least, greatest], one| [least.min(one), greatest.max(one)]);
         if [least, greatest] == [0, 0] {
-            return Err(Lack::Refused(format!(
+            return Err(NotComputable::Refused(format!(
                 "`{letter}` does not occur in the derived law `{}`",
                 Expr::from(law)
             )));
         }
         if power > greatest {
-            return Err(Lack::Refused(format!(
+            return Err(NotComputable::Refused(format!(
                 "the derived law `{}` ends before the power {power} of `{letter}`: ask for a higher `order`",
                 Expr::from(law)
             )));
@@ -275,7 +276,7 @@ fn coefficient(law: &Polynomial, wanted: &Monomial) -> Result<Computed, Lack> {
 }
 
 /// The names of one evaluation and what they are.
-struct Scope<'a, 'b> {
+struct EvaluationScope<'a, 'b> {
     evaluator: &'b Evaluator<'a>,
     values: BTreeMap<Symbol, Expr>,
     known: BTreeMap<Symbol, f64>,
@@ -284,9 +285,9 @@ struct Scope<'a, 'b> {
     impact: Option<Box<Impact>>,
 }
 
-impl Scope<'_, '_> {
+impl EvaluationScope<'_, '_> {
     /// The value of a formula.
-    fn formula(&mut self, formula: &Expr) -> Result<f64, Lack> {
+    fn formula(&mut self, formula: &Expr) -> Result<f64, NotComputable> {
         let formula = match &self.evaluator.question.pi {
             Some(pi) => with_pi(formula, pi).map_err(|error| refused(&error))?,
             None => formula.clone(),
@@ -297,36 +298,36 @@ impl Scope<'_, '_> {
     }
 
     /// The values of these names: all that are missing are told at once.
-    fn all(&mut self, names: &[Symbol]) -> Result<BTreeMap<Symbol, f64>, Lack> {
+    fn all(&mut self, names: &[Symbol]) -> Result<BTreeMap<Symbol, f64>, NotComputable> {
         let (mut found, mut lacking) = (BTreeMap::new(), BTreeSet::new());
         for name in names {
             match self.value(*name) {
                 Ok(value) => {
                     found.insert(*name, value);
                 }
-                Err(Lack::Missing(names)) => lacking.extend(names),
+                Err(NotComputable::Missing(names)) => lacking.extend(names),
                 Err(reason) => return Err(reason),
             }
         }
         match lacking.is_empty() {
             true => Ok(found),
-            false => Err(Lack::Missing(lacking)),
+            false => Err(NotComputable::Missing(lacking)),
         }
     }
 
-    fn numbers<const N: usize>(&mut self, names: [&str; N]) -> Result<[f64; N], Lack> {
+    fn numbers<const N: usize>(&mut self, names: [&str; N]) -> Result<[f64; N], NotComputable> {
         let names = names.map(Symbol::new);
         let found = self.all(&names)?;
         Ok(names.map(|name| found.get(&name).copied().unwrap_or(f64::NAN)))
     }
 
-    fn value(&mut self, name: Symbol) -> Result<f64, Lack> {
+    fn value(&mut self, name: Symbol) -> Result<f64, NotComputable> {
         if let Some(value) = self.known.get(&name) {
             return Ok(*value);
         }
         let value = match self.values.get(&name).cloned() {
             Some(_) if self.open.contains(&name) => {
-                return Err(Lack::Refused(format!("`{name}` is defined by itself")));
+                return Err(NotComputable::Refused(format!("`{name}` is defined by itself")));
             }
             Some(formula) => {
                 self.open.push(name);
@@ -341,7 +342,7 @@ impl Scope<'_, '_> {
     }
 
     /// What the program computes under this name.
-    fn computed(&mut self, name: &str) -> Result<f64, Lack> {
+    fn computed(&mut self, name: &str) -> Result<f64, NotComputable> {
         match name {
             "frequency" => self.frequency(),
             "true_frequency" => Ok(self.judged()?.true_frequency),
@@ -349,7 +350,7 @@ impl Scope<'_, '_> {
                 let judged = self.judged()?;
                 judged
                     .max_deviation
-                    .ok_or_else(|| Lack::Refused("the formula has no motion".to_owned()))
+                    .ok_or_else(|| NotComputable::Refused("the formula has no motion".to_owned()))
             }
             "hertz_factor" => Ok(hertz::duration_factor()),
             "rest_time" => self.rest_time(true),
@@ -361,9 +362,9 @@ impl Scope<'_, '_> {
                     "primary_rest_time_locked" => others.locked,
                     _ => others.without,
                 };
-                alone
-                    .rest_time
-                    .ok_or_else(|| Lack::Refused("the main mass alone never rests".to_owned()))
+                alone.rest_time.ok_or_else(|| {
+                    NotComputable::Refused("the main mass alone never rests".to_owned())
+                })
             }
             // The best value of so many generations ago is needed beside that of now.
             "stall_generation" => {
@@ -372,9 +373,10 @@ impl Scope<'_, '_> {
             }
             "paper_deviation" => {
                 let impact = self.impact()?;
-                let column = impact.column(Reading::Paper);
-                let column = column
-                    .ok_or_else(|| Lack::Refused(impact.no_paper.clone().unwrap_or_default()))?;
+                let column = impact.column(PhaseReading::Paper);
+                let column = column.ok_or_else(|| {
+                    NotComputable::Refused(impact.no_paper.clone().unwrap_or_default())
+                })?;
                 Ok(column.deviation.total / impact.amplitude())
             }
             "energy_speed" | "energy_penetration" | "energy_duration" => {
@@ -384,8 +386,9 @@ impl Scope<'_, '_> {
             "line_slope" | "line_constant" | "line_depth" => {
                 let phases = self.phases(name, ContactSpeed::Paper)?;
                 let [barrier] = self.numbers(["xc"])?;
-                let fitted =
-                    phases.fitted.ok_or_else(|| Lack::Refused("there is no line".to_owned()))?;
+                let fitted = phases
+                    .fitted
+                    .ok_or_else(|| NotComputable::Refused("there is no line".to_owned()))?;
                 Ok(match name {
                     "line_slope" => fitted.line.slope,
                     "line_constant" => fitted.line.q(barrier),
@@ -395,7 +398,7 @@ impl Scope<'_, '_> {
             _ if name.starts_with("paper_") && is_a_name(name) => {
                 let phases = self.phases(name, ContactSpeed::Paper)?;
                 of_phases(name, &phases)
-                    .ok_or_else(|| Lack::Refused("the approach is no cosine".to_owned()))
+                    .ok_or_else(|| NotComputable::Refused("the approach is no cosine".to_owned()))
             }
             _ if name.starts_with("true_") && is_a_name(name) => {
                 let numbers = self.impact()?.truth.quantities();
@@ -406,14 +409,14 @@ impl Scope<'_, '_> {
         }
     }
 
-    fn frequency(&mut self) -> Result<f64, Lack> {
+    fn frequency(&mut self) -> Result<f64, NotComputable> {
         let (equation, solution) = self.evaluator.law()?;
         let numbers = self.all(&needed_values(solution))?;
         let square =
             frequency_squared_of(equation, solution, &numbers).map_err(|error| refused(&error))?;
         match square > 0.0 {
             true => Ok(square.sqrt()),
-            false => Err(Lack::Refused(format!(
+            false => Err(NotComputable::Refused(format!(
                 "omega^2 = {} by {}, which is no frequency",
                 crate::decimal::decimal(square),
                 solution.title()
@@ -422,7 +425,7 @@ impl Scope<'_, '_> {
     }
 
     /// The formula beside the true motion there; how far it is good nobody asks.
-    fn judged(&mut self) -> Result<crate::verify::Verification, Lack> {
+    fn judged(&mut self) -> Result<crate::verify::Verification, NotComputable> {
         let (equation, solution) = self.evaluator.law()?;
         let numbers = self.all(&needed_values(solution))?;
         let at = exact(&numbers)?;
@@ -431,7 +434,7 @@ impl Scope<'_, '_> {
     }
 
     /// The three phases of an impact with a line for the barrier.
-    fn phases(&mut self, name: &str, speed: ContactSpeed) -> Result<ThreePhases, Lack> {
+    fn phases(&mut self, name: &str, speed: ContactSpeed) -> Result<ThreePhases, NotComputable> {
         let (equation, law) = self.evaluator.swing()?;
         // How stiff the barrier is says nothing of the way to it.
         let hits = NAMES.iter().any(|(known, needs, _)| *known == name && needs.contains("gamma"));
@@ -468,7 +471,7 @@ impl Scope<'_, '_> {
     }
 
     /// The impact with its true motion.
-    fn impact(&mut self) -> Result<&Impact, Lack> {
+    fn impact(&mut self) -> Result<&Impact, NotComputable> {
         if self.impact.is_none() {
             let [amplitude, barrier, stiffness] = self.numbers(["A", "xc", "gamma"])?;
             let question = self.evaluator.question;
@@ -487,16 +490,18 @@ impl Scope<'_, '_> {
             let found = crate::impact::solve(setup).map_err(|error| refused(&error))?;
             self.impact = Some(Box::new(found));
         }
-        self.impact.as_deref().ok_or_else(|| Lack::Refused("there is no impact".to_owned()))
+        self.impact
+            .as_deref()
+            .ok_or_else(|| NotComputable::Refused("there is no impact".to_owned()))
     }
 
     /// A main mass that nothing drives.
-    fn primary(&mut self) -> Result<Primary, Lack> {
+    fn primary(&mut self) -> Result<Primary, NotComputable> {
         let [mass, stiffness, damping] = self.numbers(["mass_ratio", "kappa", "delta"])?;
         Ok(Primary { mass, stiffness, damping, force: 0.0, frequency: 0.0 })
     }
 
-    fn primary_rest_time(&mut self) -> Result<f64, Lack> {
+    fn primary_rest_time(&mut self) -> Result<f64, NotComputable> {
         let names = ["mass_ratio", "kappa", "delta", "y0", "xc", "gamma", "mu", "zeta", "alpha"];
         let [_, _, _, displacement, barrier, gamma, mu, zeta, alpha] = self.numbers(names)?;
         let model = Model { zeta, alpha, gamma, mu, right: Some(barrier), ..Model::default() };
@@ -508,7 +513,7 @@ impl Scope<'_, '_> {
         motion.rest_time().map_err(|reason| refused(&reason))
     }
 
-    fn rest_time(&mut self, with_barrier: bool) -> Result<f64, Lack> {
+    fn rest_time(&mut self, with_barrier: bool) -> Result<f64, NotComputable> {
         let barrier = match with_barrier {
             true => Some(self.numbers(["xc", "gamma", "mu", "A", "zeta", "alpha"])?),
             false => None,
@@ -586,11 +591,11 @@ fn arguments(equation: &Oscillator) -> Vec<Symbol> {
 }
 
 /// Doubles as values.
-fn exact(numbers: &BTreeMap<Symbol, f64>) -> Result<Values, Lack> {
+fn exact(numbers: &BTreeMap<Symbol, f64>) -> Result<Values, NotComputable> {
     let mut values = Values::default();
     for (name, number) in numbers {
-        let number =
-            from_f64(*number).ok_or_else(|| Lack::Refused(format!("`{name}` is no number")))?;
+        let number = from_f64(*number)
+            .ok_or_else(|| NotComputable::Refused(format!("`{name}` is no number")))?;
         values.insert(*name, Expr::number(number)).map_err(|error| refused(&error))?;
     }
     Ok(values)

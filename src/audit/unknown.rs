@@ -6,11 +6,11 @@
 //! reproduces are found by bisection. The first such range is taken.
 
 use super::claim::Unknown;
-use crate::numeric::ode::root::{Until, bisect, find_root};
+use crate::numeric::ode::root::{BisectionStop, bisect, find_root};
 
 /// The values of an unknown that a claim asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Demand {
+pub struct RequiredValue {
     /// The unknown, and where it may lie.
     pub unknown: Unknown,
     /// A value that reproduces what is printed.
@@ -34,7 +34,7 @@ pub(super) struct Trial {
 }
 
 /// The values of the unknown for which a claim comes out, within its range or else beyond it.
-pub(super) fn solve(unknown: Unknown, try_value: &dyn Fn(f64) -> Trial) -> Option<Demand> {
+pub(super) fn solve(unknown: Unknown, try_value: &dyn Fn(f64) -> Trial) -> Option<RequiredValue> {
     let [low, high] = unknown.within;
     let by_ratio = low > 0.0;
     let place = |from: f64, to: f64, part: f64| match by_ratio {
@@ -51,7 +51,7 @@ pub(super) fn solve(unknown: Unknown, try_value: &dyn Fn(f64) -> Trial) -> Optio
     };
     if let Some((value, range)) = first(&grid(low, high), try_value) {
         let range = [range[0].max(low), range[1].min(high)];
-        return Some(Demand {
+        return Some(RequiredValue {
             unknown,
             value: nearest(value, range, try_value),
             range,
@@ -61,7 +61,7 @@ pub(super) fn solve(unknown: Unknown, try_value: &dyn Fn(f64) -> Trial) -> Optio
     let mut downwards = grid(below, low);
     downwards.reverse();
     let found = first(&grid(high, above), try_value).or_else(|| first(&downwards, try_value));
-    found.map(|(value, range)| Demand {
+    found.map(|(value, range)| RequiredValue {
         unknown,
         value: nearest(value, range, try_value),
         range,
@@ -119,7 +119,7 @@ fn range_about(
                 return inside;
             }
         }
-        let [last, _] = bisect(reproduces, inside, outside, Until::Halvings(60));
+        let [last, _] = bisect(reproduces, inside, outside, BisectionStop::Halvings(60));
         last
     };
     let [low, high] = neighbours;
@@ -153,7 +153,7 @@ mod tests {
         function: impl Fn(f64) -> f64,
         printed: f64,
         half: f64,
-    ) -> Option<Demand> {
+    ) -> Option<RequiredValue> {
         let unknown = Unknown { name: "u".into(), within };
         solve(unknown, &|value| Trial {
             reproduces: (function(value) - printed).abs() <= half,

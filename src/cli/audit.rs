@@ -23,7 +23,7 @@ pub struct AuditArguments {
     /// A TOML file of claims, or - for standard input
     pub file: PathBuf,
     #[command(flatten)]
-    own: Own,
+    own: StrictArguments,
     #[command(flatten)]
     pub common: Common,
 }
@@ -33,13 +33,13 @@ pub struct AuditArguments {
 #[command(mut_arg("tolerance", super::no_verdict))]
 pub struct PaperArguments {
     #[command(flatten)]
-    own: Own,
+    own: StrictArguments,
     #[command(flatten)]
     pub common: Common,
 }
 
 #[derive(Args)]
-struct Own {
+struct StrictArguments {
     /// Exit with code 3 for every claim that is not reproduced, also where the file expects so
     #[arg(long)]
     strict: bool,
@@ -82,7 +82,12 @@ fn run_paper(arguments: &PaperArguments) -> Result<Outcome, Failure> {
     outcome(PAPER, "the paper", &arguments.own, &arguments.common)
 }
 
-fn outcome(claims: &str, name: &str, own: &Own, common: &Common) -> Result<Outcome, Failure> {
+fn outcome(
+    claims: &str,
+    name: &str,
+    own: &StrictArguments,
+    common: &Common,
+) -> Result<Outcome, Failure> {
     if common.tolerance.is_some() {
         return Err(Failure::Usage(
             "--tolerance: each claim has its own digits, or a tolerance in the file".to_owned(),

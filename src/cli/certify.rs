@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use lindstedt::certificate::{self, Beyond, Certified, DampedCertificate, NotCertified};
+use lindstedt::certificate::{self, Certified, DampedCertificate, NotCertified, RangeEnd};
 use lindstedt::exact::Rational;
 use lindstedt::export::json::{self, CertificateDocument, DampedCertificateDocument};
 use lindstedt::export::printable_in_line;
@@ -147,7 +147,7 @@ fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
         tolerance,
     };
     let outcome = printed(&report, &arguments.common)?;
-    let partial = validity.is_some_and(|validity| validity.beyond == Beyond::Stopped);
+    let partial = validity.is_some_and(|validity| validity.beyond == RangeEnd::Stopped);
     Ok(Outcome { partial, ..outcome })
 }
 

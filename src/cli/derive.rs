@@ -9,7 +9,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use lindstedt::Values;
 use lindstedt::catalog::nearest;
 use lindstedt::export::{code, html, json, latex, text};
-use lindstedt::expr::{Expr, Letters, parse_expression};
+use lindstedt::expr::{Expr, ResultSymbols, parse_expression};
 use lindstedt::method::table::{Choice, MethodEntry, that_take};
 use lindstedt::method::{self, Options, Reason, Refusal};
 use lindstedt::problem::{FormulaProblem, Order, Problem, ProblemError, Reader};
@@ -138,7 +138,7 @@ pub(super) struct Solved {
     pub values: Option<Values>,
     pub solution: Solution,
     /// The letters of the answer.
-    pub letters: Letters,
+    pub letters: ResultSymbols,
 }
 
 /// The answer to a question, with the oscillator and the values that are left once those that the
@@ -411,7 +411,7 @@ pub(super) fn named(oscillator: &Oscillator) -> Result<Oscillator, Failure> {
 /// Notes on the letters that an answer takes in the place of usual ones, of those that it has; one
 /// that is judged has a frequency.
 pub(super) fn notes_on_letters(
-    letters: &Letters,
+    letters: &ResultSymbols,
     coordinate: Symbol,
     solution: &Solution,
     judged: bool,

@@ -228,14 +228,14 @@ fn asked(arguments: &ImpactArguments) -> Result<Problem, Failure> {
 fn picture(impact: &Impact) -> Result<String, Failure> {
     use lindstedt::export::decimal;
     use lindstedt::export::figure::{CurveStyle, ImpactFigure, ImpactMotion, impact_figure};
-    use lindstedt::impact::{Reading, SampledMotion};
+    use lindstedt::impact::{PhaseReading, SampledMotion};
 
     const POINTS: usize = 600;
     let drawn = impact.paths(POINTS);
     let closed_forms = impact.columns.iter().map(|column| match column.reading {
-        Reading::Paper => ("closed form, paper", CurveStyle::FORMULA),
-        Reading::Energy => ("closed form, energy", CurveStyle::SECOND_FORMULA),
-        Reading::Derived => ("closed form, derived", CurveStyle::THIRD_FORMULA),
+        PhaseReading::Paper => ("closed form, paper", CurveStyle::FORMULA),
+        PhaseReading::Energy => ("closed form, energy", CurveStyle::SECOND_FORMULA),
+        PhaseReading::Derived => ("closed form, derived", CurveStyle::THIRD_FORMULA),
     });
     let styles = std::iter::once(("Runge-Kutta", CurveStyle::RUNGE_KUTTA)).chain(closed_forms);
     let motion = |(path, (label, style))| {

@@ -176,7 +176,7 @@ struct Syntax {
     breaks: Break,
     /// What stands before the functions: what a program needs of the library, and what makes it a
     /// whole.
-    beginning: fn(&Used) -> String,
+    beginning: fn(&UsedRoutines) -> String,
     /// A whole function.
     routine: fn(&Text) -> String,
 }
@@ -221,14 +221,14 @@ enum Break {
 }
 
 /// What stands below the beginning of a program.
-struct Used<'a> {
+struct UsedRoutines<'a> {
     /// Its text.
     text: &'a str,
     /// The functions that it consists of.
     routines: &'a [&'static str],
 }
 
-impl Used<'_> {
+impl UsedRoutines<'_> {
     /// Whether this word stands in the text.
     fn has(&self, word: &str) -> bool {
         let inside = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';

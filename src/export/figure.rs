@@ -113,7 +113,7 @@ pub(super) type Points = Vec<(f64, f64)>;
 
 /// A thin grey line across a panel, always inside the axes, with words for the legend or none.
 #[derive(Clone, Copy, Debug)]
-pub enum Guide<'a> {
+pub enum GuideLine<'a> {
     /// A vertical line at a value of the abscissa.
     X(f64, &'a str),
     /// A horizontal line at a value of the ordinate.
@@ -147,7 +147,7 @@ pub struct Panel<'a> {
     /// The curves, the last on top; at least one.
     pub curves: Vec<Curve<'a>>,
     /// Lines across the panel.
-    pub guides: Vec<Guide<'a>>,
+    pub guides: Vec<GuideLine<'a>>,
 }
 
 /// Why there is no figure.
@@ -239,7 +239,7 @@ pub fn impact_figure(data: &ImpactFigure) -> Result<String, FigureError> {
     let motions = data.motions.iter();
     let phase: Vec<_> = motions.clone().map(|motion| phase_points(motion.samples)).collect();
     let time: Vec<_> = motions.map(|motion| time_points(motion.samples)).collect();
-    let barriers = |guide: fn(f64, &'static str) -> Guide<'static>| {
+    let barriers = |guide: fn(f64, &'static str) -> GuideLine<'static>| {
         let left = data.left_barrier.map(|at| guide(at, LEFT));
         let right = data.right_barrier.map(|at| guide(at, RIGHT));
         left.into_iter().chain(right).collect()
@@ -252,14 +252,15 @@ pub fn impact_figure(data: &ImpactFigure) -> Result<String, FigureError> {
     };
     let enlarged = [with_unit("time since touch", time), with_unit("depth", displacement)];
     let mut panels = vec![
-        panel("Phase plane", [displacement, "velocity x′"], orbits, barriers(Guide::X)),
-        panel("Motion in time", [time, displacement], motions, barriers(Guide::Y)),
+        panel("Phase plane", [displacement, "velocity x′"], orbits, barriers(GuideLine::X)),
+        panel("Motion in time", [time, displacement], motions, barriers(GuideLine::Y)),
     ];
     let touching = data.motions.iter().filter(|motion| !motion.contact.is_empty());
     let contacts: Vec<_> = touching.map(|m| curve(m.label, m.contact, m.style)).collect();
     if !contacts.is_empty() {
         let labels = enlarged.each_ref().map(String::as_str);
-        let touch = vec![Guide::Y(0.0, if data.right_barrier.is_some() { RIGHT } else { LEFT })];
+        let touch =
+            vec![GuideLine::Y(0.0, if data.right_barrier.is_some() { RIGHT } else { LEFT })];
         panels.push(panel("Contact, enlarged", labels, contacts, touch));
     }
     figure(&panels, data.caption)
@@ -350,7 +351,7 @@ pub fn motion_figure(data: &MotionFigure) -> Result<String, FigureError> {
     let panels = [
         panel(shown, [&time, &displacement], motions, vec![]),
         panel("Phase plane", [&displacement, &velocity], orbits, vec![]),
-        panel("Difference", [&time, &deviation], deviations, vec![Guide::Y(0.0, "")]),
+        panel("Difference", [&time, &deviation], deviations, vec![GuideLine::Y(0.0, "")]),
     ];
     figure(&panels, data.caption)
 }
@@ -407,11 +408,11 @@ pub fn backbone_figure(
         }
     }
     let amplitude = "amplitude A";
-    let mark = || marked.map(|at| Guide::X(at, "")).into_iter();
+    let mark = || marked.map(|at| GuideLine::X(at, "")).into_iter();
     let mut panels =
         vec![panel("Frequency", [amplitude, "frequency \u{3c9}"], frequencies, mark().collect())];
     if !deviations.is_empty() {
-        let guides = mark().chain([Guide::Y(1.0, "")]).collect();
+        let guides = mark().chain([GuideLine::Y(1.0, "")]).collect();
         let mut below = panel("Error", [amplitude, "|error| of \u{3c9} (%)"], deviations, guides);
         below.y_scale = Scale::Logarithmic;
         panels.push(below);
@@ -461,7 +462,7 @@ pub(super) fn panel<'a>(
     title: &'a str,
     labels: [&'a str; 2],
     curves: Vec<Curve<'a>>,
-    guides: Vec<Guide<'a>>,
+    guides: Vec<GuideLine<'a>>,
 ) -> Panel<'a> {
     Panel { title, x_label: labels[0], y_label: labels[1], curves, guides, ..Panel::default() }
 }

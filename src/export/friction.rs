@@ -6,7 +6,7 @@
 
 use std::fmt::Write as _;
 
-use super::figure::{CurveStyle, FigureError, Guide, Points, curve, figure, panel};
+use super::figure::{CurveStyle, FigureError, GuideLine, Points, curve, figure, panel};
 use crate::audit::paper::FrictionTable;
 use crate::decimal::decimal;
 use crate::impact::friction::FrictionStudy;
@@ -85,7 +85,7 @@ pub fn picture(study: &FrictionStudy) -> Result<String, FigureError> {
             curve("arctangent", second, CurveStyle::DIFFERENCE),
         ]
     };
-    let zero = || vec![Guide::Y(0.0, "")];
+    let zero = || vec![GuideLine::Y(0.0, "")];
     let panels = [
         panel(
             "Friction near zero speed",

@@ -211,7 +211,7 @@ impl Body<'_> {
             Block::Quantities { columns, deviations, shapes, .. } => {
                 let size = |size: f64| format!("{} %", significant(100.0 * size, 3));
                 let of = |(column, (deviation, [approach, contact, back])): (
-                    &crate::impact::Reading,
+                    &crate::impact::PhaseReading,
                     (&f64, &[f64; 3]),
                 )| {
                     let words = format!(

@@ -20,7 +20,7 @@ use num_traits::Zero;
 use crate::decimal::{decimal, rounded_fraction};
 use crate::exact::{Polynomial, Polynomials};
 use crate::expr::{Equation, Expr, parse_expression};
-use crate::impact::Reading;
+use crate::impact::PhaseReading;
 use crate::report::{self, Block, Document};
 use crate::series::FourierSeries;
 use crate::series::terms::{self, Notation};
@@ -160,7 +160,7 @@ fn not_applicable(refused: &Refused) -> String {
 }
 
 /// The verdict on every column.
-fn in_one_line(verdicts: &[(Reading, Verdict)]) -> String {
+fn in_one_line(verdicts: &[(PhaseReading, Verdict)]) -> String {
     let each: Vec<String> = verdicts
         .iter()
         .map(|(reading, verdict)| format!("{} {}", reading.name(), verdict.name()))

@@ -2,11 +2,13 @@
 //! [`text::document`](super::text::document).
 
 use super::csv::{cell, end, head, line};
-use super::figure::{CurveStyle, FigureError, Guide, Panel, Points, Scale, curve, figure, panel};
+use super::figure::{
+    CurveStyle, FigureError, GuideLine, Panel, Points, Scale, curve, figure, panel,
+};
 use crate::decimal::decimal;
 use crate::impact::Units;
 use crate::impact::primary::{Alone, PrimaryParameter};
-use crate::impact::primary::{Others, PrimaryRow, PrimaryStop};
+use crate::impact::primary::{PrimaryRow, PrimaryStop, UndampedAndLocked};
 use crate::impact::sweep::Spacing;
 use crate::report::{PrimaryReport, PrimarySweepReport};
 
@@ -90,7 +92,7 @@ pub fn sweep_csv(report: &PrimarySweepReport) -> String {
     let mut text = head(&columns);
     for (number, (row, units)) in report.rows.iter().zip(report.units).enumerate() {
         let count = |count: usize| cell(row.is_begun().then_some(count));
-        let Others { locked, without } = row.others;
+        let UndampedAndLocked { locked, without } = row.others;
         let mut cells: Vec<String> = report.values(number).iter().map(f64::to_string).collect();
         let amplitude = row.is_begun().then_some(row.amplitude);
         cells.extend([amplitude, locked.amplitude, without.amplitude].map(cell));
@@ -163,7 +165,7 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
         }
     }
     let barriers = [motion.case.model.left, motion.case.model.right].into_iter().flatten();
-    let barriers = barriers.map(|place| Guide::Y(place, "barrier")).collect();
+    let barriers = barriers.map(|place| GuideLine::Y(place, "barrier")).collect();
     const TIME: &str = "time t (s)";
     const PLACE: &str = "displacement y (m)";
     let panel = |title, y_label, curves, guides| panel(title, [TIME, y_label], curves, guides);
@@ -246,7 +248,7 @@ pub fn sweep_picture(report: &PrimarySweepReport) -> Result<String, FigureError>
         points.sort_by(|one, other| one.0.total_cmp(&other.0));
         points
     };
-    let alone = |of: fn(&Others) -> Alone| {
+    let alone = |of: fn(&UndampedAndLocked) -> Alone| {
         points(&|row, units| match driven {
             true => Some(of(&row.others).amplitude? * units.length),
             false => Some(of(&row.others).rest_time? * units.time()),

@@ -92,13 +92,13 @@ pub fn csv(response: &ResponseDiagram) -> String {
 /// The ordinates of the panels: of motions of several periods of the drive the peak, of
 /// self-excited ones the frequency as well.
 #[derive(Clone, Copy)]
-enum Height {
+enum Ordinate {
     Amplitude,
     Peak,
     Frequency,
 }
 
-impl Height {
+impl Ordinate {
     fn label(self) -> &'static str {
         match self {
             Self::Amplitude => "amplitude of the first harmonic",
@@ -118,7 +118,7 @@ impl Height {
 
 /// The pieces of a branch in the parameter and the height that are stable, or that are not;
 /// neighbouring pieces share a point.
-fn pieces(height: Height, points: &[SteadyMotion], stable: bool) -> Vec<Points> {
+fn pieces(height: Ordinate, points: &[SteadyMotion], stable: bool) -> Vec<Points> {
     let mut pieces: Vec<Points> = Vec::new();
     let mut open = false;
     let place = |point: &SteadyMotion| {
@@ -152,7 +152,7 @@ const MARKS: [(BifurcationKind, &str, CurveStyle); 6] = [
 /// The curves of a panel, with what they are called.
 fn curves<'a>(
     response: &ResponseDiagram,
-    height: Height,
+    height: Ordinate,
     slow_title: &'a str,
 ) -> Vec<(&'a str, Points, CurveStyle)> {
     let mut drawn: Vec<(&str, Points, CurveStyle)> = Vec::new();
@@ -205,10 +205,10 @@ fn curves<'a>(
 /// ```
 pub fn picture(response: &ResponseDiagram) -> Result<String, FigureError> {
     let asked = &response.question;
-    let heights: &[Height] = match (response.self_excited, asked.periods) {
-        (true, _) => &[Height::Amplitude, Height::Frequency],
-        (false, 1) => &[Height::Amplitude],
-        _ => &[Height::Peak],
+    let heights: &[Ordinate] = match (response.self_excited, asked.periods) {
+        (true, _) => &[Ordinate::Amplitude, Ordinate::Frequency],
+        (false, 1) => &[Ordinate::Amplitude],
+        _ => &[Ordinate::Peak],
     };
     let title = response.slow.as_ref().map(|slow| slow.solution.title());
     let title = title.unwrap_or_default();

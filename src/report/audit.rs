@@ -2,7 +2,9 @@
 //! its verdict.
 
 use super::{Block, Document};
-use crate::audit::{ABSENT, Audit, Computed, Finding, Lack, Stated, Tried, Verdict};
+use crate::audit::{
+    ABSENT, Audit, ClaimAttempt, ClaimFinding, Computed, NotComputable, PrintedStatement, Verdict,
+};
 use crate::decimal::{decimal, significant};
 
 /// The document of an audit.
@@ -19,7 +21,7 @@ use crate::decimal::{decimal, significant};
 pub fn audit(audit: &Audit) -> Document<'_> {
     let mut sections = vec![summary(audit)];
     for verdict in Verdict::ALL {
-        let found: Vec<&Finding> =
+        let found: Vec<&ClaimFinding> =
             audit.findings.iter().filter(|finding| finding.verdict == verdict).collect();
         if !found.is_empty() {
             sections.push(table(verdict, &found));
@@ -55,10 +57,10 @@ fn summary(audit: &Audit) -> Vec<Block<'_>> {
     ]
 }
 
-fn table<'a>(verdict: Verdict, findings: &[&Finding]) -> Vec<Block<'a>> {
+fn table<'a>(verdict: Verdict, findings: &[&ClaimFinding]) -> Vec<Block<'a>> {
     let name = verdict.name();
     let assumes = verdict == Verdict::UnderAssumption;
-    let row = |finding: &&Finding| {
+    let row = |finding: &&ClaimFinding| {
         let cells = [
             shortened(&finding.claim.place),
             finding.claim.id.clone(),
@@ -85,22 +87,24 @@ fn shortened(text: &str) -> String {
 }
 
 /// What is printed, in one line.
-pub(crate) fn printed(finding: &Finding) -> String {
+pub(crate) fn printed(finding: &ClaimFinding) -> String {
     let entries = &finding.claim.entries;
     match &entries[..] {
         [entry] => entry.printed.clone(),
-        [entry, ..] if matches!(entry.stated, Stated::Trend(_)) => entry.printed.clone(),
+        [entry, ..] if matches!(entry.stated, PrintedStatement::Trend(_)) => entry.printed.clone(),
         several => format!("{} entries", several.len()),
     }
 }
 
 /// What is computed, in one line; empty where nothing is.
-pub(crate) fn computed(finding: &Finding) -> String {
+pub(crate) fn computed(finding: &ClaimFinding) -> String {
     let Some(shown) = finding.shown() else {
         return String::new();
     };
-    let trend =
-        matches!(finding.claim.entries.first().map(|entry| &entry.stated), Some(Stated::Trend(_)));
+    let trend = matches!(
+        finding.claim.entries.first().map(|entry| &entry.stated),
+        Some(PrintedStatement::Trend(_))
+    );
     match &shown.computed[..] {
         [_] => entry(finding, shown, 0).or_else(|| demanded(finding)).unwrap_or_default(),
         several if trend => {
@@ -116,16 +120,16 @@ pub(crate) fn computed(finding: &Finding) -> String {
 }
 
 /// What a claim would need of an unknown number that may not be so.
-fn demanded(finding: &Finding) -> Option<String> {
+fn demanded(finding: &ClaimFinding) -> Option<String> {
     let demand = finding.demand?;
     Some(format!("needs {} = {}", demand.unknown.name, significant(demand.value, 3)))
 }
 
 /// What is computed for an entry, with two digits more than are printed; in the unit of what is
 /// printed; nothing where it lacks something.
-pub(crate) fn entry(finding: &Finding, tried: &Tried, index: usize) -> Option<String> {
+pub(crate) fn entry(finding: &ClaimFinding, tried: &ClaimAttempt, index: usize) -> Option<String> {
     let alike = |number: f64| match finding.claim.entries.get(index).map(|entry| &entry.stated) {
-        Some(Stated::Number(printed)) => printed.alike(number, 6),
+        Some(PrintedStatement::Number(printed)) => printed.alike(number, 6),
         _ => decimal(number),
     };
     match tried.computed.get(index)? {
@@ -138,12 +142,12 @@ pub(crate) fn entry(finding: &Finding, tried: &Tried, index: usize) -> Option<St
             1 => "one conflict".to_owned(),
             count => format!("{count} conflicts"),
         }),
-        Err(Lack::Missing(_) | Lack::Refused(_)) => None,
+        Err(NotComputable::Missing(_) | NotComputable::Refused(_)) => None,
     }
 }
 
 /// A claim and what speaks for its verdict.
-fn story(finding: &Finding) -> Vec<Block<'_>> {
+fn story(finding: &ClaimFinding) -> Vec<Block<'_>> {
     let claim = &finding.claim;
     let place = if claim.place.is_empty() { &claim.id } else { &claim.place };
     let says = if claim.says.is_empty() { String::new() } else { format!(": {}", claim.says) };

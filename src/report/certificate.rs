@@ -8,7 +8,7 @@ use super::driven::slow_equations;
 use super::solution::law_blocks;
 use super::{Block, Document};
 use crate::certificate::{
-    Beyond, Certificate, Certified, DampedCertificate, Enclosure, Errors, JudgedFormula,
+    Certificate, Certified, DampedCertificate, Enclosure, Errors, JudgedFormula, RangeEnd,
     SizeBounds, Validity, coordinate,
 };
 use crate::decimal::{
@@ -321,18 +321,18 @@ fn of_range(validity: &Validity, report: &CertificateReport) -> Vec<(&'static st
     };
     let within = percent(report.tolerance);
     let beyond = match &validity.beyond {
-        Beyond::Asked => None,
-        Beyond::Further(place) => {
+        RangeEnd::Asked => None,
+        RangeEnd::Further(place) => {
             Some(format!("{omega} is off by more at {letter} = {}, proved", amplitude(place)))
         }
-        Beyond::Open(place) => Some(format!(
+        RangeEnd::Open(place) => Some(format!(
             "at {letter} = {} {omega} is neither proved to be within nor beyond",
             amplitude(place)
         )),
-        Beyond::Unproved(place, reason) => {
+        RangeEnd::Unproved(place, reason) => {
             Some(format!("at {letter} = {}: {reason}", amplitude(place)))
         }
-        Beyond::Stopped => Some("stopped before the end".to_owned()),
+        RangeEnd::Stopped => Some("stopped before the end".to_owned()),
     };
     let proved = format!("{omega} within {within} % for every {letter} from {from} to {to}");
     let proved = match validity.intervals {

@@ -8,10 +8,10 @@ use crate::decimal::{decimal, significant};
 use crate::impact::contact::ContactLaw;
 use crate::impact::contact::power_law::duration_factor;
 use crate::impact::{
-    Attempt, ContactLoss, DerivedContact, Flight, Form, Impact, ImpactQuantity, JudgedPhases,
-    Letters, Modulus, Reading, Setup, SiImpact, Side, YieldCheck,
+    Attempt, ContactLoss, DerivedContact, Flight, Form, Impact, ImpactQuantity, ImpactSymbols,
+    JudgedPhases, Modulus, PhaseReading, Setup, SiImpact, Side, YieldCheck,
 };
-use crate::solution::law::Shown;
+use crate::solution::law::DisplayedLaw;
 use crate::solution::{AmplitudeConvention, Solution};
 use crate::symbol::Symbol;
 
@@ -38,7 +38,7 @@ pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
     sections.extend(impact.free_swing.as_ref().map(|law| free_swing(impact, law)));
     for column in &impact.columns {
         sections.push(match (column.reading, &impact.flight) {
-            (Reading::Derived, Some(flight)) => derived(impact, column, flight),
+            (PhaseReading::Derived, Some(flight)) => derived(impact, column, flight),
             _ => papers(impact, column),
         });
     }
@@ -97,7 +97,7 @@ fn start(impact: &Impact) -> String {
 
 pub(super) fn asked(
     setup: &Setup,
-    letters: Letters,
+    letters: ImpactSymbols,
     [equilibrium, turning_point]: [f64; 2],
     damping: f64,
 ) -> Vec<Block<'_>> {
@@ -142,7 +142,7 @@ fn free_swing<'a>(impact: &Impact, law: &'a Solution) -> Vec<Block<'a>> {
 /// `lindstedt derive`.
 fn first_law(solution: &Solution) -> Vec<Block<'_>> {
     match solution.law.shown().into_iter().next() {
-        None | Some(Shown::System(_) | Shown::Quadrature(_)) => vec![],
+        None | Some(DisplayedLaw::System(_) | DisplayedLaw::Quadrature(_)) => vec![],
         Some(shown) => law_blocks(solution, shown),
     }
 }
@@ -155,7 +155,7 @@ fn omega<'a>(frequency: f64, symbol: &str, amplitude: f64) -> Block<'a> {
 fn papers<'a>(impact: &Impact, column: &'a JudgedPhases) -> Vec<Block<'a>> {
     let setup = &impact.setup;
     let words = match column.reading {
-        Reading::Paper => {
+        PhaseReading::Paper => {
             "The paper's way: every join continuous, contact speed from the one-term motion"
                 .to_owned()
         }
@@ -350,7 +350,7 @@ fn attempted(attempt: &Attempt) -> String {
 }
 
 fn judged(impact: &Impact, tolerance: f64) -> Vec<Block<'_>> {
-    let columns: Vec<Reading> = impact.columns.iter().map(|column| column.reading).collect();
+    let columns: Vec<PhaseReading> = impact.columns.iter().map(|column| column.reading).collect();
     let amplitude = impact.amplitude();
     // The power of ten above it; below 1e-15 nothing is known.
     let drift = 10_f64.powf(impact.truth.energy_drift.max(1e-15).log10().ceil());

@@ -5,7 +5,7 @@ use super::{Block, Document};
 use crate::certificate::{ImpactEnclosure, SizeBounds};
 use crate::decimal::{exact_decimal, not_above_typed};
 use crate::exact::Rational;
-use crate::impact::{Impact, Reading};
+use crate::impact::{Impact, PhaseReading};
 use crate::verify::Verdict;
 
 /// An impact and what is proved of it.
@@ -35,7 +35,7 @@ impl ImpactCertificateReport<'_> {
     }
 
     /// Of every closed form whether each of its numbers is proved to be within the tolerance.
-    pub fn verdicts(&self) -> Vec<(Reading, Verdict)> {
+    pub fn verdicts(&self) -> Vec<(PhaseReading, Verdict)> {
         let errors = self.errors();
         let within = |column: usize| {
             let mut ranges = errors.iter().filter_map(|(_, ranges)| ranges.get(column + 1));
@@ -60,7 +60,7 @@ pub fn impact_certificate<'a>(report: &ImpactCertificateReport<'a>) -> Document<
     let proved = proved.map(|(name, enclosure)| (name, enclosed(enclosure)));
     let within = percent(report.tolerance);
     let errors = report.errors();
-    let verdict = |(index, (reading, verdict)): (usize, &(Reading, Verdict))| {
+    let verdict = |(index, (reading, verdict)): (usize, &(PhaseReading, Verdict))| {
         let column = || {
             let column = errors
                 .iter()

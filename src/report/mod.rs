@@ -53,8 +53,10 @@ use crate::decimal::{decimal, significant};
 use crate::derivation::DerivationLine;
 use crate::expr::{Equation, Expr};
 use crate::impact::contact::ContactRow;
-use crate::impact::{FittedLine, ImpactQuantity, ImpactRow, Letters, MotionPhase, Reading, Rule};
-use crate::solution::law::Shown;
+use crate::impact::{
+    FittedLine, ImpactQuantity, ImpactRow, ImpactSymbols, MotionPhase, PhaseReading, Rule,
+};
+use crate::solution::law::DisplayedLaw;
 use crate::solution::{Definition, Solution, Sum};
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -183,7 +185,7 @@ pub enum Block<'a> {
     /// The phases that follow.
     Reading {
         /// How they are read.
-        reading: Reading,
+        reading: PhaseReading,
         /// What that means, in a line.
         words: String,
     },
@@ -196,7 +198,7 @@ pub enum Block<'a> {
         /// How it was fitted.
         rule: Rule,
         /// The letters of the equation.
-        letters: Letters,
+        letters: ImpactSymbols,
         /// Whether the line is multiplied by the stiffness.
         per_stiffness: bool,
     },
@@ -205,14 +207,14 @@ pub enum Block<'a> {
         /// The phase.
         phase: &'a MotionPhase,
         /// The letters of the equation.
-        letters: Letters,
+        letters: ImpactSymbols,
         /// The release, in words.
         release: String,
     },
     /// The numbers of an impact beside those of Runge-Kutta.
     Quantities {
         /// The columns.
-        columns: Vec<Reading>,
+        columns: Vec<PhaseReading>,
         /// A row each.
         rows: Vec<ImpactQuantity>,
         /// The largest deviation of each column over the amplitude, in real time.
@@ -238,7 +240,7 @@ pub enum Block<'a> {
     /// The verdicts on an impact.
     Verdicts {
         /// On each column.
-        verdicts: Vec<(Reading, Verdict)>,
+        verdicts: Vec<(PhaseReading, Verdict)>,
         /// The error up to which they pass.
         tolerance: f64,
     },
@@ -258,7 +260,7 @@ pub enum Block<'a> {
     /// The numbers of an impact in SI units, with what of the paper's stands beside them.
     SiQuantities {
         /// The columns.
-        columns: Vec<Reading>,
+        columns: Vec<PhaseReading>,
         /// A row each, with its unit as it is typed.
         rows: Vec<(ImpactQuantity, &'static str)>,
     },
@@ -338,7 +340,7 @@ pub struct MethodRow<'a> {
     /// The method and its order.
     pub title: String,
     /// Its law.
-    pub law: Shown<'a>,
+    pub law: DisplayedLaw<'a>,
     /// The definitions that the law needs.
     pub definitions: Vec<&'a Definition>,
     /// The hbar with which it was evaluated.

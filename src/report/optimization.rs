@@ -12,7 +12,8 @@ use crate::decimal::{decimal, significant};
 use crate::genetic::{Coding, Crossover, GeneticOptions, Mutation, Penalty, StallTest};
 use crate::impact::{Model, Parameter, REST_FRACTION};
 use crate::optimize::{
-    EvaluatedDesign, Finalist, Objective, OptimizationProblem, Sensitivity, Spread, Study,
+    EvaluatedDesign, Finalist, FiveNumberSummary, Objective, OptimizationProblem, Sensitivity,
+    Study,
 };
 
 /// Rows of a front that are listed; JSON and tables of comma-separated values have all.
@@ -428,8 +429,8 @@ fn best_design(study: &Study) -> Vec<Block<'_>> {
 }
 
 fn agreement(study: &Study) -> Vec<Block<'_>> {
-    let row = |name: &str, evaluations: usize, spread: Option<Spread>| {
-        let of = |number: fn(Spread) -> f64| cell(spread.map(number));
+    let row = |name: &str, evaluations: usize, spread: Option<FiveNumberSummary>| {
+        let of = |number: fn(FiveNumberSummary) -> f64| cell(spread.map(number));
         vec![
             name.to_owned(),
             evaluations.to_string(),

@@ -8,7 +8,7 @@ use lindstedt::expr::parse_expression;
 use lindstedt::impact::Rule;
 use lindstedt::impact::contact::ContactLaw;
 use lindstedt::impact::hertz::{self, StiffnessDesign, elastic_force};
-use lindstedt::impact::{self, Reading, Setup, Side};
+use lindstedt::impact::{self, PhaseReading, Setup, Side};
 use lindstedt::impact::{ContactLoss, DerivedContact, Integrator, Model, Settings, Start};
 use lindstedt::impact::{ContactSpeed, Form, ImpactProblem, ThreePhases, three_phases};
 use lindstedt::impact::{TrueImpact, deviation, true_impact};
@@ -302,7 +302,7 @@ fn the_derived_phases_pass_their_judge_everywhere() {
                 .unwrap();
                 let at = format!("A = {amplitude}, xc = {barrier}, gamma = {stiffness}");
                 let index =
-                    found.columns.iter().position(|column| column.reading == Reading::Derived);
+                    found.columns.iter().position(|column| column.reading == PhaseReading::Derived);
                 let index = index.unwrap_or_else(|| panic!("{at}: {:?}", found.tried));
                 assert_eq!(found.shortcomings(index, 1e-3), vec![], "{at}: {:?}", found.tried);
                 // The energy knows the speed, elliptic functions the time: neither is asked by the
@@ -337,7 +337,7 @@ fn the_derived_phases_join() {
         [(-1.5, 0.323, Side::Right), (1.5, -0.323, Side::Left), (-0.8, -0.5, Side::Right)]
     {
         let found = impact::solve(Setup { release, barrier, side, ..Setup::default() }).unwrap();
-        let derived = &found.column(Reading::Derived).unwrap().phases;
+        let derived = &found.column(PhaseReading::Derived).unwrap().phases;
         let [approach, contact, back] = &derived.phases;
         assert!((approach.at(0.0).0 - release).abs() < 1e-12 && approach.at(0.0).1.abs() < 1e-12);
         assert!((back.at(back.end).0 - release).abs() < 1e-12 && back.at(back.end).1.abs() < 1e-12);
@@ -404,7 +404,7 @@ fn a_swing_and_a_barrier_of_the_users_own() {
     let energy = |x: f64| 0.25 * x.powi(4);
     let left = 0.5 * speed * speed + energy(0.3) - energy(0.3 + depth) - 1e4 * depth.powi(3) / 3.0;
     assert!(left.abs() < 1e-9, "{left}");
-    let derived = found.column(Reading::Derived).unwrap();
+    let derived = found.column(PhaseReading::Derived).unwrap();
     assert!((derived.phases.penetration / depth - 1.0).abs() < 1e-4);
     // Mass counts as it is written: 2 x'' + ... with twice every force is the same motion.
     let doubled = impact::solve(Setup {
@@ -471,7 +471,7 @@ fn a_force_that_is_a_difference_near_the_touch_keeps_its_digits() {
             };
             let left = taken_up(depth) / energy - 1.0;
             assert!(left.abs() < 1e-8, "{text}, k = {stiffness}: {left:e}");
-            let derived = found.column(Reading::Derived).unwrap();
+            let derived = found.column(PhaseReading::Derived).unwrap();
             let phases = [
                 taken_up(derived.phases.penetration) / energy - 1.0,
                 derived.phases.duration / found.truth.duration - 1.0,
@@ -517,7 +517,7 @@ fn a_release_inside_the_barrier_is_the_deepest_point_of_its_cycle() {
     let turning_point = -(release.cos() - 0.4 * stiffness * (release - barrier).powf(2.5)).acos();
     assert!((found.turning_point - turning_point).abs() < 1e-10, "{}", found.turning_point);
     assert!((found.truth.deepest.x - release).abs() < 1e-8);
-    let derived = found.column(Reading::Derived).unwrap();
+    let derived = found.column(PhaseReading::Derived).unwrap();
     let deepest = derived.phases.position_at(0.5 * derived.phases.period);
     assert!((deepest - release).abs() < 1e-3 * (release - barrier) + 1e-6, "{deepest}");
     // Too much of a push throws it over the top, and a tiny one against gravity does not free it.
@@ -542,7 +542,7 @@ fn the_derived_phases_join_by_every_law_of_the_contact() {
         for stiffness in [1e3, 1e6] {
             let setup = Setup { contact_law: law, ..pendulum(stiffness) };
             let impact = impact::solve(setup).unwrap_or_else(|error| panic!("{law}: {error}"));
-            let phases = &impact.column(Reading::Derived).expect("derived phases").phases;
+            let phases = &impact.column(PhaseReading::Derived).expect("derived phases").phases;
             let [approach, contact, back] = &phases.phases;
             // Of the corrected law the depth is exact at touch, the speed nearly.
             let speed_kept = if law == ContactLaw::CorrectedPowerLaw { 1e-2 } else { 1e-4 };
@@ -650,7 +650,7 @@ fn the_restitution_asked_for_is_the_one_that_is_simulated() {
         };
         let found = impact::solve(setup).unwrap_or_else(|error| panic!("{wanted}: {error}"));
         assert!(found.no_paper.is_some());
-        let phases = &found.column(Reading::Derived).expect("derived phases").phases;
+        let phases = &found.column(PhaseReading::Derived).expect("derived phases").phases;
         // By the closed form, by Runge-Kutta on the equation, and by the simulation of equation (7)
         // with its mu.
         let allowed = 3e-3 * wanted;

@@ -103,7 +103,7 @@ fn multipliers_across_a_jump_are_those_of_the_map() {
 fn a_motion_that_sticks_has_a_multiplier_of_zero() {
     use lindstedt::numeric::ode::IntegrationOptions;
     use lindstedt::response::driven::Driven;
-    use lindstedt::response::jump::{Until, follow};
+    use lindstedt::response::jump::{StopCondition, follow};
     let equation = "x'' + x + 3/5*sgn(x') = cos(k*t)";
     let oscillator = Oscillator::parse(equation).expect(equation);
     let driven = Driven::new(&oscillator, "k".into(), 1).expect(equation);
@@ -114,7 +114,7 @@ fn a_motion_that_sticks_has_a_multiplier_of_zero() {
             &driven,
             start,
             k,
-            Until::Time(period),
+            StopCondition::Time(period),
             &IntegrationOptions::with_tolerance(1e-11),
         )
         .expect("a motion");

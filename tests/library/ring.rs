@@ -1,8 +1,8 @@
 //! The same series and the same elimination of secular terms over rings that this crate does not
 //! have: residues modulo a prime chosen at run time, and intervals.
 
-use lindstedt::exact::Indivisible;
 use lindstedt::exact::Monomial;
+use lindstedt::exact::NotInvertible;
 use lindstedt::exact::{Integer, Integers, Polynomial, Polynomials, Rational, Ring, from_f64};
 use lindstedt::method::secular::{
     AmplitudeKind, Detuning, ForceTerm, Scheme, SecularError, SecularExpansion, expand,
@@ -107,8 +107,8 @@ impl Ring for Residues {
         &self,
         elements: impl IntoIterator<Item = &'a mut u64>,
         divisor: &Integer,
-    ) -> Result<(), Indivisible> {
-        let inverse = self.reciprocal(self.image(divisor)).ok_or_else(|| Indivisible {
+    ) -> Result<(), NotInvertible> {
+        let inverse = self.reciprocal(self.image(divisor)).ok_or_else(|| NotInvertible {
             divisor: divisor.clone(),
             ring: format!("the residues modulo {}", self.prime),
         })?;
@@ -418,7 +418,7 @@ impl Ring for Intervals {
         &self,
         elements: impl IntoIterator<Item = &'a mut Interval>,
         divisor: &Integer,
-    ) -> Result<(), Indivisible> {
+    ) -> Result<(), NotInvertible> {
         let divisor = enclosing(divisor);
         for element in elements {
             if *element != ZERO {

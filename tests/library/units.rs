@@ -4,7 +4,7 @@
 use std::process::Command;
 
 use lindstedt::audit::paper;
-use lindstedt::impact::{Parameter, Reading, Setup, SiImpact, solve};
+use lindstedt::impact::{Parameter, PhaseReading, Setup, SiImpact, solve};
 use lindstedt::numeric::ode::{Event, IntegrationOptions, State, integrate};
 use lindstedt::problem::Problem;
 use serde_json::Value;
@@ -159,7 +159,7 @@ fn the_printed_contact_time_is_not_that_of_any_reading() {
     let index = stiff
         .columns
         .iter()
-        .position(|column| column.reading == Reading::Paper)
+        .position(|column| column.reading == PhaseReading::Paper)
         .expect("the paper's");
     let ratios = paper::over_contact_time(&stiff.si().expect("units"));
     assert!((ratios.runge_kutta - 1.0).abs() < 0.05, "{ratios:?}");

@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 use std::process::{Command, Output};
 
 use lindstedt::audit::{
-    Audit, ClaimQuantity, Claims, Computed, Finding, NAMES, Printed, Relation, Rounding, Stated,
-    Trend, Verdict, audit,
+    Audit, ClaimFinding, ClaimQuantity, Claims, Computed, NAMES, Printed, PrintedStatement,
+    Relation, Rounding, Trend, Verdict, audit,
 };
 
 const PAPER: &str = include_str!("../../examples/audit/paper.toml");
@@ -17,7 +17,7 @@ fn claims(text: &str) -> Claims {
     text.parse().unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn finding<'a>(audit: &'a Audit, id: &str) -> &'a Finding {
+fn finding<'a>(audit: &'a Audit, id: &str) -> &'a ClaimFinding {
     let found = audit.findings.iter().find(|finding| finding.claim.id == id);
     found.unwrap_or_else(|| panic!("no claim {id}"))
 }
@@ -83,7 +83,7 @@ fn a_changed_digit_turns_the_verdict() {
     for text in [PAPER, FREQUENCIES] {
         let honest = audit(claims(text));
         for (index, finding) in honest.findings.iter().enumerate() {
-            let Some(Stated::Number(printed)) =
+            let Some(PrintedStatement::Number(printed)) =
                 finding.claim.entries.first().map(|entry| &entry.stated)
             else {
                 continue;
@@ -96,7 +96,8 @@ fn a_changed_digit_turns_the_verdict() {
             let mut claim = claims(text).claims.swap_remove(index);
             let text =
                 tampered(claim.entries[0].read_as.as_ref().unwrap_or(&claim.entries[0].printed));
-            claim.entries[0].stated = Stated::Number(Printed::read(&text).expect("a number"));
+            claim.entries[0].stated =
+                PrintedStatement::Number(Printed::read(&text).expect("a number"));
             // An unknown takes up what is left of two digits.
             claim.unknown = claim.unknown.filter(|_| false);
             let id = claim.id.clone();

@@ -10,7 +10,7 @@ use lindstedt::genetic::GeneticOptions;
 use lindstedt::impact::primary::simulate_primary;
 use lindstedt::impact::{Integrator, Parameter, Settings, Simulation, simulate};
 use lindstedt::optimize::{
-    Objective, OptimizationProblem, Role, Route, Study, StudyObserver, optimize,
+    Objective, OptimizationProblem, Route, Study, StudyObserver, VariableRole, optimize,
 };
 use lindstedt::problem::Problem;
 
@@ -40,7 +40,7 @@ fn study(question: OptimizationProblem) -> Study {
     optimize(question, vec![], &StudyObserver::default()).expect("a study")
 }
 
-fn role(study: &Study, parameter: Parameter) -> Role {
+fn role(study: &Study, parameter: Parameter) -> VariableRole {
     let decision = study.decision.as_ref().expect("a decision");
     let found = decision.sensitivities.iter().find(|of| of.parameter == parameter);
     found.expect("a variable").role
@@ -50,8 +50,8 @@ fn role(study: &Study, parameter: Parameter) -> Role {
 #[test]
 fn the_unit_of_the_rest_time_chooses_the_corner() {
     for (objective, end, corner) in [
-        (Objective::RestTime, 0.03, Role::Lower),
-        (Objective::DimensionlessRestTime, 0.3, Role::Upper),
+        (Objective::RestTime, 0.03, VariableRole::Lower),
+        (Objective::DimensionlessRestTime, 0.3, VariableRole::Upper),
     ] {
         let found = study(OptimizationProblem {
             objectives: vec![objective],
@@ -62,7 +62,7 @@ fn the_unit_of_the_rest_time_chooses_the_corner() {
         assert!((best.point[2] / end - 1.0).abs() < 1e-3, "{best:?}");
         assert_eq!(role(&found, Parameter::Length), corner);
         for flat in [Parameter::Mass, Parameter::Radius, Parameter::Modulus] {
-            assert_eq!(role(&found, flat), Role::Flat, "{flat}");
+            assert_eq!(role(&found, flat), VariableRole::Flat, "{flat}");
         }
         let ends = found.decision.as_ref().and_then(|decision| decision.ends).expect("both ends");
         assert!(ends.seconds[0] < ends.seconds[1] && ends.dimensionless[0] > ends.dimensionless[1]);
@@ -79,7 +79,7 @@ fn what_is_held_fixed_decides_what_is_flat() {
         runs: 2,
         ..asked("[contact]\nmu = 1e4\n[genetic]\npopulation = 40")
     });
-    assert_eq!(role(&found, Parameter::Modulus), Role::Lower);
+    assert_eq!(role(&found, Parameter::Modulus), VariableRole::Lower);
     let best = &found.best().expect("a design").design;
     assert!(best.model.gamma < 1e5, "{}", best.model.gamma);
 }
@@ -333,7 +333,7 @@ fn no_sentence_says_more_than_the_numbers() {
 fn a_mass_between_the_limits_is_a_trade_and_is_integrated() {
     let text = std::fs::read_to_string(example("trade")).expect("an example");
     let found = study(asked(&text));
-    assert_eq!(role(&found, Parameter::Mass), Role::Trade);
+    assert_eq!(role(&found, Parameter::Mass), VariableRole::Trade);
     let (evaluations, integrated) = found.evaluations();
     assert!(integrated > evaluations / 2, "{integrated} of {evaluations}");
     let best = found.best().expect("a design");

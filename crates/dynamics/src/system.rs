@@ -32,7 +32,7 @@ use std::collections::BTreeMap;
 
 use crate::expr::{EvaluationError, Expr, ExprError, Function, Node, ParseError, parse_expression};
 use crate::interrupt::Interrupt;
-use crate::numeric::ode::root::{Until, bisect};
+use crate::numeric::ode::root::{BisectionStop, bisect};
 use crate::series::recurrence::RecurrenceError;
 use crate::symbol::Symbol;
 
@@ -206,7 +206,7 @@ impl Event {
 
 /// An event that happened.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Occurrence {
+pub struct EventCrossing {
     /// Which of the events.
     pub event: usize,
     /// When.
@@ -273,7 +273,7 @@ fn end_of_range(length: f64, mut is_within: impl FnMut(f64) -> bool) -> Option<f
     if is_within(length) {
         return None;
     }
-    let [within, _] = bisect(is_within, 0.0, length, Until::Halvings(HALVINGS));
+    let [within, _] = bisect(is_within, 0.0, length, BisectionStop::Halvings(HALVINGS));
     Some(within)
 }
 
@@ -283,7 +283,7 @@ pub struct Path {
     motion: PathRepresentation,
     end: f64,
     reason: PathEnd,
-    occurrences: Vec<Occurrence>,
+    occurrences: Vec<EventCrossing>,
 }
 
 /// What the states are read from.
@@ -305,7 +305,7 @@ impl Path {
     }
 
     /// The events met, in order.
-    pub fn occurrences(&self) -> &[Occurrence] {
+    pub fn occurrences(&self) -> &[EventCrossing] {
         &self.occurrences
     }
 

@@ -5,7 +5,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use crate::symbol::letters::Letters;
+use crate::symbol::letters::ResultSymbols;
 
 /// What `work` makes of each item, in their order.
 pub fn each<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<T> {
@@ -23,7 +23,7 @@ pub fn each<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec
 /// Every number up to this one; a function of its own, so that it is built once for all kinds of
 /// work.
 fn run(count: usize, work: &(dyn Fn(usize) + Sync)) {
-    let letters = Letters::here();
+    let letters = ResultSymbols::here();
     let work = &|number| {
         let _letters = letters.exactly();
         work(number);

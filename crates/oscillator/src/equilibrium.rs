@@ -41,7 +41,7 @@ use crate::series::taylor::taylor;
 use crate::solution::Definition;
 use crate::solution::note::{CornerSide, CrossWell};
 use crate::symbol::{Symbol, fresh};
-use force::{PositionForce, Pull};
+use force::{PositionForce, SingularAttraction};
 use search::Zero as SignChange;
 use shift::{moved, value_at};
 
@@ -140,7 +140,8 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
     let rests = match &at_zero {
         Ok(force) => force.is_zero(),
         Err(_) => {
-            force.vanishes_towards_zero() || matches!(pull, Some(Pull::Passed | Pull::Inverse))
+            force.vanishes_towards_zero()
+                || matches!(pull, Some(SingularAttraction::Passed | SingularAttraction::Inverse))
         }
     };
     if rests {
@@ -155,7 +156,7 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
         }
         return match stable {
             true => Ok(Centred {
-                endless: pull == Some(Pull::Inverse),
+                endless: pull == Some(SingularAttraction::Inverse),
                 // Letters may have made it a hilltop.
                 cross_well: match oscillator.of_position_alone() && !force.is_numerical() {
                     true => force.cross_well(&Expr::zero()),
@@ -172,8 +173,8 @@ fn centred_still(oscillator: &Oscillator, degree: Option<u32>) -> Result<Centred
         uneven,
     };
     let no_equilibrium = || match pull {
-        Some(Pull::Endless) => falls_in(false),
-        Some(Pull::UnevenInverse) => falls_in(true),
+        Some(SingularAttraction::Endless) => falls_in(false),
+        Some(SingularAttraction::UnevenInverse) => falls_in(true),
         _ => OscillatorError::NoEquilibrium(force.at_rest(&at_zero)),
     };
     if force.is_numerical() {

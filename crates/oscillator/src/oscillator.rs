@@ -29,7 +29,7 @@ use crate::expr::{
 use crate::series::taylor::{TaylorError, taylor};
 use crate::solution::note::Position;
 use crate::solution::{Advice, AmplitudeConvention, Definition, Method, Setting};
-use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, Letters};
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, ResultSymbols};
 use crate::symbol::{Symbol, fresh, fresh_stem, phase_beside};
 use corner::near_rest;
 
@@ -227,12 +227,12 @@ pub struct Equilibria {
     /// Positions of the equilibria; numbers for those without a short closed form.
     pub positions: Vec<Position>,
     /// The positions of further equilibria; `None` if there are no others.
-    pub others: Option<Others>,
+    pub others: Option<FurtherEquilibria>,
 }
 
 /// Description of further equilibria if there are more than a message names.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Others {
+pub enum FurtherEquilibria {
     /// Again after each period of the force.
     Every(Expr),
     /// Farther from rest.
@@ -244,8 +244,10 @@ impl fmt::Display for Equilibria {
         let positions: Vec<String> = self.positions.iter().map(ToString::to_string).collect();
         formatter.write_str(&positions.join(", "))?;
         match &self.others {
-            Some(Others::Every(period)) => write!(formatter, ", and again every {period}"),
-            Some(Others::FartherOut) => formatter.write_str(" and farther out"),
+            Some(FurtherEquilibria::Every(period)) => {
+                write!(formatter, ", and again every {period}")
+            }
+            Some(FurtherEquilibria::FartherOut) => formatter.write_str(" and farther out"),
             None => Ok(()),
         }
     }
@@ -495,10 +497,10 @@ impl Oscillator {
 
     /// The letters of amplitude and frequency in what is derived from this equation: those in force
     /// on this thread, else the ones that the equation leaves free.
-    pub fn letters(&self) -> Letters {
-        Letters::current().unwrap_or_else(|| {
+    pub fn letters(&self) -> ResultSymbols {
+        ResultSymbols::current().unwrap_or_else(|| {
             let own: Vec<Symbol> = self.own_names().collect();
-            Letters::beside(&own, self.force.contains(Symbol::new("t")))
+            ResultSymbols::beside(&own, self.force.contains(Symbol::new("t")))
         })
     }
 

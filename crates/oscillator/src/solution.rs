@@ -31,7 +31,7 @@ pub use advice::{Advice, Setting};
 pub use branch::Branch;
 pub use convergence::Convergence;
 pub use degrees::Degrees;
-use law::Shown;
+use law::DisplayedLaw;
 pub use law::{AlgebraicSystem, ClosedForm, Law, Root};
 pub use method::{Counts, Method};
 pub use modulation::Modulation;
@@ -50,7 +50,7 @@ use crate::exact::scaled::Scaled;
 use crate::exact::{Doubles, POLYNOMIALS, Polynomial, Polynomials};
 use crate::expr::{Equation, Expr};
 use crate::series::FourierSeries;
-use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY, Letters};
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY, ResultSymbols};
 use crate::symbol::{Symbol, fresh, phase_beside};
 
 /// The definition of the amplitude in a formula.
@@ -362,10 +362,10 @@ impl Solution {
     /// The letters of amplitude and frequency: those in force on this thread, else the ones that
     /// the equation leaves free. They are how the symbols of this answer print while they are
     /// [in force](Letters::in_force).
-    pub fn letters(&self) -> Letters {
-        Letters::current().unwrap_or_else(|| {
+    pub fn letters(&self) -> ResultSymbols {
+        ResultSymbols::current().unwrap_or_else(|| {
             let own: Vec<Symbol> = self.names_of_equation().collect();
-            Letters::beside(&own, self.equation.left.contains(Symbol::new("t")))
+            ResultSymbols::beside(&own, self.equation.left.contains(Symbol::new("t")))
         })
     }
 
@@ -493,21 +493,23 @@ impl Solution {
         }
         let shown = self.law.in_one_line();
         let law = match shown {
-            Shown::Squared(law) => format!("{FREQUENCY}^2 = {}", self.ordered(law)),
-            Shown::Frequency(law) => format!("{FREQUENCY} = {}", self.ordered(law)),
-            Shown::Relation(relation) => format!("0 = {}", self.ordered(relation)),
-            Shown::Closed(form) if self.numerical => {
+            DisplayedLaw::Squared(law) => format!("{FREQUENCY}^2 = {}", self.ordered(law)),
+            DisplayedLaw::Frequency(law) => format!("{FREQUENCY} = {}", self.ordered(law)),
+            DisplayedLaw::Relation(relation) => format!("0 = {}", self.ordered(relation)),
+            DisplayedLaw::Closed(form) if self.numerical => {
                 format!("{} in closed form, with rounded coefficients", form.name())
             }
-            Shown::Closed(form) => form.to_string(),
-            Shown::Quadrature(_) | Shown::System(_)
+            DisplayedLaw::Closed(form) => form.to_string(),
+            DisplayedLaw::Quadrature(_) | DisplayedLaw::System(_)
                 if self.method.counts() == Counts::Harmonics =>
             {
                 let harmonics = self.balanced_harmonics();
                 let kept: Vec<String> = harmonics.iter().map(|entry| entry.0.to_string()).collect();
                 format!("harmonics {} balanced, solved by numbers", kept.join(", "))
             }
-            Shown::Quadrature(_) | Shown::System(_) => self.by_numbers().unwrap_or_default(),
+            DisplayedLaw::Quadrature(_) | DisplayedLaw::System(_) => {
+                self.by_numbers().unwrap_or_default()
+            }
         };
         let definitions = self.definitions_of_formula().into_iter();
         let definitions = definitions.map(|definition| {
@@ -520,8 +522,8 @@ impl Solution {
     pub fn definitions_of_formula(&self) -> Vec<&Definition> {
         let shown = self.law.in_one_line();
         match shown {
-            Shown::Closed(_) if self.numerical => vec![],
-            Shown::Quadrature(_) | Shown::System(_)
+            DisplayedLaw::Closed(_) if self.numerical => vec![],
+            DisplayedLaw::Quadrature(_) | DisplayedLaw::System(_)
                 if self.method.counts() == Counts::Harmonics =>
             {
                 vec![]

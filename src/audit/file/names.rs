@@ -2,7 +2,7 @@
 
 use super::values::{number, symbol};
 use super::{ReadResult, Section, helped, mistake};
-use crate::audit::claim::{Claim, ClaimQuantity, Stated, Supposition};
+use crate::audit::claim::{Claim, ClaimQuantity, PrintedStatement, Supposition};
 use crate::audit::quantity::{NAMES, is_a_name};
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
@@ -141,7 +141,7 @@ pub(super) fn check_values(section: &Section, claim: &Claim) -> ReadResult<()> {
     };
     if !formulas.is_empty() {
         let printed = claim.entries.iter().filter_map(|entry| match &entry.stated {
-            Stated::Formula(printed) => Some(printed),
+            PrintedStatement::Formula(printed) => Some(printed),
             _ => None,
         });
         let all = formulas.into_iter().chain(printed).chain(claim.question.values.values());

@@ -1,6 +1,6 @@
 //! Python 3, with the module `math`. A number that does not exist is a `ValueError`.
 
-use super::{Base, Break, Exponent, Syntax, Text, Used};
+use super::{Base, Break, Exponent, Syntax, Text, UsedRoutines};
 use crate::expr::Function;
 
 pub(super) const SYNTAX: Syntax = Syntax {
@@ -56,7 +56,7 @@ fn function(function: Function) -> &'static str {
 
 /// What is imported: `pow` of the module is a `ValueError` where the built-in one would be a
 /// complex number.
-fn beginning(used: &Used) -> String {
+fn beginning(used: &UsedRoutines) -> String {
     const MODULE: [&str; 18] = [
         "acos", "asin", "asinh", "atan", "ceil", "copysign", "cos", "cosh", "exp", "gamma", "log",
         "pi", "pow", "sin", "sinh", "sqrt", "tan", "tanh",

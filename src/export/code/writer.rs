@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use num_traits::{One, Signed, Zero};
 
 use super::{
-    Base, Break, Exponent, NoCode, Program, Routine, Statement, Syntax, Text, Used, Value,
+    Base, Break, Exponent, NoCode, Program, Routine, Statement, Syntax, Text, UsedRoutines, Value,
     commented,
 };
 use crate::exact::Integer;
@@ -28,7 +28,7 @@ pub(super) fn source(program: &Program, syntax: &'static Syntax) -> Result<Strin
     }
     let text = parts.join("\n");
     let routines: Vec<&str> = program.routines.iter().map(|routine| routine.name).collect();
-    let beginning = (syntax.beginning)(&Used { text: &text, routines: &routines });
+    let beginning = (syntax.beginning)(&UsedRoutines { text: &text, routines: &routines });
     let renamed = names.iter().filter(|(symbol, name)| symbol.written() != **name);
     let renamed: Vec<String> =
         renamed.map(|(symbol, name)| format!("{symbol} is {name} here")).collect();
@@ -118,7 +118,7 @@ fn names(
 
 /// How tightly an expression holds together.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
-enum Level {
+enum Precedence {
     Sum,
     Product,
     Power,
@@ -132,7 +132,7 @@ struct CodeFragment {
     text: String,
     /// Whether a minus stands before it.
     negative: bool,
-    level: Level,
+    level: Precedence,
     /// Whether it is made of numbers written out alone.
     literal: bool,
     /// What stands below the line where this is a factor of a fraction.
@@ -140,11 +140,11 @@ struct CodeFragment {
 }
 
 impl CodeFragment {
-    fn new(text: String, level: Level) -> Self {
+    fn new(text: String, level: Precedence) -> Self {
         Self { text, negative: false, level, literal: false, below: None }
     }
 
-    fn literal(text: String, level: Level) -> Self {
+    fn literal(text: String, level: Precedence) -> Self {
         Self { literal: true, ..Self::new(text, level) }
     }
 
@@ -157,7 +157,7 @@ impl CodeFragment {
     }
 
     /// As an operand that must hold together this tightly.
-    fn at(&self, level: Level) -> String {
+    fn at(&self, level: Precedence) -> String {
         match self.level < level || self.negative {
             true => format!("({})", self.whole()),
             false => self.text.clone(),
@@ -165,7 +165,7 @@ impl CodeFragment {
     }
 
     fn as_base(&self) -> Base {
-        Base { inside: self.whole(), operand: self.at(Level::Atom), literal: self.literal }
+        Base { inside: self.whole(), operand: self.at(Precedence::Atom), literal: self.literal }
     }
 
     fn is_one(&self) -> bool {
@@ -231,7 +231,7 @@ impl Writer<'_> {
                         (_, false) => "+ ",
                         (_, true) => "- ",
                     };
-                    let level = if index == 0 { Level::Sum } else { Level::Product };
+                    let level = if index == 0 { Precedence::Sum } else { Precedence::Product };
                     parts.push(format!("{sign}{}", unsigned.at(level)));
                 }
                 parts
@@ -267,7 +267,11 @@ impl Writer<'_> {
                 let factors: Vec<CodeFragment> = unsigned.filter(|part| !part.is_one()).collect();
                 // A fraction stands before what it is multiplied with, without parentheses.
                 let first = factors.first().map(|first| CodeFragment {
-                    level: if first.level == Level::Product { Level::Power } else { first.level },
+                    level: if first.level == Precedence::Product {
+                        Precedence::Power
+                    } else {
+                        first.level
+                    },
                     ..first.clone()
                 });
                 let factors = first.into_iter().chain(factors.into_iter().skip(1)).collect();
@@ -276,7 +280,7 @@ impl Writer<'_> {
             Value::Call(name, arguments) => {
                 let arguments: Vec<String> =
                     arguments.iter().map(|argument| self.name(*argument)).collect();
-                Ok(CodeFragment::new(format!("{name}({})", arguments.join(", ")), Level::Atom))
+                Ok(CodeFragment::new(format!("{name}({})", arguments.join(", ")), Precedence::Atom))
             }
         }
     }
@@ -288,8 +292,8 @@ impl Writer<'_> {
     fn node(&self, expression: &Expr, children: &[CodeFragment]) -> Result<CodeFragment, NoCode> {
         Ok(match expression.node() {
             Node::Number(value) => self.number(value)?,
-            Node::Pi => CodeFragment::new(self.syntax.pi.to_owned(), Level::Atom),
-            Node::Symbol(symbol) => CodeFragment::new(self.name(*symbol), Level::Atom),
+            Node::Pi => CodeFragment::new(self.syntax.pi.to_owned(), Precedence::Atom),
+            Node::Symbol(symbol) => CodeFragment::new(self.name(*symbol), Precedence::Atom),
             Node::Sum(_) => self.sum(&positive_first(children)),
             Node::Product(coefficient, _) => {
                 let (above, below) = self.number_parts(coefficient)?;
@@ -314,9 +318,9 @@ impl Writer<'_> {
                 (None, [base, exponent]) => {
                     let text =
                         (self.syntax.power)(&base.as_base(), Exponent::Real(&exponent.whole()));
-                    CodeFragment::new(text, Level::Power)
+                    CodeFragment::new(text, Precedence::Power)
                 }
-                _ => CodeFragment::new(String::new(), Level::Atom),
+                _ => CodeFragment::new(String::new(), Precedence::Atom),
             },
             Node::Function(function, _) => self.call((self.syntax.function)(*function), children),
         })
@@ -333,11 +337,11 @@ impl Writer<'_> {
                 format!("f64::{method}({})", written(arguments))
             }
             (Some(method), [first, rest @ ..]) => {
-                format!("{}.{method}({})", first.at(Level::Atom), written(rest))
+                format!("{}.{method}({})", first.at(Precedence::Atom), written(rest))
             }
             _ => format!("{name}({})", written(arguments)),
         };
-        CodeFragment::new(text, Level::Atom)
+        CodeFragment::new(text, Precedence::Atom)
     }
 
     /// `base^number` for a positive number.
@@ -362,8 +366,8 @@ impl Writer<'_> {
             _ => Exponent::Real(&exponent),
         };
         let level = match exponent {
-            Exponent::Half => Level::Atom,
-            _ => Level::Power,
+            Exponent::Half => Precedence::Atom,
+            _ => Precedence::Power,
         };
         Ok(CodeFragment::new((self.syntax.power)(&written.as_base(), exponent), level))
     }
@@ -376,7 +380,7 @@ impl Writer<'_> {
         let mut text = String::new();
         for term in terms {
             let unsigned = CodeFragment { negative: false, ..term.clone() };
-            let level = if text.is_empty() { Level::Sum } else { Level::Product };
+            let level = if text.is_empty() { Precedence::Sum } else { Precedence::Product };
             text.push_str(match (text.is_empty(), term.negative) {
                 (true, true) => "-",
                 (true, false) => "",
@@ -386,17 +390,18 @@ impl Writer<'_> {
             text.push_str(&unsigned.at(level));
         }
         match text.is_empty() {
-            true => CodeFragment::literal(format!("0{}", self.syntax.point), Level::Atom),
+            true => CodeFragment::literal(format!("0{}", self.syntax.point), Precedence::Atom),
             false => CodeFragment {
                 literal: terms.iter().all(|term| term.literal),
-                ..CodeFragment::new(text, Level::Sum)
+                ..CodeFragment::new(text, Precedence::Sum)
             },
         }
     }
 
     /// Factors over factors.
     fn fraction(&self, above: Vec<CodeFragment>, below: Vec<CodeFragment>) -> CodeFragment {
-        let one = || vec![CodeFragment::literal(format!("1{}", self.syntax.point), Level::Atom)];
+        let one =
+            || vec![CodeFragment::literal(format!("1{}", self.syntax.point), Precedence::Atom)];
         let above = if above.is_empty() { one() } else { above };
         let numerator = self.product(&above);
         match below.as_slice() {
@@ -405,11 +410,11 @@ impl Writer<'_> {
                 let text = self.joined(
                     1,
                     (&numerator.text, numerator.literal),
-                    (&divisor.at(Level::Power), divisor.literal),
+                    (&divisor.at(Precedence::Power), divisor.literal),
                 );
                 CodeFragment {
                     literal: numerator.literal && divisor.literal,
-                    ..CodeFragment::new(text, Level::Product)
+                    ..CodeFragment::new(text, Precedence::Product)
                 }
             }
             several => {
@@ -419,30 +424,30 @@ impl Writer<'_> {
                     (&numerator.text, numerator.literal),
                     (&format!("({})", divisor.text), divisor.literal),
                 );
-                CodeFragment::new(text, Level::Product)
+                CodeFragment::new(text, Precedence::Product)
             }
         }
     }
 
     fn product(&self, factors: &[CodeFragment]) -> CodeFragment {
         let Some((first, rest)) = factors.split_first() else {
-            return CodeFragment::literal(format!("1{}", self.syntax.point), Level::Atom);
+            return CodeFragment::literal(format!("1{}", self.syntax.point), Precedence::Atom);
         };
         if rest.is_empty() {
             return match first.level {
-                Level::Sum => CodeFragment::new(first.at(Level::Power), Level::Atom),
+                Precedence::Sum => CodeFragment::new(first.at(Precedence::Power), Precedence::Atom),
                 _ => first.clone(),
             };
         }
         let (mut text, mut literal, mut last) =
-            (first.at(Level::Power), first.literal, first.literal);
+            (first.at(Precedence::Power), first.literal, first.literal);
         for factor in rest {
-            let next = factor.at(Level::Power);
+            let next = factor.at(Precedence::Power);
             text = self.joined(0, (&text, last), (&next, factor.literal));
             literal &= factor.literal;
             last = factor.literal;
         }
-        CodeFragment { literal, ..CodeFragment::new(text, Level::Product) }
+        CodeFragment { literal, ..CodeFragment::new(text, Precedence::Product) }
     }
 
     /// Two operands with the sign of a product or a quotient between them, and whether each is a
@@ -477,7 +482,8 @@ impl Writer<'_> {
         let size = value.abs();
         let [above, below] = [size.numer(), size.denom()].map(ToString::to_string);
         let whole = |text: &String| {
-            let piece = CodeFragment::literal(format!("{text}{}", self.syntax.point), Level::Atom);
+            let piece =
+                CodeFragment::literal(format!("{text}{}", self.syntax.point), Precedence::Atom);
             (text != "1").then_some(piece)
         };
         if above.len().max(below.len()) <= DIGITS && above.len() + below.len() <= DIGITS + 1 {
@@ -485,7 +491,7 @@ impl Writer<'_> {
         }
         let double = to_f64(&size);
         match double.is_normal() {
-            true => Ok((Some(CodeFragment::literal(decimal(double), Level::Atom)), None)),
+            true => Ok((Some(CodeFragment::literal(decimal(double), Precedence::Atom)), None)),
             false => Err(NoCode::Beyond),
         }
     }

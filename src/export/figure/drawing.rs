@@ -11,7 +11,7 @@ use kuva::prelude::{
 use kuva::render::render::{Primitive, Scene, TextAnchor};
 use kuva::render::render_utils::wrap_text;
 
-use super::{Curve, CurveStyle, FigureError, Guide, POINTS, Panel, Scale};
+use super::{Curve, CurveStyle, FigureError, GuideLine, POINTS, Panel, Scale};
 
 /// Width of the page in units of 1/96 inch (190 mm), and its margin.
 const PAGE: f64 = 720.0;
@@ -91,8 +91,8 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
     }
     for guide in &panel.guides {
         let (at, label, list) = match *guide {
-            Guide::X(at, label) => (panel.x_scale.place(at), label, &mut xs),
-            Guide::Y(at, label) => (panel.y_scale.place(at), label, &mut ys),
+            GuideLine::X(at, label) => (panel.x_scale.place(at), label, &mut xs),
+            GuideLine::Y(at, label) => (panel.y_scale.place(at), label, &mut ys),
         };
         if !at.is_finite() {
             return Err(FigureError::OffAxes(within(format!("guide \"{label}\""))));
@@ -105,8 +105,8 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
     let across = |y: f64| vec![(x_range.0, y / y_unit), (x_range.1, y / y_unit)];
     let upright = |x: f64| vec![(x / x_unit, y_range.0), (x / x_unit, y_range.1)];
     let guides = panel.guides.iter().map(|guide| match *guide {
-        Guide::X(at, label) => plot(label, upright(panel.x_scale.place(at)), CurveStyle::GUIDE),
-        Guide::Y(at, label) => plot(label, across(panel.y_scale.place(at)), CurveStyle::GUIDE),
+        GuideLine::X(at, label) => plot(label, upright(panel.x_scale.place(at)), CurveStyle::GUIDE),
+        GuideLine::Y(at, label) => plot(label, across(panel.y_scale.place(at)), CurveStyle::GUIDE),
     });
     let scaled = |points: Vec<(f64, f64)>| {
         points.into_iter().map(|(x, y)| (x / x_unit, y / y_unit)).collect()
@@ -328,7 +328,7 @@ mod tests {
         y_scale: Scale,
         label: &str,
         points: &[(f64, f64)],
-        guides: Vec<Guide>,
+        guides: Vec<GuideLine>,
     ) -> Result<String, FigureError> {
         let curves = vec![curve(label, points, CurveStyle::FORMULA)];
         let panel = panel("T", ["x (s)", "y (rad)"], curves, guides);
@@ -423,7 +423,7 @@ mod tests {
     fn a_logarithmic_abscissa_has_decades() {
         let points = [(1e4, 1.0), (1e6, 2.0), (1e9, 3.0)];
         let curves = vec![curve("", &points, CurveStyle::FORMULA)];
-        let panel = panel("T", ["stiffness", "y"], curves, vec![Guide::X(1e5, "")]);
+        let panel = panel("T", ["stiffness", "y"], curves, vec![GuideLine::X(1e5, "")]);
         let draw = |x_scale| figure(&[Panel { x_scale, ..panel.clone() }], "").unwrap();
         let svg = draw(Scale::Logarithmic);
         assert!(["10⁴", "10⁹"].iter().all(|tick| svg.contains(&format!(">{tick}<"))), "{svg}");
@@ -445,7 +445,7 @@ mod tests {
                     Err(FigureError::OffAxes(_))
                 ));
             }
-            let guides = vec![Guide::X(bad, "g")];
+            let guides = vec![GuideLine::X(bad, "g")];
             assert!(matches!(one(Scale::Linear, "", &WAVE, guides), Err(FigureError::OffAxes(_))));
         }
         let [formula, truth] = [1.0, 1.1].map(|end| vec![(0.0, 1.0, 0.0), (end, 0.5, 0.2)]);

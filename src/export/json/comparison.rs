@@ -185,16 +185,16 @@ fn refused(refused: &Refused) -> MethodRow {
     })
 }
 
-fn reach(reach: validity::Reach) -> Reach {
+fn reach(reach: validity::AmplitudeReach) -> Reach {
     let searched = match reach {
-        validity::Reach::Everywhere(searched) => Some(searched),
-        validity::Reach::Between { to, open: true, .. } => Some(to),
-        validity::Reach::Between { .. } | validity::Reach::UpTo(_) | validity::Reach::Nowhere => {
-            None
-        }
+        validity::AmplitudeReach::Everywhere(searched) => Some(searched),
+        validity::AmplitudeReach::Between { to, open: true, .. } => Some(to),
+        validity::AmplitudeReach::Between { .. }
+        | validity::AmplitudeReach::UpTo(_)
+        | validity::AmplitudeReach::Nowhere => None,
     };
     let from = match reach {
-        validity::Reach::Between { from, .. } => Some(from),
+        validity::AmplitudeReach::Between { from, .. } => Some(from),
         _ => None,
     };
     Reach { from, up_to: reach.end(), searched }

@@ -13,7 +13,8 @@ use super::{DocumentKind, JsonError, check_kind};
 use crate::audit::paper;
 use crate::impact::contact::{ContactErrors, ContactLaw, ContactMotion, ContactRow, SineSeries};
 use crate::impact::{
-    self, ContactLoss, DerivedContact, Form, Impact, Modulus, Reading, Rule, Setup, SiImpact, Side,
+    self, ContactLoss, DerivedContact, Form, Impact, Modulus, PhaseReading, Rule, Setup, SiImpact,
+    Side,
 };
 use crate::verify::Verdict;
 
@@ -534,9 +535,9 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
             sign: flight.sign,
             frequency: flight.motion.frequency(),
         }),
-        phases: phases(Reading::Paper),
-        energy_phases: phases(Reading::Energy),
-        derived_phases: phases(Reading::Derived),
+        phases: phases(PhaseReading::Paper),
+        energy_phases: phases(PhaseReading::Energy),
+        derived_phases: phases(PhaseReading::Derived),
         contact: Contact { speed, penetration, duration },
         contact_damping: contact_damping(impact),
         contact_laws: impact.setup.every_contact_law.then(|| contact_laws.collect()),
@@ -706,7 +707,8 @@ fn contact_damping(impact: &Impact) -> Option<ContactDamping> {
     })
 }
 
-const READINGS: [Reading; 3] = [Reading::Paper, Reading::Energy, Reading::Derived];
+const READINGS: [PhaseReading; 3] =
+    [PhaseReading::Paper, PhaseReading::Energy, PhaseReading::Derived];
 
 fn quantity(impact: &Impact, quantity: &impact::ImpactQuantity) -> Quantity {
     let errors: Vec<f64> = quantity.errors().collect();

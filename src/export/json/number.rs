@@ -13,7 +13,7 @@ use crate::exact::{self, Rational};
 use crate::expr::{Expr, parse_expression};
 use crate::solution::{Definition, Solution, Sum};
 use crate::symbol::Symbol;
-use crate::symbol::letters::Letters;
+use crate::symbol::letters::ResultSymbols;
 use crate::values::Values;
 
 /// What stands under names that the equation or the program chose, in their order.
@@ -150,14 +150,14 @@ pub(super) fn meanings(definitions: &[Definition]) -> Map<String> {
 /// equation.
 pub(super) struct DocumentNames {
     own: Vec<Symbol>,
-    letters: Letters,
+    letters: ResultSymbols,
 }
 
 impl DocumentNames {
     /// Those beside the names of an equation, driven or not.
     pub fn beside(own: impl IntoIterator<Item = Symbol>, driven: bool) -> Self {
         let own: Vec<Symbol> = own.into_iter().collect();
-        let letters = Letters::beside(&own, driven);
+        let letters = ResultSymbols::beside(&own, driven);
         let clash = |name: &Symbol| letters.unusual().any(|(usual, _)| usual.name() == name.name());
         let apart = |name: Symbol| if clash(&name) { name.apart() } else { name };
         Self { own: own.into_iter().map(apart).collect(), letters }

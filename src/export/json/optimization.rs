@@ -16,7 +16,7 @@ use super::{DocumentKind, JsonError};
 use crate::genetic::{Coding, Crossover, GeneticStop, Mutation, Penalty, StallTest};
 use crate::impact::{self, ContactDamping, Friction, Parameter, REST_FRACTION, SpeedUnit};
 use crate::optimize::{
-    self, Found, Objective, OptimizationProblem, Role, SearchRun, Study, WITHIN,
+    self, Found, Objective, OptimizationProblem, SearchRun, Study, VariableRole, WITHIN,
 };
 use crate::report::optimization_sentences;
 
@@ -434,17 +434,19 @@ fn searches(study: &Study) -> Vec<Search> {
     if study.question.objectives.len() > 1 {
         return vec![];
     }
-    let search =
-        |name: &str, evaluations: f64, found: usize, spread: Option<optimize::Spread>| Search {
-            name: name.to_owned(),
-            evaluations,
-            found,
-            best: spread.map(|spread| spread.best),
-            lower_quartile: spread.map(|spread| spread.lower_quartile),
-            median: spread.map(|spread| spread.median),
-            upper_quartile: spread.map(|spread| spread.upper_quartile),
-            worst: spread.map(|spread| spread.worst),
-        };
+    let search = |name: &str,
+                  evaluations: f64,
+                  found: usize,
+                  spread: Option<optimize::FiveNumberSummary>| Search {
+        name: name.to_owned(),
+        evaluations,
+        found,
+        best: spread.map(|spread| spread.best),
+        lower_quartile: spread.map(|spread| spread.lower_quartile),
+        median: spread.map(|spread| spread.median),
+        upper_quartile: spread.map(|spread| spread.upper_quartile),
+        worst: spread.map(|spread| spread.worst),
+    };
     let (evaluations, _) = study.evaluations();
     let each = evaluations as f64 / study.runs.len().max(1) as f64;
     let own = search("genetic algorithm", each, study.values().len(), study.spread());

@@ -8,7 +8,7 @@ use super::DocumentKind;
 use super::sweep::Axis;
 use crate::impact::Units;
 use crate::impact::primary::{
-    Alone, Others, PrimaryEnergy, PrimaryImpact, PrimaryRow, PrimaryStop,
+    Alone, PrimaryEnergy, PrimaryImpact, PrimaryRow, PrimaryStop, UndampedAndLocked,
 };
 use crate::report::{PrimaryReport, PrimarySweepReport};
 
@@ -240,7 +240,7 @@ pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
 /// ```
 pub fn primary_sweep(report: &PrimarySweepReport) -> PrimarySweepDocument {
     let row = |(number, (row, units)): (usize, (&PrimaryRow, &Units))| {
-        let Others { locked, without } = row.others;
+        let UndampedAndLocked { locked, without } = row.others;
         let begun = row.is_begun();
         PrimarySweepRow {
             values: report.values(number),

@@ -5,7 +5,7 @@ use super::{constant, expression, scientific, scientific_text, sum, symbol};
 use crate::decimal::{decimal, significant};
 use crate::expr::{Equation, Expr};
 use crate::report::MethodRow;
-use crate::solution::law::Shown;
+use crate::solution::law::DisplayedLaw;
 use crate::symbol::Symbol;
 use crate::symbol::letters::FREQUENCY;
 use crate::values::Values;
@@ -86,18 +86,22 @@ fn formula(method: &MethodRow) -> Result<String, &'static str> {
             });
             rates.unwrap_or_default()
         }
-        Shown::Squared(squared) => format!("{}^{{2}} = {}", symbol(FREQUENCY), ordered(squared)),
-        Shown::Closed(_) if method.row.solution.numerical => {
+        DisplayedLaw::Squared(squared) => {
+            format!("{}^{{2}} = {}", symbol(FREQUENCY), ordered(squared))
+        }
+        DisplayedLaw::Closed(_) if method.row.solution.numerical => {
             return Err("closed form, rounded coefficients");
         }
-        Shown::Closed(form) => {
+        DisplayedLaw::Closed(form) => {
             let omega = symbol(FREQUENCY);
             let name = if form.squared { omega + "^{2}" } else { omega };
             format!("{name} = {}", expression(&form.value))
         }
-        Shown::Frequency(frequency) => format!("{} = {}", symbol(FREQUENCY), ordered(frequency)),
-        Shown::Relation(relation) => format!("0 = {}", ordered(relation)),
-        Shown::Quadrature(_) | Shown::System(_) => return Err("by numbers"),
+        DisplayedLaw::Frequency(frequency) => {
+            format!("{} = {}", symbol(FREQUENCY), ordered(frequency))
+        }
+        DisplayedLaw::Relation(relation) => format!("0 = {}", ordered(relation)),
+        DisplayedLaw::Quadrature(_) | DisplayedLaw::System(_) => return Err("by numbers"),
     };
     let definitions = method.definitions.iter().map(|definition| {
         let meaning = constant(&definition.meaning);

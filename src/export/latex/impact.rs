@@ -6,15 +6,16 @@ use crate::decimal::significant;
 use crate::export::latex::{symbol, typed};
 use crate::impact::contact::ContactRow;
 use crate::impact::{
-    FittedLine, Form, ImpactQuantity, ImpactRow, Letters, MotionPhase, Reading, Rule, TimeFunction,
+    FittedLine, Form, ImpactQuantity, ImpactRow, ImpactSymbols, MotionPhase, PhaseReading, Rule,
+    TimeFunction,
 };
 
 /// Of what the phases that follow are.
-pub(super) fn reading(reading: Reading) -> String {
+pub(super) fn reading(reading: PhaseReading) -> String {
     let words = match reading {
-        Reading::Paper => "contact speed from the one-term motion",
-        Reading::Energy => "contact speed from the energy",
-        Reading::Derived => "derived motion with all harmonics",
+        PhaseReading::Paper => "contact speed from the one-term motion",
+        PhaseReading::Energy => "contact speed from the energy",
+        PhaseReading::Derived => "derived motion with all harmonics",
     };
     format!("&\\text{{{words}:}}")
 }
@@ -24,7 +25,7 @@ pub(super) fn fitted(
     fitted: &FittedLine,
     barrier: f64,
     rule: Rule,
-    letters: Letters,
+    letters: ImpactSymbols,
     per_stiffness: bool,
 ) -> String {
     let line = format!(
@@ -44,7 +45,7 @@ pub(super) fn fitted(
 }
 
 /// A table: Runge-Kutta, and by every column the number and its error.
-pub(super) fn quantities(columns: &[Reading], rows: &[ImpactQuantity]) -> LatexTable {
+pub(super) fn quantities(columns: &[PhaseReading], rows: &[ImpactQuantity]) -> LatexTable {
     let percent = |error: f64| format!("${}\\,\\%$", scientific((1e5 * error).round() / 1e3));
     let row = |row: &ImpactQuantity| {
         let cells = row.closed_forms.iter().zip(row.errors());
@@ -80,7 +81,10 @@ fn upright(unit: &str) -> String {
 }
 
 /// A table in SI units: Runge-Kutta and every column.
-pub(super) fn si_quantities(columns: &[Reading], rows: &[(ImpactQuantity, &str)]) -> LatexTable {
+pub(super) fn si_quantities(
+    columns: &[PhaseReading],
+    rows: &[(ImpactQuantity, &str)],
+) -> LatexTable {
     let row = |(row, unit): &(ImpactQuantity, &str)| {
         let name = match *unit {
             "" => row.name.to_owned(),
@@ -146,7 +150,7 @@ fn signed(value: f64) -> String {
 }
 
 /// The name of a phase and when it is, and its closed form: a few waves to a row.
-pub(super) fn phase(phase: &MotionPhase, letters: Letters) -> Vec<String> {
+pub(super) fn phase(phase: &MotionPhase, letters: ImpactSymbols) -> Vec<String> {
     const WAVES_IN_A_ROW: usize = 3;
     let clock = match phase.joined_at() {
         Some(join) => format!("(t - t_{{{join}}})"),

@@ -3,7 +3,7 @@
 
 use crate::decimal::{decimal, significant};
 use crate::export::figure::{
-    Curve, CurveStyle, FigureError, Guide, Panel, Points, Scale, curve, figure, panel,
+    Curve, CurveStyle, FigureError, GuideLine, Panel, Points, Scale, curve, figure, panel,
 };
 use crate::impact::{
     ContactDamping, HeldFixed, MaterialStudy, Parameter, REST_FRACTION, Simulation,
@@ -87,7 +87,7 @@ pub fn materials(study: &MaterialStudy) -> Result<String, FigureError> {
         sides.iter().map(|held| ["Swing", "Decay"].map(|what| title(what, held))).collect();
     let barriers: Vec<f64> = [study.model.left, study.model.right].into_iter().flatten().collect();
     let swings = motions.iter().zip(&titles).map(|([swings, _], [title, _])| {
-        let guides = barriers.iter().map(|barrier| Guide::Y(*barrier, "barrier x_c")).collect();
+        let guides = barriers.iter().map(|barrier| GuideLine::Y(*barrier, "barrier x_c")).collect();
         let labels = ["time t (s)", "displacement x (rad)"];
         panel(title, labels, of_materials(study, swings), guides)
     });
@@ -96,7 +96,7 @@ pub fn materials(study: &MaterialStudy) -> Result<String, FigureError> {
         let beside = beside.map(|(label, points, style)| curve(label, points, *style));
         let labels = ["time t (s)", "amplitude (% of the first swing)"];
         let curves = beside.chain(of_materials(study, decays)).collect();
-        let guides = vec![Guide::Y(100.0 * REST_FRACTION, "rest, 10 %")];
+        let guides = vec![GuideLine::Y(100.0 * REST_FRACTION, "rest, 10 %")];
         Panel { y_scale: Scale::Logarithmic, ..panel(title, labels, curves, guides) }
     });
     let panels: Vec<Panel> = swings.chain(decays).collect();

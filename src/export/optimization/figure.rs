@@ -3,7 +3,7 @@
 
 use crate::decimal::{decimal, significant};
 use crate::export::figure::{
-    Curve, CurveStyle, FigureError, Guide, Panel, Points, Scale, curve, figure, panel,
+    Curve, CurveStyle, FigureError, GuideLine, Panel, Points, Scale, curve, figure, panel,
 };
 use crate::optimize::{Objective, Study, Variable, WITHIN};
 
@@ -182,9 +182,9 @@ impl Designs {
                 y_scale: scale(pair[1]),
                 curves,
                 guides: x
-                    .map(|at| Guide::X(at, "limits"))
+                    .map(|at| GuideLine::X(at, "limits"))
                     .into_iter()
-                    .chain(y.map(|at| Guide::Y(at, "limits")))
+                    .chain(y.map(|at| GuideLine::Y(at, "limits")))
                     .collect(),
             })
         };

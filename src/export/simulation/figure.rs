@@ -5,7 +5,7 @@ use super::heat_map::heat_map;
 use super::{Report, SweepReport};
 use crate::decimal::decimal;
 use crate::export::figure::{
-    CurveStyle, FigureError, Guide, Panel, Points, Scale, curve, figure, panel,
+    CurveStyle, FigureError, GuideLine, Panel, Points, Scale, curve, figure, panel,
 };
 use crate::impact::sweep::{Axis, Spacing, Summary};
 use crate::impact::{Integrator, Simulation};
@@ -59,18 +59,18 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
         Integrator::Chain => "integration",
         Integrator::Taylor | Integrator::RungeKutta => "Runge-Kutta",
     };
-    let own = Drawn::of(own_name, motion);
-    let judge = report.judge.map(|judge| Drawn::of(judge_name, judge));
+    let own = DrawnMotion::of(own_name, motion);
+    let judge = report.judge.map(|judge| DrawnMotion::of(judge_name, judge));
     let style = match judge {
         Some(_) => CurveStyle::FORMULA,
         None => CurveStyle::DIFFERENCE,
     };
-    let curves = |of: fn(&Drawn) -> &Points| {
+    let curves = |of: fn(&DrawnMotion) -> &Points| {
         let judge = judge.as_ref();
         let judge = judge.map(|judge| curve(judge.name, of(judge), CurveStyle::RUNGE_KUTTA));
         judge.into_iter().chain([curve(own.name, of(&own), style)]).collect()
     };
-    let guides = |guide: fn(f64, &'static str) -> Guide<'static>| -> Vec<Guide<'static>> {
+    let guides = |guide: fn(f64, &'static str) -> GuideLine<'static>| -> Vec<GuideLine<'static>> {
         let left = model.left.map(|at| guide(at, "left barrier"));
         let right = model.right.map(|at| guide(at, "barrier x_c"));
         // A barrier out of reach would leave no room for the motion.
@@ -86,13 +86,13 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
             "Motion in time",
             [TIME, "displacement x (rad)"],
             curves(|drawn| &drawn.time),
-            guides(Guide::Y),
+            guides(GuideLine::Y),
         ),
         panel(
             "Phase plane",
             ["displacement x (rad)", "velocity x′"],
             curves(|drawn| &drawn.phase),
-            guides(Guide::X),
+            guides(GuideLine::X),
         ),
         panel("Energy", [TIME, "energy (units of m g L)"], energies.collect(), vec![]),
     ];
@@ -110,7 +110,7 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
 }
 
 /// A motion as it is drawn.
-struct Drawn {
+struct DrawnMotion {
     name: &'static str,
     /// x against t.
     time: Points,
@@ -118,7 +118,7 @@ struct Drawn {
     phase: Points,
 }
 
-impl Drawn {
+impl DrawnMotion {
     fn of(name: &'static str, motion: &Simulation) -> Self {
         let points = points(motion);
         Self {

@@ -11,7 +11,7 @@ use crate::symbol::letters::FREQUENCY;
 use crate::values::Values;
 use crate::verify::Verdict;
 use crate::verify::comparison::{ComparisonRow, Refused};
-use crate::verify::validity::Reach;
+use crate::verify::validity::AmplitudeReach;
 
 /// The length of the longest name of a method in the tables and lists of a document.
 pub(super) fn longest_title(document: &Document) -> usize {
@@ -115,7 +115,7 @@ pub(super) fn true_motion(lines: &[String], width: usize) -> String {
 /// Header and rows, without the formulas.
 pub(in crate::export) fn cells(rows: &[MethodRow], tolerance: f64) -> Vec<[String; 6]> {
     let over_several_wells =
-        rows.iter().any(|row| matches!(row.row.reach, Some(Reach::Between { .. })));
+        rows.iter().any(|row| matches!(row.row.reach, Some(AmplitudeReach::Between { .. })));
     let range = if over_several_wells { "for" } else { "up to" };
     let within = format!("{} % {range}", significant(100.0 * tolerance, 3));
     let header = ["method", FREQUENCY.written(), "error", "deviation", "verdict", &within]
@@ -229,17 +229,19 @@ fn formula(row: &MethodRow) -> String {
     row.row.solution.formula() + &value.unwrap_or_default()
 }
 
-fn reach(reach: Option<(Reach, Symbol)>) -> String {
+fn reach(reach: Option<(AmplitudeReach, Symbol)>) -> String {
     match reach {
         None => "-".to_owned(),
-        Some((Reach::Nowhere, _)) => "nowhere".to_owned(),
-        Some((Reach::UpTo(end), amplitude)) => format!("{amplitude} = {}", significant(end, 3)),
-        Some((Reach::Between { from, to, open }, amplitude)) => {
+        Some((AmplitudeReach::Nowhere, _)) => "nowhere".to_owned(),
+        Some((AmplitudeReach::UpTo(end), amplitude)) => {
+            format!("{amplitude} = {}", significant(end, 3))
+        }
+        Some((AmplitudeReach::Between { from, to, open }, amplitude)) => {
             let [from, to] = [from, to].map(|end| significant(end, 3));
             let past = if open { "past " } else { "" };
             format!("{amplitude} = {from} to {past}{to}")
         }
-        Some((Reach::Everywhere(searched), amplitude)) => {
+        Some((AmplitudeReach::Everywhere(searched), amplitude)) => {
             format!("past {amplitude} = {}", significant(searched, 3))
         }
     }

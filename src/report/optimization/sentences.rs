@@ -6,7 +6,7 @@ use super::{closed_forms_off, with_unit};
 use crate::decimal::{decimal, significant};
 use crate::genetic::GeneticStop;
 use crate::impact::Parameter;
-use crate::optimize::{DEFAULT_BOX, Decision, Objective, Role, Sensitivity, Study, WITHIN};
+use crate::optimize::{DEFAULT_BOX, Decision, Objective, Sensitivity, Study, VariableRole, WITHIN};
 
 /// `mass, radius and modulus`
 fn listed(names: &[&str]) -> String {
@@ -81,7 +81,7 @@ fn what_decides(study: &Study) -> Vec<String> {
         return vec![];
     };
     let objective = study.objective().meaning();
-    let of = |role: Role| {
+    let of = |role: VariableRole| {
         let found =
             decision.sensitivities.iter().filter(move |sensitivity| sensitivity.role == role);
         found.collect::<Vec<_>>()
@@ -107,11 +107,12 @@ fn what_decides(study: &Study) -> Vec<String> {
             percent(off)
         ));
     }
-    let ends: Vec<String> = [(of(Role::Lower), "lower"), (of(Role::Upper), "upper")]
-        .into_iter()
-        .filter(|(found, _)| !found.is_empty())
-        .map(|(found, end)| format!("{} at the {end} limit", names(&found)))
-        .collect();
+    let ends: Vec<String> =
+        [(of(VariableRole::Lower), "lower"), (of(VariableRole::Upper), "upper")]
+            .into_iter()
+            .filter(|(found, _)| !found.is_empty())
+            .map(|(found, end)| format!("{} at the {end} limit", names(&found)))
+            .collect();
     if !ends.is_empty() {
         sentences.push(match better {
             None if off <= WITHIN => format!(
@@ -121,7 +122,7 @@ fn what_decides(study: &Study) -> Vec<String> {
             _ => format!("Moved alone, the best are {}.", ends.join(", ")),
         });
     }
-    let flat = of(Role::Flat);
+    let flat = of(VariableRole::Flat);
     if !flat.is_empty() {
         sentences.push(flat_directions(&flat, objective));
     }
@@ -130,7 +131,7 @@ fn what_decides(study: &Study) -> Vec<String> {
         least >= decision.value * (1.0 - BETTER)
     };
     let (trade, elsewhere): (Vec<_>, Vec<_>) =
-        of(Role::Trade).into_iter().partition(is_worse_everywhere);
+        of(VariableRole::Trade).into_iter().partition(is_worse_everywhere);
     if !trade.is_empty() {
         sentences.push(format!(
             "A trade: {} between the limits, {objective} is worse on either side.",
@@ -149,7 +150,8 @@ fn what_decides(study: &Study) -> Vec<String> {
             .range
             .is_some_and(|[least, _]| least < decision.least.min(decision.value) * (1.0 - BETTER))
     };
-    let (relieved, held): (Vec<_>, Vec<_>) = of(Role::Limit).into_iter().partition(relieved);
+    let (relieved, held): (Vec<_>, Vec<_>) =
+        of(VariableRole::Limit).into_iter().partition(relieved);
     if !relieved.is_empty() {
         sentences.push(format!(
             "A constraint stops {}: without it {objective} would be less.",

@@ -337,25 +337,25 @@ impl Scaling<'_> {
         let mut counted = 0;
         while let Some((product, role)) = self.next(equations) {
             let (wanted, factor, meaning) = match role {
-                Role::Frequency => (
+                GroupRole::Frequency => (
                     "eta",
                     Rational::one(),
                     "frequency of the excitation over that of the unit of time",
                 ),
-                Role::Viscous => {
+                GroupRole::Viscous => {
                     ("zeta", Rational::new(1.into(), 2.into()), "viscous damping ratio")
                 }
-                Role::Dry => ("alpha", Rational::one(), "dry friction"),
-                Role::Excitation => ("beta", Rational::one(), "excitation"),
-                Role::Contact => ("gamma", Rational::one(), "stiffness of the contact"),
-                Role::ContactDamping => ("mu", Rational::one(), "damping of the contact"),
-                Role::Other => {
+                GroupRole::Dry => ("alpha", Rational::one(), "dry friction"),
+                GroupRole::Excitation => ("beta", Rational::one(), "excitation"),
+                GroupRole::Contact => ("gamma", Rational::one(), "stiffness of the contact"),
+                GroupRole::ContactDamping => ("mu", Rational::one(), "damping of the contact"),
+                GroupRole::Other => {
                     counted += 1;
                     ("Pi", Rational::one(), "ratio")
                 }
             };
             let own = match role {
-                Role::Other => Symbol::new(&format!("{wanted}{counted}")),
+                GroupRole::Other => Symbol::new(&format!("{wanted}{counted}")),
                 _ => Symbol::new(wanted),
             };
             // Names of parameters that are used for units, or have been replaced, stay theirs:
@@ -369,7 +369,7 @@ impl Scaling<'_> {
                 false => fresh(own.name(), &taken),
             };
             let definition = match role {
-                Role::Other => Expr::product(product.factors().1.iter().cloned()),
+                GroupRole::Other => Expr::product(product.factors().1.iter().cloned()),
                 _ => Expr::number(factor.clone()) * &product,
             };
             self.replace(&definition, name)?;
@@ -392,7 +392,7 @@ impl Scaling<'_> {
 
     /// The next product of parameters that stands before something, with its number, and what it
     /// stands before.
-    fn next(&self, equations: &EquationsOfMotion) -> Option<(Expr, Role)> {
+    fn next(&self, equations: &EquationsOfMotion) -> Option<(Expr, GroupRole)> {
         let open = |expression: &Expr| {
             expression.symbols().into_iter().any(|name| self.is_open(name, equations))
         };
@@ -414,7 +414,7 @@ impl Scaling<'_> {
                     [Expr::number(number.abs())].into_iter().chain(before.into_iter().cloned()),
                 );
                 if !rest.is_empty() && is_time && open(&product) {
-                    return Some((product, Role::Frequency));
+                    return Some((product, GroupRole::Frequency));
                 }
             }
         }
@@ -426,12 +426,12 @@ impl Scaling<'_> {
                 [Expr::number(number.abs())].into_iter().chain(before.into_iter().cloned()),
             );
             if open(&product) {
-                return Some((product, Role::of(&Expr::product(rest.into_iter().cloned()))));
+                return Some((product, GroupRole::of(&Expr::product(rest.into_iter().cloned()))));
             }
         }
         // What stands inside of something else, such as the place of a barrier, one by one.
         let name = self.symbols().into_iter().find(|name| self.is_open(*name, equations))?;
-        Some((Expr::from(name), Role::Other))
+        Some((Expr::from(name), GroupRole::Other))
     }
 
     /// Puts the name in the place of its definition, by way of one of the parameters in it.
@@ -479,7 +479,7 @@ impl Scaling<'_> {
 
 /// What a group does, by what it stands before.
 #[derive(Clone, Copy, PartialEq)]
-enum Role {
+enum GroupRole {
     Frequency,
     Viscous,
     Dry,
@@ -489,7 +489,7 @@ enum Role {
     Other,
 }
 
-impl Role {
+impl GroupRole {
     fn of(before: &Expr) -> Self {
         let has = |function: Function| before.contains_function(function);
         let velocity = before.symbols().into_iter().any(|name| name.primes() == 1);

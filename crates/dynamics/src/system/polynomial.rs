@@ -2,7 +2,7 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::numeric::ode::root::{Until, bisect};
+use crate::numeric::ode::root::{BisectionStop, bisect};
 
 /// The value at `s`.
 pub(super) fn value(series: &[f64], s: f64) -> f64 {
@@ -115,7 +115,7 @@ pub(super) fn first_root(series: &[f64], from: f64, to: f64) -> Option<(f64, boo
             continue;
         }
         let before = |at: f64| value(series, at).signum() == at_low.signum();
-        let [_, root] = bisect(before, low, high, Until::Width(f64::EPSILON * high.abs()));
+        let [_, root] = bisect(before, low, high, BisectionStop::Width(f64::EPSILON * high.abs()));
         return Some((root, at_low < 0.0));
     }
     None

@@ -16,12 +16,12 @@ use std::cell::RefCell;
 
 use super::narrow::{Argument, COARSE, FunctionGrowth, arguments, end_by_values};
 use super::{
-    Event, LARGEST, Occurrence, Path, PathEnd, System, SystemError, SystemOptions, end_of_range,
+    Event, EventCrossing, LARGEST, Path, PathEnd, System, SystemError, SystemOptions, end_of_range,
     is_vanishing, taylor, within_range, without_value,
 };
 use crate::expr::{CompiledFunction, EvaluationError, Expr, ExprError, Function, Node};
 use crate::numeric::ode::{
-    self, Action, Kept, Looks, Point, StopReason, Trajectory, integrate_through,
+    self, AcceptedFraction, Action, Point, StepLimits, StopReason, Trajectory, integrate_through,
 };
 use crate::series::guard::{Guard, Guards};
 use crate::symbol::{Symbol, fresh_stem};
@@ -169,9 +169,9 @@ pub(super) fn follow(
     let rates = |t: f64, y: &Vec<f64>, rates: &mut Vec<f64>| scaled.rates(t, y, rates);
     let critical: Vec<f64> = system.critical.iter().map(|time| units.count(*time)).collect();
     let kept = |state: &dyn Fn(f64) -> Point<Vec<f64>>| scaled.short_of_narrow(state);
-    let looks = Looks {
+    let looks = StepLimits {
         critical: &critical,
-        kept: (!smooth.narrow.is_empty()).then_some(&kept as &Kept<Point<Vec<f64>>>),
+        kept: (!smooth.narrow.is_empty()).then_some(&kept as &AcceptedFraction<Point<Vec<f64>>>),
     };
     let run = integrate_through(rates, begin, units.count(end), looks, &watched, &settings);
     let trajectory = run.map_err(|error| match error {
@@ -201,19 +201,19 @@ pub(super) fn follow(
 
 /// Where the events of the user happened, each place once.
 fn occurrences(
-    all: &[ode::Occurrence<Point<Vec<f64>>>],
+    all: &[ode::EventOccurrence<Point<Vec<f64>>>],
     units: &RunScales,
     events: usize,
-) -> Vec<Occurrence> {
-    let mut occurrences: Vec<Occurrence> = Vec::new();
+) -> Vec<EventCrossing> {
+    let mut occurrences: Vec<EventCrossing> = Vec::new();
     for found in all.iter().filter(|found| found.event < events) {
         let (event, time, rising) = (found.event, units.time(found.state.t), found.rising);
         // Where a corner lies at the same place, rounding may show the crossing before and behind
         // it.
-        let same = |met: &&Occurrence| met.event == event && met.rising == rising;
+        let same = |met: &&EventCrossing| met.event == event && met.rising == rising;
         let again = occurrences.iter().rev().find(same);
         if again.is_none_or(|met| time - met.time > SAME_PLACE * units.time) {
-            occurrences.push(Occurrence { event, time, rising });
+            occurrences.push(EventCrossing { event, time, rising });
         }
     }
     occurrences

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use super::narrow::{FunctionGrowth, end_of_step};
 use super::polynomial::{first_root, powers, sign_at_start, value, values};
 use super::{
-    Event, Occurrence, Path, PathEnd, PathRepresentation, System, SystemError, SystemOptions,
+    Event, EventCrossing, Path, PathEnd, PathRepresentation, System, SystemError, SystemOptions,
     end_of_range, is_vanishing, within_range, without_value,
 };
 use crate::series::recurrence::{RecurrenceError, Recurrences};
@@ -207,13 +207,13 @@ pub(super) struct TaylorRun<'a> {
     /// The signs of the events behind the last step.
     signs: Vec<f64>,
     steps: Vec<TaylorStep>,
-    occurrences: Vec<Occurrence>,
+    occurrences: Vec<EventCrossing>,
     /// How often in a row it was back on a corner at once.
     stuck: usize,
     /// The corner that the last step ended on, and how fast its argument changed there.
     met: Option<(usize, f64)>,
     /// The last step, where it ended by itself and may be taken back.
-    last: Option<Last>,
+    last: Option<StepUndo>,
     /// How often in a row a step from here was taken back.
     halvings: i32,
 }
@@ -222,7 +222,7 @@ pub(super) struct TaylorRun<'a> {
 const MOST_HALVINGS: i32 = 12;
 
 /// What it takes to take a step back.
-struct Last {
+struct StepUndo {
     length: f64,
     signs: Vec<f64>,
     sides: Vec<f64>,
@@ -376,7 +376,7 @@ impl<'a> TaylorRun<'a> {
         if let Some(end) = range {
             (corner, length) = (None, end);
         }
-        let last = Last {
+        let last = StepUndo {
             length,
             signs: self.signs.clone(),
             sides: self.expansion.sides(),
@@ -391,7 +391,7 @@ impl<'a> TaylorRun<'a> {
             met[index].0
         });
         let (start, time) = (self.start, self.time);
-        self.occurrences.extend(met.into_iter().map(|(event, place, rising)| Occurrence {
+        self.occurrences.extend(met.into_iter().map(|(event, place, rising)| EventCrossing {
             event,
             time: start + (time + place),
             rising,
@@ -431,7 +431,7 @@ impl<'a> TaylorRun<'a> {
 
     /// Whether the rates where a step has come to are others than its series says: a wall, say,
     /// that could not be seen from its beginning.
-    fn has_missed_something(&mut self, last: &Last, now: f64) -> bool {
+    fn has_missed_something(&mut self, last: &StepUndo, now: f64) -> bool {
         /// Of the size of a state on the step: what its rate there may be off, times the step.
         const ASTRAY: f64 = 1e-8;
         // The terms that are left out are within the tolerance, their slopes within as many times
@@ -482,7 +482,7 @@ impl<'a> TaylorRun<'a> {
     }
 
     /// Back to where the last step began, from where half of it is to be gone.
-    fn take_back(&mut self, last: Last) {
+    fn take_back(&mut self, last: StepUndo) {
         let Some(step) = self.steps.pop() else { return };
         self.time = step.start;
         self.values = step.coefficients.chunks(step.order + 1).map(|series| series[0]).collect();

@@ -26,5 +26,5 @@ pub use bound::Bound;
 pub use integer::{Integer, ParseIntegerError};
 pub use polynomial::{Monomial, POLYNOMIALS, Polynomial, Polynomials};
 pub use rational::{Rational, convergent, factorial, from_f64, ratio, to_f64};
-pub use ring::{Doubles, Indivisible, Integers, Number, Rationals, Ring};
+pub use ring::{Doubles, Integers, NotInvertible, Number, Rationals, Ring};
 pub use scaled::Scaled;

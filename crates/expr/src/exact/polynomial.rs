@@ -12,7 +12,7 @@ use std::ops::Add;
 use num_traits::Zero;
 
 use super::rational::{Integer, Rational, to_f64};
-use super::ring::{Indivisible, Number, Rationals, Ring};
+use super::ring::{NotInvertible, Number, Rationals, Ring};
 use super::scaled::Scaled;
 use crate::symbol::Symbol;
 
@@ -522,7 +522,7 @@ impl<R: Ring> Ring for Polynomials<R> {
         &self,
         elements: impl IntoIterator<Item = &'a mut Self::Element>,
         divisor: &Integer,
-    ) -> Result<(), Indivisible> {
+    ) -> Result<(), NotInvertible> {
         let coefficients = elements.into_iter().flat_map(|element| element.terms.values_mut());
         self.0.divide(coefficients, divisor)
     }

@@ -35,7 +35,7 @@ pub fn clusters(polynomial: &[BigFloat]) -> Option<Vec<Cluster>> {
     /// second is none.
     const SHORT: f64 = -4.0;
     const NONE: f64 = -200.0;
-    let walk = Walk::new(polynomial)?;
+    let walk = ClusterSearch::new(polynomial)?;
     let mut found = vec![];
     let mut at = BigFloat::zero(walk.bits);
     for _ in 0..MOST_STEPS {
@@ -77,7 +77,7 @@ fn power_of_two(exponent: f64, bits: usize) -> BigFloat {
     BigFloat::of_f64((exponent - whole).exp2(), bits).shifted(whole as i64)
 }
 
-struct Walk<'a> {
+struct ClusterSearch<'a> {
     polynomial: &'a [BigFloat],
     bits: usize,
     /// Logarithms of the sizes of the coefficients.
@@ -95,7 +95,7 @@ struct About {
     largest: f64,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> ClusterSearch<'a> {
     fn new(polynomial: &'a [BigFloat]) -> Option<Self> {
         let degree = polynomial.iter().rposition(|value| !value.is_zero())?;
         let polynomial = &polynomial[..=degree];

@@ -73,7 +73,7 @@ pub use print::Inside;
 pub use rounding::{LostDigits, Rounded};
 pub use typed::{Quotation, Typed};
 
-pub use crate::symbol::letters::{InForce, Letters};
+pub use crate::symbol::letters::{InForce, ResultSymbols};
 pub use crate::symbol::{fresh, fresh_stem, phase_beside};
 
 /// The largest numerator or denominator of an exponent that [`Expr::power`] accepts on anything but
@@ -85,7 +85,7 @@ pub const EXPANSION_LIMIT: usize = 100_000;
 
 /// An immutable expression in normal form. A clone is one reference count.
 #[derive(Clone)]
-pub struct Expr(Arc<Inner>);
+pub struct Expr(Arc<ExprData>);
 
 /// One node of the tree. Match on [`Expr::node`] to read; build through [`Expr`] alone, which keeps
 /// the promises written on the variants.
@@ -365,7 +365,7 @@ impl Expr {
         &self,
         mut step: impl FnMut(&Self, &[T]) -> Result<T, E>,
     ) -> Result<T, E> {
-        let mut done: HashMap<*const Inner, T> = HashMap::new();
+        let mut done: HashMap<*const ExprData, T> = HashMap::new();
         let mut open = vec![(self, false)];
         let mut values = Vec::new();
         while let Some((expr, children_done)) = open.pop() {
@@ -404,7 +404,7 @@ impl Expr {
         })
     }
 
-    fn address(&self) -> *const Inner {
+    fn address(&self) -> *const ExprData {
         Arc::as_ptr(&self.0)
     }
 
@@ -441,7 +441,7 @@ impl Expr {
             }
         };
         let size = node.children().fold(1, |size: u32, child| size.saturating_add(child.0.size));
-        Self(Arc::new(Inner { node, hash: hasher.finish(), size, stepwise }))
+        Self(Arc::new(ExprData { node, hash: hasher.finish(), size, stepwise }))
     }
 
     /// Constant between jumps: built from numbers, `H` and `sgn` alone. Zero there means zero on a
@@ -462,7 +462,7 @@ impl Node {
     }
 }
 
-struct Inner {
+struct ExprData {
     node: Node,
     /// Of the whole tree below, so that comparing and hashing look at one word.
     hash: u64,
@@ -473,7 +473,7 @@ struct Inner {
 
 /// Children are handed to a list instead of being dropped in place: the depth of a tree never meets
 /// the stack.
-impl Drop for Inner {
+impl Drop for ExprData {
     fn drop(&mut self) {
         let mut open = Vec::new();
         let release = |node: &mut Node, open: &mut Vec<Expr>| match node {

@@ -85,7 +85,7 @@ fn sort_by_hash<T>(items: &mut [T], expr: impl Fn(&T) -> &Expr) {
 
 /// Flat, numbers gathered in the coefficient, equal bases merged, sorted.
 pub(super) fn product(factors: impl IntoIterator<Item = Expr>) -> Expr {
-    let mut gathered = Gathered { coefficient: Rational::one(), powers: Vec::new() };
+    let mut gathered = ProductBuilder { coefficient: Rational::one(), powers: Vec::new() };
     for factor in factors {
         gathered.multiply(&factor);
     }
@@ -94,7 +94,7 @@ pub(super) fn product(factors: impl IntoIterator<Item = Expr>) -> Expr {
 
 /// `coefficient` times the product of the factors.
 pub(super) fn scaled_product(coefficient: Rational, factors: &[Expr]) -> Expr {
-    let mut gathered = Gathered { coefficient, powers: Vec::new() };
+    let mut gathered = ProductBuilder { coefficient, powers: Vec::new() };
     for factor in factors {
         gathered.multiply(factor);
     }
@@ -102,7 +102,7 @@ pub(super) fn scaled_product(coefficient: Rational, factors: &[Expr]) -> Expr {
 }
 
 /// A product in the making.
-struct Gathered {
+struct ProductBuilder {
     coefficient: Rational,
     powers: Vec<Factor>,
 }
@@ -113,7 +113,7 @@ struct Factor {
     whole: Expr,
 }
 
-impl Gathered {
+impl ProductBuilder {
     fn multiply(&mut self, factor: &Expr) {
         match factor.node() {
             Node::Number(value) => self.coefficient = number::multiply(&self.coefficient, value),

@@ -29,14 +29,14 @@ pub(super) struct TypedTerm {
     /// Whether it stands right of the equals sign.
     pub right: bool,
     /// What stands around the bracket in which it stands.
-    pub around: Option<Arc<Around>>,
+    pub around: Option<Arc<BracketContext>>,
 }
 
 /// What stands around a bracket: of `-2*(x + x^2)/3` the texts `2*(` and `)/3`, and the minus. A
 /// bracket that nothing scales leaves the texts empty. Around a bracket in a bracket stands what
 /// stands around both.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Around {
+pub(super) struct BracketContext {
     pub opening: String,
     pub closing: String,
     /// Whether the minuses before the brackets, those inside the texts apart, are one together.

@@ -53,7 +53,7 @@ pub fn may_stand_for(name: &str, usual: Symbol) -> bool {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Letters {
+pub struct ResultSymbols {
     /// The amplitude at the start, `A` where the equation has no such name.
     pub amplitude: Symbol,
     /// The amplitude of the first harmonic and of slow equations, `a` likewise.
@@ -63,17 +63,17 @@ pub struct Letters {
 }
 
 /// The letters of most answers.
-const USUAL: Letters =
-    Letters { amplitude: AMPLITUDE, first_harmonic: FIRST_HARMONIC, frequency: FREQUENCY };
+const USUAL: ResultSymbols =
+    ResultSymbols { amplitude: AMPLITUDE, first_harmonic: FIRST_HARMONIC, frequency: FREQUENCY };
 
 thread_local! {
-    static IN_FORCE: Cell<Letters> = const { Cell::new(USUAL) };
+    static IN_FORCE: Cell<ResultSymbols> = const { Cell::new(USUAL) };
 }
 
 /// Letters are in force on this thread until this value is dropped.
 #[must_use]
 pub struct InForce {
-    before: Letters,
+    before: ResultSymbols,
     of_this_thread: PhantomData<*const ()>,
 }
 
@@ -83,7 +83,7 @@ impl Drop for InForce {
     }
 }
 
-impl Letters {
+impl ResultSymbols {
     /// The letters of an answer to an equation that has these names: those that it leaves free. A
     /// `driven` equation has its `Omega` for the drive.
     pub fn beside(names: &[Symbol], driven: bool) -> Self {
@@ -155,7 +155,7 @@ impl Letters {
 
 /// The name of a symbol as it is printed on this thread.
 pub(super) fn written(symbol: Symbol) -> &'static str {
-    let Some(letters) = Letters::current() else {
+    let Some(letters) = ResultSymbols::current() else {
         return symbol.name();
     };
     let bare = symbol.0.trim_end_matches('\'');
@@ -179,13 +179,13 @@ mod tests {
 
     #[test]
     fn letters_of_an_answer_give_way_to_those_of_the_equation() {
-        let names = |letters: Letters| {
+        let names = |letters: ResultSymbols| {
             [letters.amplitude, letters.first_harmonic, letters.frequency].map(Symbol::name)
         };
-        assert_eq!(names(Letters::beside(&["x".into()], false)), ["A", "a", "omega"]);
+        assert_eq!(names(ResultSymbols::beside(&["x".into()], false)), ["A", "a", "omega"]);
         let all = ["A", "C", "a", "omega"].map(Symbol::new);
-        assert_eq!(names(Letters::beside(&all, false)), ["X", "r", "Omega"]);
-        assert_eq!(names(Letters::beside(&all, true)), ["X", "r", "nu"]);
+        assert_eq!(names(ResultSymbols::beside(&all, false)), ["X", "r", "Omega"]);
+        assert_eq!(names(ResultSymbols::beside(&all, true)), ["X", "r", "nu"]);
     }
 
     #[test]
@@ -193,11 +193,11 @@ mod tests {
         let (answer, equation) = (Symbol::new("a"), Symbol::new("a").apart());
         assert_eq!(equation.derivative().to_string(), "a'");
         assert_eq!(equation.derivative().coordinate(), equation);
-        let letters = Letters::beside(&[equation], false);
+        let letters = ResultSymbols::beside(&[equation], false);
         {
             let _letters = letters.in_force();
             assert_eq!(format!("{answer} {} {equation}", answer.derivative()), "r r' a");
-            let _others = Letters::beside(&["omega".into()], false).in_force();
+            let _others = ResultSymbols::beside(&["omega".into()], false).in_force();
             assert_eq!(answer.to_string(), "r");
         }
         assert_eq!(answer.to_string(), "a");

@@ -20,7 +20,7 @@ use super::error::ImpactError;
 use super::form::Form;
 use super::judge::{Deviation, TrueImpact};
 use super::phases::{ContactSpeed, ImpactProblem, ThreePhases, three_phases};
-use super::setup::{Letters, Setup};
+use super::setup::{ImpactSymbols, Setup};
 use super::trial::{Attempt, Trial};
 use crate::method::{self, is_odd};
 use crate::solution::{Method, Solution};
@@ -35,7 +35,7 @@ pub struct Impact {
     /// The equation as it is judged.
     pub equation: String,
     /// Its letters.
-    pub letters: Letters,
+    pub letters: ImpactSymbols,
     /// The equilibrium of the swing, in the unit of x.
     pub equilibrium: f64,
     /// Where the cycle starts: the release, or the turning point of a motion released inside the
@@ -66,7 +66,7 @@ pub struct Impact {
 
 /// How the three phases are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reading {
+pub enum PhaseReading {
     /// As the paper has it: every join continuous, contact speed from the one-term motion.
     Paper,
     /// The same with the contact speed from the energy.
@@ -75,7 +75,7 @@ pub enum Reading {
     Derived,
 }
 
-impl Reading {
+impl PhaseReading {
     /// The name in tables and documents.
     pub fn name(self) -> &'static str {
         match self {
@@ -91,7 +91,7 @@ impl Reading {
 #[non_exhaustive]
 pub struct JudgedPhases {
     /// Which reading it is.
-    pub reading: Reading,
+    pub reading: PhaseReading,
     /// The closed forms.
     pub phases: ThreePhases,
     /// Its largest deviation from the true motion.
@@ -145,7 +145,7 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
         let mut columns: Vec<JudgedPhases> = paper.into_iter().map(column).collect();
         let (flight, contact) = derived
             .map(|derived| {
-                columns.push(column((Reading::Derived, derived.phases)));
+                columns.push(column((PhaseReading::Derived, derived.phases)));
                 (derived.flight, derived.contact)
             })
             .unzip();
@@ -186,7 +186,9 @@ fn methods_to_try(setup: &Setup) -> Vec<Method> {
 const PAPERS_ORDER: u32 = 2;
 
 /// The paper's law and its two readings: of a swing whose force is odd, by one cosine.
-pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhases)>), ImpactError> {
+pub(super) fn paper(
+    trial: &Trial,
+) -> Result<(Solution, Vec<(PhaseReading, ThreePhases)>), ImpactError> {
     let Trial { setup, equations, collision, .. } = trial;
     if setup.loss.is_some() {
         return Err(ImpactError::LosesEnergy);
@@ -224,7 +226,8 @@ pub(super) fn paper(trial: &Trial) -> Result<(Solution, Vec<(Reading, ThreePhase
         elastic_force: collision.elastic_force,
         rule: setup.rule,
     };
-    let readings = [(Reading::Paper, ContactSpeed::Paper), (Reading::Energy, ContactSpeed::Energy)];
+    let readings =
+        [(PhaseReading::Paper, ContactSpeed::Paper), (PhaseReading::Energy, ContactSpeed::Energy)];
     let side = setup.side.sign();
     let phases = readings
         .map(|(reading, speed)| Ok((reading, three_phases(&swing, speed)?.moved(side, 0.0))));
@@ -265,7 +268,7 @@ pub type Shortcoming = (Vec<(&'static str, f64)>, String);
 
 impl Impact {
     /// The column of a reading, where there is one.
-    pub fn column(&self, reading: Reading) -> Option<&JudgedPhases> {
+    pub fn column(&self, reading: PhaseReading) -> Option<&JudgedPhases> {
         self.columns.iter().find(|column| column.reading == reading)
     }
 
@@ -345,7 +348,7 @@ impl Impact {
 
     /// omega of the approach and the return in the paper's reading.
     pub fn frequency(&self) -> Option<f64> {
-        match self.column(Reading::Paper)?.phases.phases[0].form {
+        match self.column(PhaseReading::Paper)?.phases.phases[0].form {
             Form::Cosine { frequency, .. } => Some(frequency),
             _ => None,
         }
@@ -374,17 +377,17 @@ impl Impact {
             format!("the swing is one cosine, by the law of order {order}")
         };
         let [swing, speed, contact] = match column.reading {
-            Reading::Paper => [
+            PhaseReading::Paper => [
                 one_cosine(),
                 "the contact begins with the speed of that cosine".to_owned(),
                 "a line stands for the force of the barrier, met with that speed".to_owned(),
             ],
-            Reading::Energy => [
+            PhaseReading::Energy => [
                 one_cosine(),
                 "the contact begins with the speed from the energy".to_owned(),
                 "a line stands for the force of the barrier".to_owned(),
             ],
-            Reading::Derived => [
+            PhaseReading::Derived => [
                 "the derived swing is not closer at this order".to_owned(),
                 "the contact begins with the speed of the derived swing".to_owned(),
                 match (self.setup.loss, self.setup.contact_law) {

@@ -3,11 +3,11 @@
 //! In: a [`Setup`] without a method. Out: the paper's two readings, then each method of `derive` at
 //! its lowest order that passes, else at its best, and the reason of each that has no row.
 
-use super::closed_form::{Reading, paper};
+use super::closed_form::{PhaseReading, paper};
 use super::error::ImpactError;
 use super::judge::TrueImpact;
 use super::phases::ThreePhases;
-use super::setup::{Letters, Setup};
+use super::setup::{ImpactSymbols, Setup};
 use super::trial::{Trial, worst};
 use crate::solution::{Degrees, Method};
 use crate::verify::Verdict;
@@ -21,7 +21,7 @@ pub struct ImpactComparison {
     /// The equation as it is judged.
     pub equation: String,
     /// Its letters.
-    pub letters: Letters,
+    pub letters: ImpactSymbols,
     /// The equilibrium of the swing, in the unit of x.
     pub equilibrium: f64,
     /// Where the cycle starts: the release, or the turning point of a motion released inside the
@@ -42,7 +42,7 @@ pub struct ImpactComparison {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImpactMethod {
     /// A reading of the paper.
-    Reading(Reading),
+    Reading(PhaseReading),
     /// A method of `derive`.
     Derived(Method),
 }
@@ -59,7 +59,7 @@ impl ImpactMethod {
     /// The name in tables.
     pub fn title(self) -> &'static str {
         match self {
-            Self::Reading(Reading::Paper) => "Paper",
+            Self::Reading(PhaseReading::Paper) => "Paper",
             Self::Reading(_) => "Paper, speed by energy",
             Self::Derived(method) => method.title(),
         }
@@ -138,11 +138,13 @@ pub fn compare(setup: Setup) -> Result<ImpactComparison, ImpactError> {
         match paper(trial) {
             Ok((law, phases)) => {
                 for (reading, phases) in phases {
-                    let order = (reading == Reading::Paper).then_some(law.order);
+                    let order = (reading == PhaseReading::Paper).then_some(law.order);
                     rows.push(row(ImpactMethod::Reading(reading), order, None, phases));
                 }
             }
-            Err(error) => refused.push((ImpactMethod::Reading(Reading::Paper), error.to_string())),
+            Err(error) => {
+                refused.push((ImpactMethod::Reading(PhaseReading::Paper), error.to_string()))
+            }
         }
         for method in Method::ALL {
             let name = ImpactMethod::Derived(method);

@@ -101,7 +101,7 @@ pub use baseline::{BASELINE_DURATIONS, Baseline, Geometry, baseline};
 pub use case::{Case, CaseError};
 pub use chain::{ChainError, chain};
 pub use closed_form::{
-    Impact, ImpactQuantity, JudgedPhases, Reading, SampledMotion, Shortcoming, solve,
+    Impact, ImpactQuantity, JudgedPhases, PhaseReading, SampledMotion, Shortcoming, solve,
 };
 pub use collision::{Collision, CollisionError};
 pub use compare::{ImpactComparison, ImpactMethod, ImpactRow, compare};
@@ -124,13 +124,13 @@ pub use model::{
 };
 pub use parameter::{Parameter, UnknownParameter};
 pub use phases::{ContactSpeed, FittedLine, ImpactProblem, MotionPhase, ThreePhases, three_phases};
-pub use setup::{ContactLoss, Letters, Setup};
+pub use setup::{ContactLoss, ImpactSymbols, Setup};
 pub use si::{SiImpact, YieldCheck};
 pub use simulate::{SimulationError, known_until, simulate, simulate_many};
 pub use simulation::{
     ClosedForm, ContactDeviation, ContactRecord, EnergyBook, EnergyPoint, Integrator,
     MotionDifference, NoRest, PathSegment, REST_FRACTION, Regime, Rest, Settings, Simulation,
-    SimulationPath, SimulationStop, Turn,
+    SimulationPath, SimulationStop, TurningPoint,
 };
 pub use trial::Attempt;
 pub use units::{Elastic, FIRST_YIELD, Modulus, Units};

@@ -128,7 +128,7 @@ impl Default for Setup {
 
 /// The letters of an equation with a barrier.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Letters {
+pub struct ImpactSymbols {
     /// The coordinate.
     pub coordinate: Symbol,
     /// The place of the barrier: `xc`.
@@ -150,7 +150,7 @@ pub(super) struct ImpactEquations {
     /// x_e in numbers; zero where there is none.
     pub(super) equilibrium: f64,
     /// The letters.
-    pub(super) letters: Letters,
+    pub(super) letters: ImpactSymbols,
     /// The equation that is judged.
     pub(super) judged: String,
     /// The stiffness that multiplies the elastic force: gamma, or one where the force was given
@@ -256,11 +256,11 @@ impl ImpactEquations {
 
 impl Setup {
     /// The letters, none of which the swing or the force of the barrier uses for something else.
-    fn letters(&self, swing: &Oscillator) -> Letters {
+    fn letters(&self, swing: &Oscillator) -> ImpactSymbols {
         let x = swing.coordinate;
         let mut taken = swing.parameters.clone();
         taken.extend(self.force.iter().flat_map(|force| force.symbols()));
-        Letters {
+        ImpactSymbols {
             coordinate: x,
             barrier: fresh(&format!("{x}c"), &swing.parameters),
             stiffness: fresh("gamma", &swing.parameters),
@@ -273,7 +273,7 @@ impl Setup {
     fn judged(
         &self,
         swing: &Oscillator,
-        letters: Letters,
+        letters: ImpactSymbols,
         written: &Expr,
     ) -> Result<Equation, ExprError> {
         let x = letters.coordinate;

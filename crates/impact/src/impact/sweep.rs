@@ -40,7 +40,7 @@ const CHUNK: usize = 96;
 #[error(
     "the sweep has {counts} = {product} motions, more than {MOST_MOTIONS} motions: lower the counts"
 )]
-pub struct TooMany {
+pub struct TooManyRuns {
     /// The numbers of values, `2000 * 2000`.
     pub counts: String,
     /// Their product.
@@ -60,7 +60,7 @@ pub struct TooMany {
 /// assert_eq!(grid_size(&axes), Ok(6000));
 /// # Ok::<(), lindstedt::impact::sweep::AxisError>(())
 /// ```
-pub fn grid_size(axes: &[Axis]) -> Result<usize, TooMany> {
+pub fn grid_size(axes: &[Axis]) -> Result<usize, TooManyRuns> {
     let counts = axes.iter().map(|axis| axis.values().len());
     let product = counts.clone().try_fold(1_usize, usize::checked_mul);
     product.filter(|product| *product <= MOST_MOTIONS).ok_or_else(|| {
@@ -72,7 +72,7 @@ pub fn grid_size(axes: &[Axis]) -> Result<usize, TooMany> {
                 axes.iter().map(|axis| axis.values().len() as f64).product::<f64>()
             ),
         };
-        TooMany { counts: counts.join(" * "), product }
+        TooManyRuns { counts: counts.join(" * "), product }
     })
 }
 

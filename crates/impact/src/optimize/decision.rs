@@ -21,14 +21,14 @@ use super::objective::Objective;
 use super::question::OptimizationProblem;
 use crate::genetic::{Space, generator};
 use crate::impact::Parameter;
-use crate::numeric::ode::root::{Until, bisect};
+use crate::numeric::ode::root::{BisectionStop, bisect};
 
 /// A design this much worse, in parts, is as good for an engineer.
 pub const WITHIN: f64 = 0.01;
 
 /// What a variable has to do with the best design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
+pub enum VariableRole {
     /// Its whole range is as good.
     Flat,
     /// It lies at its lower limit.
@@ -41,7 +41,7 @@ pub enum Role {
     Trade,
 }
 
-impl Role {
+impl VariableRole {
     /// Every role.
     pub const ALL: [Self; 5] = [Self::Flat, Self::Lower, Self::Upper, Self::Limit, Self::Trade];
 
@@ -74,7 +74,7 @@ pub struct Sensitivity {
     /// constraints aside; nothing where the motion does not rest somewhere.
     pub range: Option<[f64; 2]>,
     /// What follows.
-    pub role: Role,
+    pub role: VariableRole,
 }
 
 /// What the unit of the rest time does.
@@ -293,7 +293,7 @@ impl Probe<'_> {
                         |value| good(value).is_some(),
                         last,
                         next,
-                        Until::Halvings(halvings),
+                        BisectionStop::Halvings(halvings),
                     );
                     return inside;
                 }
@@ -329,11 +329,11 @@ impl Probe<'_> {
                 })
         };
         let role = match range {
-            Some([least, greatest]) if greatest <= least * (1.0 + WITHIN) => Role::Flat,
-            _ if is_end(0) => Role::Lower,
-            _ if is_end(1) => Role::Upper,
-            _ if is_forbidden(0) || is_forbidden(1) => Role::Limit,
-            _ => Role::Trade,
+            Some([least, greatest]) if greatest <= least * (1.0 + WITHIN) => VariableRole::Flat,
+            _ if is_end(0) => VariableRole::Lower,
+            _ if is_end(1) => VariableRole::Upper,
+            _ if is_forbidden(0) || is_forbidden(1) => VariableRole::Limit,
+            _ => VariableRole::Trade,
         };
         Sensitivity {
             parameter,

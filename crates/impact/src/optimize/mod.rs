@@ -33,10 +33,12 @@ mod objective;
 mod question;
 mod study;
 
-pub use decision::{Decision, Ends, Role, Sensitivity, WITHIN};
+pub use decision::{Decision, Ends, Sensitivity, VariableRole, WITHIN};
 pub use design::{EvaluatedDesign, HardestContact, Route};
 pub use objective::Objective;
 pub use question::{DEFAULT_BOX, Limit, OptimizationProblem, OptimizeError, Variable};
 #[cfg(feature = "parallel")]
 pub use study::optimize_on;
-pub use study::{Finalist, Found, Rival, SearchRun, Spread, Study, StudyObserver, optimize};
+pub use study::{
+    BaselineSearch, Finalist, FiveNumberSummary, Found, SearchRun, Study, StudyObserver, optimize,
+};

@@ -72,7 +72,7 @@ impl Default for StudyObserver<'_> {
 
 /// How a number is spread over the runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spread {
+pub struct FiveNumberSummary {
     /// The least.
     pub best: f64,
     /// A quarter is no more than this.
@@ -85,7 +85,7 @@ pub struct Spread {
     pub worst: f64,
 }
 
-impl Spread {
+impl FiveNumberSummary {
     /// Of these values; nothing where there is none. Quartiles lie between values in proportion.
     pub fn of(values: &[f64]) -> Option<Self> {
         let mut values = values.to_vec();
@@ -109,7 +109,7 @@ impl Spread {
 
 /// Another search with as many evaluations, run as often.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Rival {
+pub struct BaselineSearch {
     /// `random search`
     pub name: &'static str,
     /// Evaluations of one run.
@@ -120,12 +120,12 @@ pub struct Rival {
     pub curve: Vec<f64>,
 }
 
-impl Rival {
+impl BaselineSearch {
     /// How the values are spread over the runs that found one.
-    pub fn spread(&self) -> Option<Spread> {
+    pub fn spread(&self) -> Option<FiveNumberSummary> {
         let found: Vec<f64> =
             self.values.iter().copied().filter(|value| value.is_finite()).collect();
-        Spread::of(&found)
+        FiveNumberSummary::of(&found)
     }
 }
 
@@ -163,7 +163,7 @@ pub struct Study {
     /// What decides the best design; with several objectives nothing.
     pub decision: Option<Decision>,
     /// Other searches with the same number of evaluations; none with several objectives.
-    pub rivals: Vec<Rival>,
+    pub rivals: Vec<BaselineSearch>,
 }
 
 /// The best of so many runs are judged again.
@@ -530,7 +530,7 @@ fn rivals(
     space: &Space,
     runs: &[SearchRun],
     watch: &StudyObserver,
-) -> Vec<Rival> {
+) -> Vec<BaselineSearch> {
     let GeneticOptions { population, constraint_tolerance, generations, .. } = question.genetic;
     let total: usize = runs.iter().map(|run| run.evaluations).sum();
     let evaluations = (total as f64 / runs.len() as f64).round() as usize;
@@ -546,12 +546,12 @@ fn rivals(
         let length = runs.iter().map(|run| run.curve.len()).min().unwrap_or(0);
         let median = |index: usize| {
             let values: Vec<f64> = runs.iter().map(|run| run.curve[index]).collect();
-            Spread::of(&values).map_or(f64::INFINITY, |spread| spread.median)
+            FiveNumberSummary::of(&values).map_or(f64::INFINITY, |spread| spread.median)
         };
         let value = |run: &GeneticRun| {
             run.best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value())
         };
-        Some(Rival {
+        Some(BaselineSearch {
             name,
             evaluations: runs.first().map_or(0, |run| run.evaluations),
             values: runs.iter().map(value).collect(),
@@ -601,8 +601,8 @@ impl Study {
     }
 
     /// How they are spread.
-    pub fn spread(&self) -> Option<Spread> {
-        Spread::of(&self.values())
+    pub fn spread(&self) -> Option<FiveNumberSummary> {
+        FiveNumberSummary::of(&self.values())
     }
 
     /// All designs that the genetic algorithm followed, and those that were integrated for want of
@@ -619,7 +619,7 @@ impl Study {
         let at = |index: usize| {
             let last = |run: &SearchRun| run.curve.get(index).or(run.curve.last()).copied();
             let values: Vec<f64> = self.runs.iter().filter_map(last).collect();
-            Spread::of(&values).map(|spread| spread.median)
+            FiveNumberSummary::of(&values).map(|spread| spread.median)
         };
         (0..length).filter_map(at).collect()
     }
@@ -643,7 +643,7 @@ mod tests {
 
     #[test]
     fn quartiles_lie_between_the_values() {
-        let spread = Spread::of(&[4.0, 1.0, 2.0, 3.0, 8.0]).unwrap();
+        let spread = FiveNumberSummary::of(&[4.0, 1.0, 2.0, 3.0, 8.0]).unwrap();
         let numbers = [
             spread.best,
             spread.lower_quartile,
@@ -652,7 +652,10 @@ mod tests {
             spread.worst,
         ];
         assert_eq!(numbers, [1.0, 2.0, 3.0, 4.0, 8.0]);
-        assert_eq!(Spread::of(&[1.0, 2.0]).map(|spread| spread.lower_quartile), Some(1.25));
-        assert_eq!(Spread::of(&[]), None);
+        assert_eq!(
+            FiveNumberSummary::of(&[1.0, 2.0]).map(|spread| spread.lower_quartile),
+            Some(1.25)
+        );
+        assert_eq!(FiveNumberSummary::of(&[]), None);
     }
 }

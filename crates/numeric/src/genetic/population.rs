@@ -278,7 +278,7 @@ pub fn search(
     go_on: &mut dyn FnMut(usize) -> bool,
 ) -> GeneticRun {
     let mut nursery =
-        Nursery { space, options, evaluate: &mut evaluate, best: None, evaluations: 0 };
+        PopulationBuilder { space, options, evaluate: &mut evaluate, best: None, evaluations: 0 };
     let mut population = Vec::with_capacity(options.population);
     for _ in 0..options.population {
         population.push(nursery.born(options.coding.draw(space, generator)));
@@ -338,7 +338,7 @@ pub fn search(
 }
 
 /// Where genes become members of the population; remembers the best that breaks no constraint.
-struct Nursery<'a, E> {
+struct PopulationBuilder<'a, E> {
     space: &'a Space,
     options: &'a GeneticOptions,
     evaluate: &'a mut E,
@@ -346,7 +346,7 @@ struct Nursery<'a, E> {
     evaluations: usize,
 }
 
-impl<E: FnMut(&[f64]) -> Evaluation> Nursery<'_, E> {
+impl<E: FnMut(&[f64]) -> Evaluation> PopulationBuilder<'_, E> {
     fn born(&mut self, genes: Vec<f64>) -> Member {
         let point = self.options.coding.point(&genes, self.space);
         let evaluation = (self.evaluate)(&point);

@@ -19,7 +19,7 @@ use super::features::Features;
 use crate::exact::Rational;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
-use crate::numeric::ode::root::{Until, bisect};
+use crate::numeric::ode::root::{BisectionStop, bisect};
 use crate::series::taylor::taylor;
 use crate::symbol::Symbol;
 
@@ -301,7 +301,7 @@ impl CentredForce {
             let inside = samples.iter().copied().filter(|&y| defined(y));
             let nearest = inside.min_by(|a, b| (a - outside).abs().total_cmp(&(b - outside).abs()));
             let [_, outside] =
-                bisect(defined, nearest.unwrap_or(outside), outside, Until::Halvings(60));
+                bisect(defined, nearest.unwrap_or(outside), outside, BisectionStop::Halvings(60));
             return Some(self.equilibrium() + outside);
         }
         if self.of.features().is_empty() {

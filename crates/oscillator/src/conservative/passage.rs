@@ -14,7 +14,7 @@
 //! ends at the next one.
 
 use super::force::CentredForce;
-use super::well::{Rim, end_of_force, rise, sign_change};
+use super::well::{WellBoundary, end_of_force, rise, sign_change};
 use crate::numeric::ode::root::find_root;
 
 /// One range of amplitudes; of a motion of either sign the size counts.
@@ -27,7 +27,7 @@ pub struct Passage {
     pub over: f64,
     /// The boundary at which the range ends, at its distance from the equilibrium; `None` if it
     /// does not end.
-    pub to: Option<Rim>,
+    pub to: Option<WellBoundary>,
 }
 
 /// Number of decades searched on either side of the unit, and the growth of the steps.
@@ -65,7 +65,7 @@ pub fn passages(force: &CentredForce, unit: f64) -> Vec<Passage> {
             break;
         }
         let rim = match place {
-            Some(place) => Some(Rim { place, separatrix: true }),
+            Some(place) => Some(WellBoundary { place, separatrix: true }),
             None => side.end,
         };
         let begin = if number == 0 { 0.0 } else { side.places[number - 1] };
@@ -132,7 +132,7 @@ struct Side {
     /// Whether it pulls back up to each of these, and beyond the last.
     pulls: Vec<bool>,
     /// The end of the force, or a pole.
-    end: Option<Rim>,
+    end: Option<WellBoundary>,
     /// Whether all of it was looked at.
     is_whole: bool,
 }
@@ -141,7 +141,7 @@ impl Side {
     fn new(force: &CentredForce, unit: f64) -> Option<Self> {
         let equilibrium = force.equilibrium();
         let value = |distance: f64| force.at(distance);
-        let ends_at = |place: f64| Rim { place, separatrix: false };
+        let ends_at = |place: f64| WellBoundary { place, separatrix: false };
         let first = unit * 10.0_f64.powi(-DECADES);
         let farthest = unit * 10.0_f64.powi(DECADES);
         // The last place at which the force has a value other than zero.
@@ -220,7 +220,7 @@ mod tests {
         let force =
             CentredForce::new(&force, "x".into(), &Expr::zero(), &BTreeMap::new(), unit).unwrap();
         let found = passages(&force, unit).into_iter();
-        let end = |rim: Rim| rim.place;
+        let end = |rim: WellBoundary| rim.place;
         found.map(|range| (range.from, range.over, range.to.map(end))).collect()
     }
 

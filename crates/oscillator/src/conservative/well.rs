@@ -18,12 +18,12 @@ use super::force::CentredForce;
 use super::passage::{passage_at, passages, pushes_away};
 use crate::decimal::significant;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth};
-use crate::numeric::ode::root::{Until, bisect, find_root};
+use crate::numeric::ode::root::{BisectionStop, bisect, find_root};
 use crate::symbol::Symbol;
 
 /// The boundary of a well on one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rim {
+pub struct WellBoundary {
     /// The unstable equilibrium, or the place where the force ends; infinite where the force dies
     /// away so fast that its potential levels off.
     pub place: f64,
@@ -34,14 +34,14 @@ pub struct Rim {
 /// A rim and the potential there above the bottom of the well.
 #[derive(Clone, Copy)]
 struct Wall {
-    rim: Rim,
+    rim: WellBoundary,
     /// `None` where it is infinite, or not asked for yet.
     height: Option<f64>,
 }
 
 impl Wall {
     fn new(place: f64, separatrix: bool) -> Self {
-        Self { rim: Rim { place, separatrix }, height: None }
+        Self { rim: WellBoundary { place, separatrix }, height: None }
     }
 }
 
@@ -52,7 +52,7 @@ pub struct WellEnd {
     /// The amplitude, measured from the equilibrium.
     pub amplitude: f64,
     /// The boundary of the well beyond this amplitude.
-    pub rim: Rim,
+    pub rim: WellBoundary,
 }
 
 /// The well in which a conservative motion swings; an end is `None` where none was found.
@@ -63,13 +63,13 @@ pub struct Well {
     /// On the positive side.
     pub high: Option<WellEnd>,
     /// The smallest amplitude of motions over several wells; `None` if the motions begin at rest.
-    pub inner: Option<Inner>,
+    pub inner: Option<SmallestCrossWellAmplitude>,
 }
 
 /// The least amplitude of motions through an unstable equilibrium, over the wells on both sides of
 /// it: smaller ones stay in one well.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Inner {
+pub struct SmallestCrossWellAmplitude {
     /// Its size, which all motions exceed.
     pub amplitude: f64,
     /// The unstable equilibrium that the motion of this amplitude does not pass.
@@ -174,13 +174,16 @@ impl Well {
         let end = |side: f64| {
             passage.to.map(|rim| WellEnd {
                 amplitude: side * rim.place,
-                rim: Rim { place: equilibrium + side * rim.place, ..rim },
+                rim: WellBoundary { place: equilibrium + side * rim.place, ..rim },
             })
         };
         Some(Self {
             low: end(-1.0),
             high: end(1.0),
-            inner: Some(Inner { amplitude: passage.from, place: equilibrium + passage.over }),
+            inner: Some(SmallestCrossWellAmplitude {
+                amplitude: passage.from,
+                place: equilibrium + passage.over,
+            }),
         })
     }
 
@@ -196,7 +199,7 @@ impl Well {
 
     /// Describes the range of periodic motions in words; `name` is the letter of the amplitude.
     pub fn in_words(&self, name: Symbol, coordinate: Symbol) -> String {
-        let because = |rim: Rim| {
+        let because = |rim: WellBoundary| {
             let place = significant(rim.place, 6);
             match rim.separatrix {
                 true => {
@@ -449,7 +452,8 @@ fn levels_off(force: &CentredForce, side: f64, unit: f64, weakened: f64) -> Opti
 /// The distance at which a force ends, from outside, between one at which it has a value and one at
 /// which it has none.
 pub(super) fn end_of_force(pull: &dyn Fn(f64) -> f64, inside: f64, outside: f64) -> f64 {
-    let [_, end] = bisect(|size| pull(size).is_finite(), inside, outside, Until::Halvings(60));
+    let [_, end] =
+        bisect(|size| pull(size).is_finite(), inside, outside, BisectionStop::Halvings(60));
     end
 }
 

@@ -20,14 +20,14 @@ use crate::exact::Rational;
 use crate::exact::rational::to_f64;
 use crate::exact::real_roots::sign_changing_part;
 use crate::expr::{CompiledFunction, Expr, Function, Node};
-use crate::oscillator::{Equilibria, OscillatorError, Others};
+use crate::oscillator::{Equilibria, FurtherEquilibria, OscillatorError};
 use crate::series::taylor::taylor;
 use crate::solution::note::{CrossWell, CrossWellEnd, Position};
 use crate::symbol::Symbol;
 
 /// The strength of the attraction by a force that is infinite at `x = 0`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Pull {
+pub(super) enum SingularAttraction {
     /// So weakly that its potential is finite there, as `sgn(x)/abs(x)^(1/3)`: the motion swings
     /// through.
     Passed,
@@ -115,7 +115,7 @@ impl<'a> PositionForce<'a> {
 
     /// Classifies a force that is infinite at zero and attracts from both sides; `None` for any
     /// other force.
-    pub(super) fn pull_without_bound(&self) -> Option<Pull> {
+    pub(super) fn pull_without_bound(&self) -> Option<SingularAttraction> {
         /// Two exponents that differ by less than this are the same: over seventy decades rounding
         /// makes one of 1e-17.
         const SAME: f64 = 1e-12;
@@ -132,10 +132,12 @@ impl<'a> PositionForce<'a> {
         };
         let (right, left) = (falls(1.0)?, falls(-1.0)?);
         Some(match f64::min(right, left) {
-            least if least > SAME => Pull::Passed,
-            least if least < -SAME => Pull::Endless,
-            _ if is_odd(self.force, self.coordinate).unwrap_or(false) => Pull::Inverse,
-            _ => Pull::UnevenInverse,
+            least if least > SAME => SingularAttraction::Passed,
+            least if least < -SAME => SingularAttraction::Endless,
+            _ if is_odd(self.force, self.coordinate).unwrap_or(false) => {
+                SingularAttraction::Inverse
+            }
+            _ => SingularAttraction::UnevenInverse,
         })
     }
 
@@ -431,8 +433,8 @@ impl<'a> PositionForce<'a> {
             _ => Position::Number(position),
         };
         let others = match period {
-            Some(period) => Some(Others::Every(period)),
-            None => more.then_some(Others::FartherOut),
+            Some(period) => Some(FurtherEquilibria::Every(period)),
+            None => more.then_some(FurtherEquilibria::FartherOut),
         };
         Equilibria {
             others: others.filter(|_| !positions.is_empty()),

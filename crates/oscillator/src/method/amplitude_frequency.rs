@@ -27,7 +27,7 @@ use crate::conservative::force::CentredForce;
 use crate::derivation::DerivationLine;
 use crate::expr::Expr;
 use crate::oscillator::Oscillator;
-use crate::solution::{Method, Note, Solution, note::Instant};
+use crate::solution::{Method, Note, Solution, note::CollocationInstant};
 use crate::symbol::fresh_stem;
 use crate::symbol::letters::{AMPLITUDE, FREQUENCY};
 
@@ -70,7 +70,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         DerivationLine::equal([omega?.into(), mixed.into(), law.into()])
             .because("weighted by the residuals"),
     ];
-    solution.validity.push(Note::Collocated(Instant::CosineSquared));
+    solution.validity.push(Note::Collocated(CollocationInstant::CosineSquared));
     Ok(solution)
 }
 

@@ -57,7 +57,7 @@ use crate::expr::{Expr, ExprError};
 use crate::oscillator::{Oscillator, OscillatorError, PerturbedForce, Term};
 use crate::series::FourierSeries;
 use crate::solution::modulation::Release;
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{
     AmplitudeConvention, ClosedForm, Definition, Law, LeadingCycle, Method, Modulation, Note,
     Solution,
@@ -270,7 +270,7 @@ fn small_in_words(small: &SmallTerms, order: u32) -> (Symbol, Vec<Symbol>, Note)
     let mut names = small.letters().iter().copied();
     let first = names.next().unwrap_or(small.delta());
     let small_with: Vec<Symbol> = names.collect();
-    let cut = Note::Cut(Cut::Truncated {
+    let cut = Note::Cut(Truncation::Truncated {
         small: std::iter::once(first).chain(small_with.iter().copied()).collect(),
         order,
         marks: small.letters().is_empty().then(Expr::one),

@@ -55,7 +55,7 @@ pub struct BalanceSolution {
 
 /// Why a balance has no solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Lost {
+pub enum BalanceError {
     /// The branch never reaches the amplitude.
     #[error(
         "no balance: followed from rest, the motion of these harmonics ends at {} = {}; another order may reach farther",
@@ -140,15 +140,15 @@ pub fn balance(
     harmonics: &[usize],
     amplitude: f64,
     known: &Continuation,
-) -> Result<BalanceSolution, Lost> {
+) -> Result<BalanceSolution, BalanceError> {
     /// Narrow places on the way, such as the waves of a sine: a few harmonics say nothing of more,
     /// and take long.
     const MOST_CUTS: usize = 600;
     let mut problem =
-        BalanceProblem::new(force, degree, harmonics, amplitude).ok_or(Lost::NoStart)?;
+        BalanceProblem::new(force, degree, harmonics, amplitude).ok_or(BalanceError::NoStart)?;
     problem.fineness = known.fineness.get().max(1);
     if problem.cuts.len() > MOST_CUTS {
-        return Err(Lost::Unsettled);
+        return Err(BalanceError::Unsettled);
     }
     let (mut state, rest_ends_at) = problem.followed(known)?;
     if degree.is_none() {
@@ -164,7 +164,7 @@ pub fn balance(
     if degree.is_none()
         && let Some(place) = force.gap(low, high)
     {
-        return Err(Lost::Gap { place });
+        return Err(BalanceError::Gap { place });
     }
     Ok(BalanceSolution {
         frequency_squared: state.frequency_squared(),
@@ -548,7 +548,10 @@ impl<'a> BalanceProblem<'a> {
 
     /// The branch from rest to the amplitude, or that from large amplitudes and where the one from
     /// rest ends. Where it is the sums that are too coarse to go on, they are made finer.
-    fn followed(&mut self, known: &Continuation) -> Result<(BalanceUnknowns, Option<f64>), Lost> {
+    fn followed(
+        &mut self,
+        known: &Continuation,
+    ) -> Result<(BalanceUnknowns, Option<f64>), BalanceError> {
         if pushes_away(self.force, self.amplitude) {
             return self.over_the_hilltop(known).map(|found| (found, None));
         }
@@ -558,7 +561,7 @@ impl<'a> BalanceProblem<'a> {
         const AHEAD: f64 = 0.01;
         let mut before = f64::NEG_INFINITY;
         let end = loop {
-            let end = match self.up_from_rest(known).ok_or(Lost::NoStart)? {
+            let end = match self.up_from_rest(known).ok_or(BalanceError::NoStart)? {
                 Ok(found) => return Ok((found, None)),
                 Err(end) => end,
             };
@@ -579,12 +582,12 @@ impl<'a> BalanceProblem<'a> {
         let outer = self.at_large();
         let outer = outer.and_then(|large| self.followed_from(large, -1.0, &mut Vec::new()).ok());
         let found = outer.filter(fits).map(|found| (found, Some(amplitude)));
-        found.ok_or(Lost::Ends { amplitude })
+        found.ok_or(BalanceError::Ends { amplitude })
     }
 
     /// The branch of motions through an unstable equilibrium, over the wells on both sides, from
     /// what is known of it or from an amplitude nearby at which one term is nearly all.
-    fn over_the_hilltop(&self, known: &Continuation) -> Result<BalanceUnknowns, Lost> {
+    fn over_the_hilltop(&self, known: &Continuation) -> Result<BalanceUnknowns, BalanceError> {
         /// Starts that are tried, and how far they are from the amplitude: to four times, where
         /// there is no end before.
         const STARTS: usize = 6;
@@ -593,7 +596,7 @@ impl<'a> BalanceProblem<'a> {
         /// long.
         const MOST_IN_VAIN: usize = 12;
         let passages = passages(self.force, self.amplitude);
-        let range = passage_at(&passages, self.amplitude).ok_or(Lost::NoStart)?;
+        let range = passage_at(&passages, self.amplitude).ok_or(BalanceError::NoStart)?;
         let end = range.to.map_or(f64::INFINITY, |rim| rim.place);
         let goal = self.amplitude.abs().ln();
         let reached = |start: BalanceUnknowns| {
@@ -608,7 +611,7 @@ impl<'a> BalanceProblem<'a> {
             return Ok(found);
         }
         if known.in_vain.get() >= MOST_IN_VAIN {
-            return Err(Lost::NoStart);
+            return Err(BalanceError::NoStart);
         }
         let sizes = (-3 * PER_DOUBLING..=2 * PER_DOUBLING)
             .map(|k| 2.0_f64.powf(f64::from(k) / f64::from(PER_DOUBLING)));
@@ -622,7 +625,7 @@ impl<'a> BalanceProblem<'a> {
             corrections + 0.1 * (state.logarithm() - goal).abs()
         };
         alone.sort_by(|one, other| merit(one).total_cmp(&merit(other)));
-        let mut lost = Lost::NoStart;
+        let mut lost = BalanceError::NoStart;
         let starts = alone.iter().filter_map(|(alone, _)| self.near(alone, 0.5));
         for start in starts.take(STARTS) {
             let from = start.logarithm().exp() * self.side();
@@ -630,9 +633,9 @@ impl<'a> BalanceProblem<'a> {
             known.in_vain.set(known.in_vain.get() + usize::from(found.is_err()));
             match found {
                 Ok(found) => return Ok(found),
-                Err(last) if lost == Lost::NoStart => {
+                Err(last) if lost == BalanceError::NoStart => {
                     let amplitude = last.logarithm().exp() * self.side();
-                    lost = Lost::EndsOnTheWay { from, amplitude };
+                    lost = BalanceError::EndsOnTheWay { from, amplitude };
                 }
                 Err(_) => {}
             }
@@ -777,7 +780,7 @@ impl<'a> BalanceProblem<'a> {
     }
 
     /// Repeats the solution with finer and finer sums until two of them agree.
-    fn refined(&self, mut state: BalanceUnknowns) -> Result<BalanceUnknowns, Lost> {
+    fn refined(&self, mut state: BalanceUnknowns) -> Result<BalanceUnknowns, BalanceError> {
         const MOST_POINTS: usize = 1 << 17;
         /// Largest change from one refinement to the next that is accepted: the digits that a user
         /// sees.
@@ -793,7 +796,7 @@ impl<'a> BalanceProblem<'a> {
         }
         match change < ENOUGH {
             true => Ok(state),
-            false => Err(Lost::Unsettled),
+            false => Err(BalanceError::Unsettled),
         }
     }
 }

@@ -23,7 +23,7 @@ use super::multiple_scales::scaling::{
 use super::{Options, Reason, Refusal, solve_by};
 use crate::equilibrium::centred;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, SmallParameter};
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{AmplitudeConvention, Law, Method, Note, Solution};
 use crate::symbol::Symbol;
 
@@ -171,7 +171,8 @@ fn averaged(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refu
 /// Whether the terms from which a limit cycle begins are not the leading ones: no letter makes all
 /// but the linear terms small, and quadratic terms that damp act on the amplitude as cubic ones do.
 fn begins_wrongly(solution: &Solution, oscillator: &Oscillator) -> bool {
-    let marked = |note: &Note| matches!(note, Note::Cut(Cut::Truncated { marks: Some(_), .. }));
+    let marked =
+        |note: &Note| matches!(note, Note::Cut(Truncation::Truncated { marks: Some(_), .. }));
     solution.limit_cycle.is_some()
         && solution.validity.iter().any(marked)
         && about_equilibrium(oscillator, |centred, _| has_quadratic_damping(centred))

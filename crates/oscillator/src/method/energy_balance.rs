@@ -28,7 +28,7 @@ use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::exact::{Integer, Rational};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::oscillator::Oscillator;
-use crate::solution::{Law, Method, Note, Solution, note::Instant};
+use crate::solution::{Law, Method, Note, Solution, note::CollocationInstant};
 use crate::symbol::fresh;
 use crate::symbol::letters::AMPLITUDE;
 
@@ -85,7 +85,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             solution.law = Law::Quadrature(vec![DerivationLine::equation(squared, integral)]);
         }
     }
-    solution.validity.push(Note::Collocated(Instant::EighthOfPeriod));
+    solution.validity.push(Note::Collocated(CollocationInstant::EighthOfPeriod));
     Ok(solution)
 }
 

@@ -30,7 +30,7 @@ use crate::exact::Rational;
 use crate::expr::Expr;
 use crate::oscillator::{Oscillator, Parts, SmallParameter};
 use crate::series::taylor::taylor;
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{AmplitudeConvention, Method, Note, Solution};
 use crate::symbol::Symbol;
 
@@ -73,7 +73,7 @@ pub(super) fn solve(
     solution.small_parameter = small;
     set_law(&mut solution, &law)?;
     solution.validity =
-        vec![Note::Cut(Cut::FirstOrderOnly { small }), Note::MotionAtLeadingOrder { small }];
+        vec![Note::Cut(Truncation::FirstOrderOnly { small }), Note::MotionAtLeadingOrder { small }];
     note_even_part(&mut solution, oscillator, &force)?;
     solution.derivation = vec![
         DerivationLine::equation(oscillator.coordinate, solution.displacement.clone())

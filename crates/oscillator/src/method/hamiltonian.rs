@@ -31,7 +31,7 @@ use crate::conservative::projection::cosine_coefficient;
 use crate::derivation::{DerivationFormula, DerivationLine};
 use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
-use crate::solution::{Method, Note, Solution, note::FirstStep};
+use crate::solution::{Method, Note, Solution, note::ExactFirstStep};
 use crate::symbol::fresh;
 use crate::symbol::letters::AMPLITUDE;
 
@@ -89,7 +89,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         DerivationLine::equal([Expr::symbol("omega").integer_power(2)?.into(), slope, law.into()])
             .because("the mean Hamiltonian is stationary"),
     ];
-    solution.validity.push(Note::FirstStep(FirstStep::TermOfForce));
+    solution.validity.push(Note::FirstStep(ExactFirstStep::TermOfForce));
     note_even_part(&mut solution, oscillator, &force)?;
     Ok(solution)
 }

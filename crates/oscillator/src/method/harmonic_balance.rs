@@ -36,7 +36,7 @@ use crate::exact::{POLYNOMIALS, Polynomial, Polynomials, Rational};
 use crate::expr::{Expr, Function};
 use crate::oscillator::Oscillator;
 use crate::series::FourierSeries;
-use crate::solution::{AlgebraicSystem, Law, Method, Note, Solution, note::FirstStep};
+use crate::solution::{AlgebraicSystem, Law, Method, Note, Solution, note::ExactFirstStep};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
 const METHOD: Method = Method::HarmonicBalance;
@@ -69,7 +69,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             vec![DerivationLine::equation(oscillator.coordinate, solution.displacement.clone())];
         let law = integral_law(oscillator, &force, &solution)?;
         solution.derivation.extend(law);
-        solution.validity.push(Note::FirstStep(FirstStep::Harmonic));
+        solution.validity.push(Note::FirstStep(ExactFirstStep::Harmonic));
         return Ok(solution);
     }
     let harmonics = harmonics(order, odd);

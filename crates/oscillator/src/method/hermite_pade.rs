@@ -118,7 +118,7 @@ fn of_degrees(
             "its root cannot be followed: zeros of its discriminant are too close to each other",
         )
     })?;
-    let in_words = Words::new(&resummed.names(), variable);
+    let in_words = ApproximantNames::new(&resummed.names(), variable);
     let (value, definitions) = in_words.law(&quadratic, &root)?;
     if !definitions[..3].iter().all(|own| has_values(&own.meaning)) {
         return Err(refused(TOO_LONG));
@@ -290,7 +290,7 @@ impl Quadratic {
 }
 
 /// The names with which it is written.
-struct Words {
+struct ApproximantNames {
     /// Of P, Q, R, and of the sign.
     letters: [Symbol; 4],
     /// Of their coefficients, the variable and the series.
@@ -299,7 +299,7 @@ struct Words {
     variable: Monomial,
 }
 
-impl Words {
+impl ApproximantNames {
     fn new(taken: &[Symbol], variable: Monomial) -> Self {
         Self {
             letters: ["P", "Q", "R", "S"].map(|letter| fresh(letter, taken)),
@@ -576,7 +576,7 @@ mod tests {
             assert_eq!(followed.crossings.len(), 1, "{gap}");
             assert!((to_f64(&followed.crossings[0]) - 1.0).abs() < 1e-6, "{gap}");
             assert!(followed.ends.is_empty(), "{gap}");
-            let words = Words::new(&[], Monomial::power_of("s".into(), 1));
+            let words = ApproximantNames::new(&[], Monomial::power_of("s".into(), 1));
             let (value, definitions) = words.law(&quadratic, &followed).expect("a law");
             let value = |s: f64| {
                 let known = [(Symbol::new("s"), s)].into();
@@ -602,7 +602,7 @@ mod tests {
             let followed = quadratic.followed(&[1, -1]).expect("a way");
             let ends: Vec<(f64, RootEnd)> =
                 followed.ends.iter().map(|(place, end, _)| (to_f64(place), *end)).collect();
-            let words = Words::new(&[], Monomial::power_of("s".into(), 1));
+            let words = ApproximantNames::new(&[], Monomial::power_of("s".into(), 1));
             let (value, definitions) = words.law(&quadratic, &followed).expect("a law");
             let value = move |s: f64| {
                 let known = [(Symbol::new("s"), s)].into();

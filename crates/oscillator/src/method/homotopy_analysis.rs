@@ -39,7 +39,7 @@ use crate::oscillator::{Oscillator, PerturbedForce, SmallParameter};
 use crate::series::FourierSeries;
 use crate::series::convolution::{self, Convolutions};
 use crate::series::fourier::{linear_combination, sum_of_products};
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{Definition, Law, Method, Note, Solution};
 use crate::symbol::{Symbol, fresh, fresh_stem};
 
@@ -100,7 +100,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     solution.law = Law::Frequency(sum(&series.frequency).constant_term());
     solution.displacement = sum(&series.displacement);
     let embedding = fresh("q", &solution.names());
-    solution.validity.push(Note::Cut(Cut::Corrections { order, embedding }));
+    solution.validity.push(Note::Cut(Truncation::Corrections { order, embedding }));
     if polynomial.is_none() {
         solution.validity.push(Note::TaylorPolynomial { degree });
     }

@@ -40,7 +40,7 @@ use crate::exact::{POLYNOMIALS, Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::interrupt::Supervision;
 use crate::oscillator::{Oscillator, SmallParameter, Term};
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{AmplitudeConvention, ClosedForm, Law, Method, Note, Root, Solution};
 use crate::symbol::{Symbol, fresh};
 
@@ -118,7 +118,7 @@ fn with_stiffness(
         Ok(SmallParameter::Parameter(name)) => name,
         _ => amplitude,
     };
-    let mut validity = vec![Note::Cut(Cut::TruncatedRelation {
+    let mut validity = vec![Note::Cut(Truncation::TruncatedRelation {
         bookkeeping: fresh("p", &oscillator.names()),
         order,
         linear_frequency: Some(oscillator.linear_frequency_name(&force.linear)),

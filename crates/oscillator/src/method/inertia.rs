@@ -51,7 +51,7 @@ use crate::series::FourierSeries;
 use crate::series::taylor::taylor;
 use crate::solution::{
     AlgebraicSystem, AmplitudeConvention, Law, Method, Note, Solution,
-    note::{ExactBy, FirstStep, Instant},
+    note::{CollocationInstant, ExactBy, ExactFirstStep},
 };
 use crate::symbol::letters::{AMPLITUDE, FREQUENCY};
 use crate::symbol::{Symbol, fresh};
@@ -385,7 +385,7 @@ fn energy_balance(
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
-    solution.validity.push(Note::Collocated(Instant::EighthOfPeriod));
+    solution.validity.push(Note::Collocated(CollocationInstant::EighthOfPeriod));
     Ok(solution)
 }
 
@@ -464,7 +464,7 @@ fn hamiltonian(
             solution.law = Law::Quadrature(solution.derivation.clone());
         }
     }
-    solution.validity.push(Note::FirstStep(FirstStep::TermOfEquation));
+    solution.validity.push(Note::FirstStep(ExactFirstStep::TermOfEquation));
     Ok(solution)
 }
 

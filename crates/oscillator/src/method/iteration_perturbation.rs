@@ -35,7 +35,7 @@ use crate::expr::Expr;
 use crate::oscillator::{Oscillator, OscillatorError};
 use crate::series::FourierSeries;
 use crate::series::fourier::linear_combination;
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{Definition, Law, Method, Note, Solution};
 use crate::symbol::letters::FREQUENCY;
 use crate::symbol::{Symbol, fresh_stem};
@@ -70,7 +70,10 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         Some(coefficients) => {
             let start = cosine(Polynomial::symbol(Symbol::new("A")));
             let mut lines = vec![DerivationLine::equation(numbered(oscillator, 0), start.clone())];
-            lines.extend(Pass::new(oscillator, &coefficients, &start)?.lines(oscillator, 1, None)?);
+            lines.extend(
+                IterationPass::new(oscillator, &coefficients, &start)?
+                    .lines(oscillator, 1, None)?,
+            );
             lines
         }
         None => frozen_function(oscillator, &force)?,
@@ -149,7 +152,7 @@ fn iterated(
     let mut secular = Polynomial::zero();
     let mut lines = vec![DerivationLine::equation(numbered(oscillator, 0), motion.clone())];
     for number in 1..=passes {
-        let pass = Pass::new(oscillator, &coefficients, &motion)?;
+        let pass = IterationPass::new(oscillator, &coefficients, &motion)?;
         let (particular, resonance) = pass.right_side.solve_oscillator();
         secular = resonance.cosine.constant_term();
         let particular =
@@ -167,7 +170,7 @@ fn iterated(
     };
     solution.displacement = motion;
     solution.derivation = lines;
-    solution.validity.push(Note::Cut(Cut::Passes {
+    solution.validity.push(Note::Cut(Truncation::Passes {
         passes,
         linear_frequency: Some(solution.linear_frequency_name()),
     }));
@@ -175,12 +178,12 @@ fn iterated(
 }
 
 /// One pass: the factor frozen at the motion before, and what it leaves on the right side.
-struct Pass {
+struct IterationPass {
     factor: FourierSeries<Polynomials>,
     right_side: FourierSeries<Polynomials>,
 }
 
-impl Pass {
+impl IterationPass {
     fn new(
         oscillator: &Oscillator,
         coefficients: &[Polynomial],

@@ -45,7 +45,7 @@ use crate::expr::Expr;
 use crate::interrupt::Supervision;
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
 use crate::series::taylor::TaylorError;
-use crate::solution::note::{Cut, ExactBy};
+use crate::solution::note::{ExactBy, Truncation};
 use crate::solution::{AmplitudeConvention, Definition, Law, LimitCycle, Method, Note, Solution};
 use crate::symbol::letters::FIRST_HARMONIC;
 use crate::symbol::{Symbol, fresh};
@@ -366,7 +366,7 @@ impl Perturbation {
     /// The note of the truncation, in the small parameter of the answer.
     fn cut(&self, small: Symbol) -> Note {
         let together = self.small_with.iter().copied();
-        Note::Cut(Cut::Truncated {
+        Note::Cut(Truncation::Truncated {
             small: std::iter::once(small).chain(together).collect(),
             order: self.order,
             marks: self.bookkeeping.as_ref().map(|definition| definition.meaning.clone()),

@@ -137,7 +137,7 @@ pub enum NoNumbers {
     },
     /// The branch of a balance does not reach the amplitude asked for.
     #[error(transparent)]
-    Balance(#[from] balance::Lost),
+    Balance(#[from] balance::BalanceError),
     /// The terms of the formula cancel.
     #[error(
         "no digits: the terms of the formula cancel at this amplitude, and rounding moves {}^2 by {} of itself",

@@ -28,7 +28,7 @@ use crate::numeric::ode::quadrature::{QuadratureError, integrate_piecewise};
 use crate::oscillator::{Oscillator, SmallParameter};
 use crate::series::FourierSeries;
 use crate::solution::{
-    AmplitudeConvention, ClosedForm, Law, Method, Note, Solution, note::FirstStep,
+    AmplitudeConvention, ClosedForm, Law, Method, Note, Solution, note::ExactFirstStep,
 };
 use crate::symbol::Symbol;
 
@@ -169,7 +169,7 @@ pub(super) fn solve_by_integral(
             solution.law = Law::Quadrature(vec![DerivationLine::equation(squared, integral)]);
         }
     }
-    solution.validity.push(Note::FirstStep(FirstStep::TermOfForce));
+    solution.validity.push(Note::FirstStep(ExactFirstStep::TermOfForce));
     note_even_part(&mut solution, oscillator, &force)?;
     solution.derivation =
         vec![DerivationLine::equation(oscillator.coordinate, solution.displacement.clone())];

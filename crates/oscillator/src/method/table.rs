@@ -27,7 +27,7 @@ pub struct MethodEntry {
     /// parameter.
     pub takes: &'static [Choice],
     /// The representation of the force that the method uses.
-    pub sees: Sees,
+    pub sees: ForceRepresentation,
     /// About an equilibrium without a closed form: the degree of the Taylor polynomial with rounded
     /// coefficients that stands for the force, zero for a polynomial force kept whole; `None` where
     /// the force is taken as it is. The flag says whether the force is a polynomial.
@@ -62,7 +62,7 @@ const OF_THE_SHARED_INTEGRAL: MethodEntry = MethodEntry {
     method: Method::Hamiltonian,
     solve: hamiltonian::solve,
     takes: &[Choice::Order],
-    sees: Sees::Force,
+    sees: ForceRepresentation::Force,
     rounded_degree: |_, _| None,
     definition: Some(one_term::first_projection_over_amplitude),
     signed: false,
@@ -106,7 +106,7 @@ impl Choice {
 
 /// The representation of the force that a method uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sees {
+pub enum ForceRepresentation {
     /// Its derivatives at the equilibrium.
     Derivatives,
     /// Its derivatives, as a Taylor polynomial of a chosen degree.
@@ -121,7 +121,7 @@ pub const METHODS: [MethodEntry; Method::ALL.len()] = [
         method: Method::LindstedtPoincare,
         solve: lindstedt_poincare::solve,
         takes: &[Choice::Order, Choice::Cycle, Choice::FrequencyAlone],
-        sees: Sees::Derivatives,
+        sees: ForceRepresentation::Derivatives,
         rounded_degree: |options, _| Some(options.order.unwrap_or(4) + 1),
         signed: true,
         ..OF_THE_SHARED_INTEGRAL
@@ -130,7 +130,7 @@ pub const METHODS: [MethodEntry; Method::ALL.len()] = [
         method: Method::HomotopyPerturbation,
         solve: homotopy_perturbation::solve,
         takes: &[Choice::Order, Choice::Taylor],
-        sees: Sees::TaylorPolynomial,
+        sees: ForceRepresentation::TaylorPolynomial,
         rounded_degree: |options, _| {
             Some(options.taylor.unwrap_or(beyond_twice(options.order.unwrap_or(2))))
         },
@@ -142,7 +142,7 @@ pub const METHODS: [MethodEntry; Method::ALL.len()] = [
         method: Method::HomotopyAnalysis,
         solve: homotopy_analysis::solve,
         takes: &[Choice::Order, Choice::Taylor, Choice::Hbar],
-        sees: Sees::TaylorPolynomial,
+        sees: ForceRepresentation::TaylorPolynomial,
         rounded_degree: |options, _| {
             Some(options.taylor.unwrap_or(beyond_twice(options.order.unwrap_or(2))))
         },
@@ -216,7 +216,7 @@ pub const METHODS: [MethodEntry; Method::ALL.len()] = [
         method: Method::Pade,
         solve: pade::solve,
         takes: &[Choice::Degrees, Choice::Cycle],
-        sees: Sees::Derivatives,
+        sees: ForceRepresentation::Derivatives,
         rounded_degree: |options, _| {
             let sum = options.degrees.map_or(3, Degrees::sum);
             Some(beyond_twice(sum))
@@ -229,7 +229,7 @@ pub const METHODS: [MethodEntry; Method::ALL.len()] = [
         method: Method::HermitePade,
         solve: hermite_pade::solve,
         takes: &[Choice::Degrees, Choice::Cycle],
-        sees: Sees::Derivatives,
+        sees: ForceRepresentation::Derivatives,
         rounded_degree: |options, _| {
             Some(beyond_twice(options.degrees.map_or(3, Degrees::sum).saturating_add(1)))
         },
@@ -241,7 +241,7 @@ pub const METHODS: [MethodEntry; Method::ALL.len()] = [
         method: Method::MultipleScales,
         solve: multiple_scales::solve,
         takes: &[Choice::Order, Choice::Cycle, Choice::Resonance],
-        sees: Sees::Derivatives,
+        sees: ForceRepresentation::Derivatives,
         rounded_degree: |options, _| Some(options.order.unwrap_or(4) + 1),
         definition: None,
         signed: true,
@@ -272,7 +272,10 @@ impl MethodEntry {
 
     /// Whether it sees of the force only its derivatives at the equilibrium.
     pub fn expands(&self) -> bool {
-        matches!(self.sees, Sees::Derivatives | Sees::TaylorPolynomial)
+        matches!(
+            self.sees,
+            ForceRepresentation::Derivatives | ForceRepresentation::TaylorPolynomial
+        )
     }
 }
 

@@ -197,7 +197,7 @@ impl Law {
 
 /// A law in one of the forms in which reports show it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Shown<'a> {
+pub enum DisplayedLaw<'a> {
     /// omega^2 is this polynomial.
     Squared(&'a Polynomial),
     /// omega is this polynomial.
@@ -215,15 +215,15 @@ pub enum Shown<'a> {
 impl Law {
     /// All forms of it that a report of one answer shows, in their order. A relation that is solved
     /// by a polynomial is left out.
-    pub fn shown(&self) -> Vec<Shown<'_>> {
+    pub fn shown(&self) -> Vec<DisplayedLaw<'_>> {
         let shown = self.in_one_line();
         let beside = match self {
-            Self::Series { frequency, .. } => frequency.as_ref().map(Shown::Frequency),
+            Self::Series { frequency, .. } => frequency.as_ref().map(DisplayedLaw::Frequency),
             _ => None,
         };
         let before = match self {
             Self::Relation { relation, root: Some(Root::Closed(_)) } => {
-                Some(Shown::Relation(relation))
+                Some(DisplayedLaw::Relation(relation))
             }
             _ => None,
         };
@@ -231,24 +231,24 @@ impl Law {
     }
 
     /// The form that stands for it where there is room for one.
-    pub fn in_one_line(&self) -> Shown<'_> {
+    pub fn in_one_line(&self) -> DisplayedLaw<'_> {
         match self {
             Self::Series { squared, .. }
             | Self::Relation { root: Some(Root::Polynomial(squared)), .. } => {
-                Shown::Squared(squared)
+                DisplayedLaw::Squared(squared)
             }
-            Self::Frequency(frequency) => Shown::Frequency(frequency),
+            Self::Frequency(frequency) => DisplayedLaw::Frequency(frequency),
             Self::Closed(form) | Self::Relation { root: Some(Root::Closed(form)), .. } => {
-                Shown::Closed(form)
+                DisplayedLaw::Closed(form)
             }
-            Self::Relation { relation, root: None } => Shown::Relation(relation),
-            Self::Quadrature(lines) => Shown::Quadrature(lines),
-            Self::System(system) => Shown::System(system),
+            Self::Relation { relation, root: None } => DisplayedLaw::Relation(relation),
+            Self::Quadrature(lines) => DisplayedLaw::Quadrature(lines),
+            Self::System(system) => DisplayedLaw::System(system),
         }
     }
 }
 
-impl Shown<'_> {
+impl DisplayedLaw<'_> {
     /// The symbols of a formula, those of its integrals included; of a system of equations none.
     pub fn symbols(&self) -> BTreeSet<Symbol> {
         match self {

@@ -17,9 +17,9 @@ use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY};
 #[non_exhaustive]
 pub enum Note {
     /// A motion of one term, or a balance of one harmonic: exact for what is linear.
-    FirstStep(FirstStep),
+    FirstStep(ExactFirstStep),
     /// A one-term motion whose equation is met at one instant.
-    Collocated(Instant),
+    Collocated(CollocationInstant),
     /// A letter that the answer writes otherwise than usual, since the equation has the usual one
     /// for something of its own.
     OtherLetter {
@@ -43,7 +43,7 @@ pub enum Note {
     /// The part of the force that a motion of one term leaves out.
     EvenPartLeftOut(Expr),
     /// The truncation of the expansion.
-    Cut(Cut),
+    Cut(Truncation),
     /// The motion is left at its leading term.
     MotionAtLeadingOrder {
         /// The small parameter.
@@ -248,7 +248,7 @@ pub enum Note {
 
 /// The truncation of an expansion.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Cut {
+pub enum Truncation {
     /// After a power of what is small.
     Truncated {
         /// The small parameters, counted together.
@@ -292,7 +292,7 @@ pub enum Cut {
 
 /// The equations for which a first step is exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FirstStep {
+pub enum ExactFirstStep {
     /// One term in a force.
     TermOfForce,
     /// One term in an equation whose inertia depends on the position.
@@ -303,7 +303,7 @@ pub enum FirstStep {
 
 /// The instant at which a motion of one term satisfies its equation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Instant {
+pub enum CollocationInstant {
     /// At an eighth of the period.
     EighthOfPeriod,
     /// The square of the cosine is three quarters.
@@ -467,7 +467,8 @@ impl Note {
     /// that continues the first order.
     pub(crate) fn take_root_of_first_order(&mut self) {
         if let Self::Cut(
-            Cut::TruncatedRelation { linear_frequency, .. } | Cut::Passes { linear_frequency, .. },
+            Truncation::TruncatedRelation { linear_frequency, .. }
+            | Truncation::Passes { linear_frequency, .. },
         ) = self
         {
             *linear_frequency = None;
@@ -735,7 +736,7 @@ fn driven(
     )
 }
 
-impl fmt::Display for Instant {
+impl fmt::Display for CollocationInstant {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let at = match self {
             Self::EighthOfPeriod => "an eighth of the period",
@@ -787,7 +788,7 @@ fn corner_sides(formatter: &mut fmt::Formatter<'_>, sides: &[CornerSide]) -> fmt
     write!(formatter, "near rest {}", sides.join(", "))
 }
 
-impl fmt::Display for Cut {
+impl fmt::Display for Truncation {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Truncated { small, order, marks } => {
@@ -866,7 +867,7 @@ fn root(formatter: &mut fmt::Formatter<'_>, linear_frequency: Option<Symbol>) ->
     }
 }
 
-impl fmt::Display for FirstStep {
+impl fmt::Display for ExactFirstStep {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (terms, linear) = match self {
             Self::TermOfForce => ("one term", "force"),

@@ -16,7 +16,7 @@ use std::borrow::Cow;
 use num_integer::Integer as _;
 use num_traits::{One, Signed, Zero};
 
-use crate::exact::ring::{Doubles, Indivisible, Ring};
+use crate::exact::ring::{Doubles, NotInvertible, Ring};
 use crate::exact::{Integer, Polynomial, Polynomials, Rational};
 
 /// A finite Fourier series. Equal functions are equal values in lowest terms, which every operation
@@ -122,7 +122,7 @@ impl<R: Ring> FourierSeries<R> {
     ///
     /// # Errors
     /// The divisors that remain, as one product.
-    pub fn divided(&self) -> Result<(), Indivisible> {
+    pub fn divided(&self) -> Result<(), NotInvertible> {
         match R::FIELD && !self.denominator.is_one() {
             true => self.ring.divide(std::iter::empty(), &self.denominator),
             false => Ok(()),

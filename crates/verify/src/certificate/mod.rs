@@ -39,7 +39,7 @@ pub use damped::{
 pub use formula::{Enclosure, Errors, JudgedFormula, LettersOfLaw, SizeBounds};
 pub use impact::{ImpactEnclosure, NotEnclosed, enclose_impact};
 pub use radii_polynomial::{NotProved, Proof};
-pub use validity::{Beyond, Validity, validity};
+pub use validity::{RangeEnd, Validity, validity};
 
 use crate::decimal::{rounded_down, rounded_up};
 use crate::exact::ball::{Ball, Balls};

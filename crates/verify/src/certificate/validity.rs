@@ -46,12 +46,12 @@ pub struct Validity {
     /// The intervals, each proved.
     pub intervals: usize,
     /// Why the range ends.
-    pub beyond: Beyond,
+    pub beyond: RangeEnd,
 }
 
 /// Why a range ends where it does.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Beyond {
+pub enum RangeEnd {
     /// It was not asked for more.
     Asked,
     /// At this amplitude the formula is off by more, proved.
@@ -120,10 +120,10 @@ pub fn validity(
     supervision.progress.begin(finest as usize);
     let beyond = loop {
         if position == finest {
-            break Beyond::Asked;
+            break RangeEnd::Asked;
         }
         if supervision.interrupt.is_requested() {
-            break Beyond::Stopped;
+            break RangeEnd::Stopped;
         }
         let next = (position + width).min(finest);
         match family.largest_error(&place(position), &place(next)) {
@@ -227,7 +227,7 @@ impl<'a> Family<'a> {
 
     /// The first of these amplitudes at which the formula is proved to be off by more, or what is
     /// known of the very first.
-    fn beyond(&self, amplitudes: &[Rational; 5], tolerance: f64) -> Beyond {
+    fn beyond(&self, amplitudes: &[Rational; 5], tolerance: f64) -> RangeEnd {
         let is_further = |amplitude: &Rational| {
             let (_, certified) =
                 certify(self.oscillator, self.solution, &with(&self.at, self.solution, amplitude))?;
@@ -235,9 +235,9 @@ impl<'a> Family<'a> {
         };
         let further = amplitudes.iter().find(|amplitude| is_further(amplitude) == Ok(true));
         match (further, is_further(&amplitudes[0])) {
-            (Some(further), _) => Beyond::Further(further.clone()),
-            (None, Ok(_)) => Beyond::Open(amplitudes[0].clone()),
-            (None, Err(reason)) => Beyond::Unproved(amplitudes[0].clone(), reason),
+            (Some(further), _) => RangeEnd::Further(further.clone()),
+            (None, Ok(_)) => RangeEnd::Open(amplitudes[0].clone()),
+            (None, Err(reason)) => RangeEnd::Unproved(amplitudes[0].clone(), reason),
         }
     }
 }

@@ -17,7 +17,7 @@
 use super::balance::HarmonicBalance;
 use super::continuation::BranchNode;
 use super::stability::Floquet;
-use crate::numeric::ode::root::{Until, find_root, try_bisect};
+use crate::numeric::ode::root::{BisectionStop, find_root, try_bisect};
 
 /// What happens at a point of a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -161,7 +161,7 @@ fn halved(mut value: impl FnMut(f64) -> f64) -> f64 {
         there if there.is_nan() => Err(part),
         there => Ok(there * before > 0.0),
     };
-    match try_bisect(is_before, 0.0, 1.0, Until::Halvings(30)) {
+    match try_bisect(is_before, 0.0, 1.0, BisectionStop::Halvings(30)) {
         Ok([low, high]) => 0.5 * (low + high),
         Err(part) => part,
     }

@@ -4,7 +4,7 @@
 use nalgebra::DVector;
 
 use super::balance::{HarmonicBalance, later};
-use super::continuation::{self, BranchEnd, BranchNode, BranchPath, Walk};
+use super::continuation::{self, BranchEnd, BranchNode, BranchPath, ContinuationSettings};
 use super::seeds::Seed;
 use super::{MOST_BRANCHES, PreparedRequest};
 
@@ -195,7 +195,7 @@ impl PreparedRequest<'_> {
     pub(super) fn follow_crossing(
         &self,
         balance: &HarmonicBalance,
-        walk: &Walk,
+        walk: &ContinuationSettings,
         at: &BranchNode,
         paths: &mut Vec<BranchPath>,
     ) -> bool {

@@ -99,7 +99,7 @@ pub struct BranchPath {
 
 /// Range, step size and limits of the continuation of a branch.
 #[derive(Clone, Copy, Debug)]
-pub struct Walk {
+pub struct ContinuationSettings {
     /// The range of the parameter.
     pub range: [f64; 2],
     /// The longest step, in parts of the range and of the size of the motion.
@@ -209,7 +209,7 @@ pub(super) fn largest<const ENDS: usize>(
     sizes.get(place).copied().unwrap_or(0.0)
 }
 
-impl Walk {
+impl ContinuationSettings {
     fn weights(&self, balance: &HarmonicBalance, coefficients: &DVector<f64>) -> Weights {
         /// The smallest size that counts, in parts of the largest.
         const SMALLEST: f64 = 0.1;

@@ -109,7 +109,7 @@ pub enum ResponseError {
         /// The parameter.
         parameter: Symbol,
         /// The progress of the search until then.
-        tried: Tried,
+        tried: SeedSearch,
     },
     /// The equation has no such values.
     #[error(transparent)]
@@ -124,7 +124,7 @@ pub enum ResponseError {
 
 /// The search for motions to begin with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tried {
+pub struct SeedSearch {
     /// Values of the parameter.
     pub values: usize,
     /// Starts of simulations at them.

@@ -16,7 +16,7 @@ use crate::numeric::ode::newton::{Progress, newton};
 
 /// A place of rest that small motions neither leave nor approach.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Birth {
+pub struct HopfPoint {
     /// The place of rest.
     pub position: f64,
     /// The parameter.
@@ -32,7 +32,7 @@ pub fn near(
     position: f64,
     parameter: f64,
     [size, range]: [f64; 2],
-) -> Option<Birth> {
+) -> Option<HopfPoint> {
     const MOST: usize = 30;
     const SETTLED: f64 = 1e-12;
     /// The finite differences of the damping, of the lengths.
@@ -58,7 +58,7 @@ pub fn near(
     };
     let place = newton(Vector2::new(position, parameter), MOST, equations, judged)?;
     let stiffness = driven.slopes(&at(place))[0];
-    (stiffness > 0.0).then_some(Birth {
+    (stiffness > 0.0).then_some(HopfPoint {
         position: place[0],
         parameter: place[1],
         frequency: stiffness.sqrt(),

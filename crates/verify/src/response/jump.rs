@@ -36,14 +36,14 @@ pub struct VariationalMotion {
 
 /// The condition at which the integration stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Until {
+pub enum StopCondition {
     /// For so long.
     Time(f64),
     /// To where its velocity falls through zero, a largest displacement, or for so long.
     Turn(f64),
 }
 
-impl Until {
+impl StopCondition {
     fn time(self) -> f64 {
         match self {
             Self::Time(time) | Self::Turn(time) => time,
@@ -109,7 +109,7 @@ pub fn follow(
     driven: &Driven,
     start: [f64; 2],
     parameter: f64,
-    until: Until,
+    until: StopCondition,
     options: &IntegrationOptions,
 ) -> Option<VariationalMotion> {
     /// Legs of a period: beyond them it does not come to an end.
@@ -211,15 +211,15 @@ impl<'a> NonsmoothRun<'a> {
     }
 
     /// The event at which it turns back, behind all others but before them at the same time.
-    fn turn(until: Until) -> Option<Event<'a, Point<VariationalState>>> {
+    fn turn(until: StopCondition) -> Option<Event<'a, Point<VariationalState>>> {
         let falls = |point: &Point<VariationalState>| point.y[1];
-        matches!(until, Until::Turn(_)).then(|| Event::new(falls, Action::Stop).falling())
+        matches!(until, StopCondition::Turn(_)).then(|| Event::new(falls, Action::Stop).falling())
     }
 
     /// A leg between the jumps.
     fn leg(
         &self,
-        until: Until,
+        until: StopCondition,
         options: &IntegrationOptions,
     ) -> Option<Trajectory<Point<VariationalState>>> {
         let rates = |t: f64, y: &VariationalState, rates: &mut VariationalState| {
@@ -244,7 +244,7 @@ impl<'a> NonsmoothRun<'a> {
     fn sliding_leg(
         &self,
         surface: usize,
-        until: Until,
+        until: StopCondition,
         options: &IntegrationOptions,
     ) -> Option<Trajectory<Point<VariationalState>>> {
         let [by_position, _] = self.driven.normal(surface);
@@ -277,14 +277,14 @@ impl<'a> NonsmoothRun<'a> {
     }
 
     /// Goes on behind an event; whether the motion has turned back there.
-    fn met(&mut self, event: usize, until: Until) -> bool {
+    fn met(&mut self, event: usize, until: StopCondition) -> bool {
         let index = match (until, event) {
-            (Until::Turn(_), 0) => {
+            (StopCondition::Turn(_), 0) => {
                 self.y[1] = 0.0;
                 return true;
             }
-            (Until::Turn(_), _) => event - 1,
-            (Until::Time(_), _) => event,
+            (StopCondition::Turn(_), _) => event - 1,
+            (StopCondition::Time(_), _) => event,
         };
         if let Some(side) = index.checked_sub(self.sides.len()) {
             // Pulled off the jump on which it stuck.

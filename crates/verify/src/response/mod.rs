@@ -59,14 +59,14 @@ use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::Verdict;
 
-pub use error::{ResponseError, Tried};
+pub use error::{ResponseError, SeedSearch};
 pub use ripple::Ripple;
 
 use backbone::{BackbonePoint, backbones};
 use balance::HarmonicBalance;
 use bifurcation::BifurcationKind;
 use branches::largest;
-use continuation::{BranchEnd, BranchNode, BranchPath, Walk};
+use continuation::{BranchEnd, BranchNode, BranchPath, ContinuationSettings};
 use driven::Driven;
 use judgement::PointJudgement;
 use ripple::LocatedBifurcation;
@@ -415,7 +415,7 @@ struct PreparedRequest<'a> {
     oscillator: Oscillator,
     driven: Driven,
     /// Progress of the search for initial motions.
-    tried: Cell<Tried>,
+    tried: Cell<SeedSearch>,
 }
 
 impl<'a> PreparedRequest<'a> {
@@ -488,8 +488,8 @@ impl<'a> PreparedRequest<'a> {
         SimulationBudget { evaluations: MOST_EVALUATIONS, interrupt: self.question.interrupt }
     }
 
-    fn walk(&self, seeds: &[Seed], size: f64) -> Walk {
-        Walk {
+    fn walk(&self, seeds: &[Seed], size: f64) -> ContinuationSettings {
+        ContinuationSettings {
             // Corners and slow motions have long series of harmonics, and ends of their own.
             resolved: self.question.harmonics.is_none()
                 && self.driven.smooth
@@ -723,7 +723,7 @@ impl<'a> PreparedRequest<'a> {
     /// Counts what the search for motions to begin with has done.
     fn count(&self, [values, starts]: [usize; 2], motions: usize) {
         let before = self.tried.get();
-        self.tried.set(Tried {
+        self.tried.set(SeedSearch {
             values: before.values + values,
             starts: before.starts + starts,
             motions,

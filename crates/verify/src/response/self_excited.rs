@@ -10,7 +10,7 @@
 //! chapter V).
 
 use super::backbone::places_of_rest;
-use super::jump::{Until, follow};
+use super::jump::{StopCondition, follow};
 use super::seeds::Seed;
 use super::{PreparedRequest, ResponseError};
 use crate::numeric::ode::root::find_root;
@@ -112,7 +112,7 @@ impl PreparedRequest<'_> {
                 &self.driven,
                 [place + radius, 0.0],
                 parameter,
-                Until::Turn(LONGEST),
+                StopCondition::Turn(LONGEST),
                 &options,
             )?;
             let away = course.end[0] - place;

@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, Matrix2};
 use num_complex::Complex;
 
 use super::driven::Driven;
-use super::jump::{Until, VariationalMotion, follow};
+use super::jump::{StopCondition, VariationalMotion, follow};
 use crate::interrupt::Interrupt;
 use crate::numeric::ode::{IntegrationOptions, Point, Trajectory, integrate_first_order};
 use crate::numeric::periodic::{PeriodicOrbit, Shooting, eigenvalues_of_two};
@@ -128,7 +128,7 @@ pub fn periodic_motion(
     let (period, sizes) = (std::f64::consts::TAU / omega, [size, size * omega]);
     let follow = |start: [f64; 2], period: f64| {
         let options = options(start[0].abs().max(start[1].abs() / omega), TOLERANCE);
-        let course = follow(driven, start, parameter, Until::Time(period), &options)?;
+        let course = follow(driven, start, parameter, StopCondition::Time(period), &options)?;
         let [x, v, variations @ ..] = course.end;
         Some(([x, v], Matrix2::from_column_slice(&variations), course))
     };
@@ -304,7 +304,7 @@ pub fn settle(
                 driven,
                 begin,
                 parameter,
-                Until::Time(period),
+                StopCondition::Time(period),
                 &settings(size),
             )?),
             false => {

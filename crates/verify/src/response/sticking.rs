@@ -19,7 +19,7 @@ use nalgebra::{DVector, Matrix2, Matrix3, Vector3};
 use super::balance::HarmonicBalance;
 use super::branches::largest;
 use super::continuation::{BranchEnd, BranchNode, BranchPath};
-use super::jump::{Until, VariationalMotion, follow};
+use super::jump::{StopCondition, VariationalMotion, follow};
 use super::seeds::Seed;
 use super::stability::{
     Floquet, SAMPLES, TOLERANCE, TrueMotion, half_of_peak_to_peak, options, settled,
@@ -33,7 +33,7 @@ type ScaledPoint = Vector3<f64>;
 
 /// A periodic motion on a branch.
 #[derive(Clone, Debug)]
-struct Shot {
+struct ShootingOrbit {
     at: ScaledPoint,
     tangent: ScaledPoint,
     course: VariationalMotion,
@@ -74,7 +74,7 @@ impl<'a> PeriodMap<'a> {
         let options = options(self.sizes[0].max(start[0].abs()), TOLERANCE);
         if driven.self_excited {
             let mut course =
-                follow(driven, [start[0], 0.0], parameter, Until::Turn(LONGEST), &options)?;
+                follow(driven, [start[0], 0.0], parameter, StopCondition::Turn(LONGEST), &options)?;
             // A displacement along the trajectory is no other motion: the start counts by its
             // position alone, and the velocity at the end is zero.
             let [x, _, by_start, ..] = course.end;
@@ -85,7 +85,13 @@ impl<'a> PeriodMap<'a> {
         if omega.is_nan() || omega <= 0.0 {
             return None;
         }
-        follow(driven, start, parameter, Until::Time(std::f64::consts::TAU / omega), &options)
+        follow(
+            driven,
+            start,
+            parameter,
+            StopCondition::Time(std::f64::consts::TAU / omega),
+            &options,
+        )
     }
 
     /// dP/dp, by differences.
@@ -121,7 +127,7 @@ impl<'a> PeriodMap<'a> {
 
     /// Newton's method at right angles to a direction: the motion, its tangent turned as the
     /// direction.
-    fn corrected(&self, guess: &ScaledPoint, direction: &ScaledPoint) -> Option<Shot> {
+    fn corrected(&self, guess: &ScaledPoint, direction: &ScaledPoint) -> Option<ShootingOrbit> {
         const MOST: usize = 14;
         const SETTLED: f64 = 1e-9;
         let mut at = *guess;
@@ -143,7 +149,7 @@ impl<'a> PeriodMap<'a> {
                 let matrix = self.bordered(&course, by_parameter, direction);
                 let tangent = matrix.lu().solve(&Vector3::new(0.0, 0.0, 1.0))?;
                 let length = tangent.norm();
-                return (length > 0.0 && length.is_finite()).then(|| Shot {
+                return (length > 0.0 && length.is_finite()).then(|| ShootingOrbit {
                     at,
                     tangent: tangent / length,
                     course,
@@ -158,7 +164,7 @@ impl<'a> PeriodMap<'a> {
     }
 
     /// The motion at this parameter near a start, its tangent toward larger parameters.
-    fn at(&self, start: [f64; 2], parameter: f64) -> Option<Shot> {
+    fn at(&self, start: [f64; 2], parameter: f64) -> Option<ShootingOrbit> {
         self.corrected(&self.scaled(start, parameter), &Vector3::new(0.0, 0.0, 1.0))
     }
 
@@ -166,10 +172,10 @@ impl<'a> PeriodMap<'a> {
     /// no more. `met` says where motions of another branch are met.
     fn walk(
         &self,
-        first: Shot,
+        first: ShootingOrbit,
         met: &dyn Fn(&BranchNode) -> bool,
         balance: &HarmonicBalance,
-    ) -> (Vec<Shot>, BranchEnd) {
+    ) -> (Vec<ShootingOrbit>, BranchEnd) {
         const FIRST: f64 = 0.2;
         const SHORTEST: f64 = 1e-7;
         const MOST: usize = 500;
@@ -180,7 +186,7 @@ impl<'a> PeriodMap<'a> {
         const ALL: f64 = 1.0 - 1e-9;
         const NEARLY_ALL: f64 = 0.8;
         let bounds = self.asked.question.range.map(|bound| bound / self.sizes[2]);
-        let step = |shots: &[Shot], length: &mut f64| {
+        let step = |shots: &[ShootingOrbit], length: &mut f64| {
             let length = *length;
             if self.asked.question.interrupt.is_requested() {
                 return Ended(None, BranchEnd::Interrupted);
@@ -229,7 +235,7 @@ impl<'a> PeriodMap<'a> {
     }
 
     /// A point of a branch with the harmonics of the motion.
-    fn node(&self, balance: &HarmonicBalance, shot: &Shot) -> BranchNode {
+    fn node(&self, balance: &HarmonicBalance, shot: &ShootingOrbit) -> BranchNode {
         let (start, parameter) = self.start(&shot.at);
         let frequency = std::f64::consts::TAU / shot.course.duration();
         let self_excited = self.asked.driven.self_excited;
@@ -372,11 +378,11 @@ impl PreparedRequest<'_> {
         &self,
         balance: &HarmonicBalance,
         map: &PeriodMap,
-        shot: Shot,
+        shot: ShootingOrbit,
         paths: &[BranchPath],
     ) -> Option<BranchPath> {
         let met = |node: &BranchNode| self.is_met(balance, paths, node);
-        let turned = |shot: Shot| Shot { tangent: -shot.tangent, ..shot };
+        let turned = |shot: ShootingOrbit| ShootingOrbit { tangent: -shot.tangent, ..shot };
         let (behind, last) = map.walk(shot.clone(), &met, balance);
         let closing = (last == BranchEnd::Closed).then(|| shot.clone());
         let (before, first) = match last {

@@ -6,7 +6,7 @@
 
 use super::balance::HarmonicBalance;
 use super::continuation::{BranchNode, BranchPath};
-use super::jump::{Until, follow};
+use super::jump::{StopCondition, follow};
 use super::seeds::Seed;
 use super::stability::{TOLERANCE, half_of_peak_to_peak, options, periodic_motion};
 use super::{Elsewhere, LONGEST_STEP, PreparedRequest};
@@ -73,7 +73,7 @@ impl PreparedRequest<'_> {
             / self.question.periods as f64;
         let settings = options(size, TOLERANCE);
         let after = |halves: usize| {
-            let time = Until::Time(0.5 * halves as f64 * period);
+            let time = StopCondition::Time(0.5 * halves as f64 * period);
             let [x, v, ..] = follow(&self.driven, start, parameter, time, &settings)?.end;
             Some(if halves % 2 == 1 { [-x, -v] } else { [x, v] })
         };

@@ -17,7 +17,7 @@ use super::{Trajectory, TrajectoryError};
 use crate::expr::Expr;
 use crate::mechanics::Rates;
 use crate::symbol::Symbol;
-use crate::system::{Event, Occurrence};
+use crate::system::{Event, EventCrossing};
 
 /// The most states that one section holds.
 pub const MOST_CROSSINGS: f64 = 1e6;
@@ -129,10 +129,10 @@ impl Trajectory {
             None => vec![],
             Some(PoincareSection::Rising(expression)) => {
                 let met = self.pieces.iter().flat_map(|piece| {
-                    let own = |occurrence: &&Occurrence| occurrence.event < piece.recorded;
+                    let own = |occurrence: &&EventCrossing| occurrence.event < piece.recorded;
                     piece.path.occurrences().iter().filter(own)
                 });
-                let (crossed, turned): (Vec<&Occurrence>, Vec<&Occurrence>) =
+                let (crossed, turned): (Vec<&EventCrossing>, Vec<&EventCrossing>) =
                     met.partition(|occurrence| occurrence.event == 0);
                 touched =
                     self.turns_on(expression, turned.into_iter().map(|turn| turn.time).collect());

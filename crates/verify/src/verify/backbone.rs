@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use super::orbit::{Meant, Physics};
+use super::orbit::{NumericOscillator, OrbitTarget};
 use crate::conservative::is_odd;
 use crate::conservative::well::Well;
 use crate::numeric::ode::root::find_root;
@@ -16,7 +16,7 @@ pub(super) struct TrueBackbone<'a> {
     amplitude: Symbol,
     /// The values asked for.
     pub(super) numbers: &'a BTreeMap<Symbol, f64>,
-    physics: Option<Physics>,
+    physics: Option<NumericOscillator>,
     known: RefCell<BTreeMap<u64, Option<f64>>>,
     well: Option<Well>,
     /// Amplitudes at which the motion reaches a corner or a narrow place of the force.
@@ -41,14 +41,14 @@ impl<'a> TrueBackbone<'a> {
     /// Of the motions that are meant, in a well where it has an end.
     pub(super) fn new(
         oscillator: &'a Oscillator,
-        meant: &Meant,
+        meant: &OrbitTarget,
         numbers: &'a BTreeMap<Symbol, f64>,
         well: Option<Well>,
     ) -> Self {
         let mut backbone = Self {
             amplitude: meant.convention.symbol(),
             numbers,
-            physics: Physics::new(oscillator, meant, numbers).ok(),
+            physics: NumericOscillator::new(oscillator, meant, numbers).ok(),
             known: RefCell::default(),
             well,
             places: vec![],
@@ -57,7 +57,7 @@ impl<'a> TrueBackbone<'a> {
         let asked = backbone.asked().abs();
         let _ = backbone.frequency(asked);
         let work = backbone.physics.as_ref().map_or(0, |physics| physics.rest.evaluations());
-        let by_energy = backbone.physics.as_ref().is_none_or(Physics::by_energy);
+        let by_energy = backbone.physics.as_ref().is_none_or(NumericOscillator::by_energy);
         backbone.times = match by_energy {
             true => (MOST_FOR_ONE / work.max(1) as f64).clamp(1.0, FARTHEST),
             false => FARTHEST_BY_STEPS,
@@ -113,7 +113,7 @@ impl<'a> TrueBackbone<'a> {
         if let Some(known) = self.known.borrow().get(&size.to_bits()) {
             return *known;
         }
-        let affordable = |physics: &&Physics| physics.rest.evaluations() < MOST;
+        let affordable = |physics: &&NumericOscillator| physics.rest.evaluations() < MOST;
         let found = self
             .physics
             .as_ref()

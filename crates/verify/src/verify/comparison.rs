@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use super::backbone::TrueBackbone;
 use super::orbit::TrueMotion;
 use super::reach::reach;
-use super::validity::{self, Reach};
+use super::validity::{self, AmplitudeReach};
 use super::{
     Verdict, VerificationError, checked_numbers, formula_frequency_along, judge, largest_deviation,
     meant, numbers_or_reason,
@@ -22,7 +22,7 @@ use crate::method::{Options, Reason, Refusal, solve, with_resonance_at};
 use crate::oscillator::{Oscillator, OscillatorError, SmallParameter};
 use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
-use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY, Letters};
+use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY, ResultSymbols};
 use crate::values::Values;
 
 /// A method that applies.
@@ -44,7 +44,7 @@ pub struct ComparisonRow {
     pub max_deviation: Option<f64>,
     /// The range in which the frequency is within the tolerance, of the amplitude of the table's
     /// first row.
-    pub reach: Option<Reach>,
+    pub reach: Option<AmplitudeReach>,
     /// The verdict on the frequency; `None` where the true one is not known.
     pub verdict: Option<Verdict>,
 }
@@ -60,9 +60,9 @@ impl ComparisonRow {
 
 impl Comparison {
     /// The letters of its formulas: those of the first answer.
-    pub fn letters(&self) -> Letters {
+    pub fn letters(&self) -> ResultSymbols {
         let first = self.rows.first().map(|row| row.solution.letters());
-        first.unwrap_or_else(|| Letters::beside(&[], false))
+        first.unwrap_or_else(|| ResultSymbols::beside(&[], false))
     }
 }
 

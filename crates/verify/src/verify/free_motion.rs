@@ -11,7 +11,7 @@ use super::VerificationError;
 use crate::exact::rational::from_f64;
 use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::ode;
-use crate::numeric::ode::root::{Until, bisect, find_root};
+use crate::numeric::ode::root::{BisectionStop, bisect, find_root};
 use crate::oscillator::Oscillator;
 use crate::symbol::Symbol;
 use crate::trajectory::{Trajectory, TrajectoryRequest};
@@ -177,7 +177,7 @@ impl FreeMotion {
     /// When the velocity becomes zero and stays so, between a time at which it moves and one at
     /// which it is held.
     fn begin_of_rest(&self, moves: f64, held: f64) -> f64 {
-        let [_, begin] = bisect(|t| self.at(t).1 != 0.0, moves, held, Until::Width(0.0));
+        let [_, begin] = bisect(|t| self.at(t).1 != 0.0, moves, held, BisectionStop::Width(0.0));
         begin
     }
 

@@ -36,15 +36,15 @@ pub mod validity;
 pub use convergence::{Singularity, converges, converges_everywhere, nearest_singularity};
 pub use driven::JudgedState;
 pub use transient::Followed;
-pub use validity::{Range, Reach};
+pub use validity::{AmplitudeReach, Range};
 
-pub use crate::conservative::well::{Rim, Well, WellEnd};
+pub use crate::conservative::well::{Well, WellBoundary, WellEnd};
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use self::largest::largest_over;
-use self::orbit::{Meant, NearCycle, Physics, SAMPLES, TrueMotion, true_frequency};
+use self::orbit::{NearCycle, NumericOscillator, OrbitTarget, SAMPLES, TrueMotion, true_frequency};
 use crate::conservative::features::Features;
 use crate::conservative::force::CentredForce;
 use crate::decimal::{decimal, significant};
@@ -407,7 +407,7 @@ pub fn judge_to(
     let max_deviation = motion
         .as_ref()
         .and_then(|(frequency, motion)| largest_deviation(&truth, *frequency, motion));
-    let physics = Physics::new(oscillator, &meant, &numbers)?;
+    let physics = NumericOscillator::new(oscillator, &meant, &numbers)?;
     let residual = motion
         .as_ref()
         // The mean square of a force that is infinite at rest is nothing but what the samples
@@ -511,7 +511,7 @@ fn in_convention_of(
     if solution.parameters.iter().any(|name| !numbers.contains_key(name)) {
         return Ok(None);
     }
-    let meant = Meant { convention: given, ..meant(oscillator, solution, &numbers) };
+    let meant = OrbitTarget { convention: given, ..meant(oscillator, solution, &numbers) };
     let equilibrium = solution.equilibrium.evaluate(&numbers)?;
     let motion = TrueMotion::of(oscillator, &meant, &numbers)?;
     let Some(converted) = motion.amplitude_by_the_other(given, equilibrium) else {
@@ -853,7 +853,11 @@ fn formula_motion(
 }
 
 /// Returns the true motion that an answer is meant for.
-fn meant(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Meant {
+fn meant(
+    oscillator: &Oscillator,
+    solution: &Solution,
+    numbers: &BTreeMap<Symbol, f64>,
+) -> OrbitTarget {
     let value_of = |symbol: Symbol| numbers.get(&symbol).copied();
     let near = |cycle: &crate::solution::LimitCycle| {
         // The amplitude that the formula has where the small parameter vanishes.
@@ -867,7 +871,7 @@ fn meant(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
         }
     };
     let expected = || formula_frequency(oscillator, solution, numbers);
-    Meant {
+    OrbitTarget {
         equilibrium: solution.equilibrium.clone(),
         convention: solution.amplitude,
         limit_cycle: solution.limit_cycle.as_ref().map(near),
@@ -882,7 +886,7 @@ fn meant(oscillator: &Oscillator, solution: &Solution, numbers: &BTreeMap<Symbol
 fn meant_motion(
     oscillator: &Oscillator,
     solution: &Solution,
-    meant: &Meant,
+    meant: &OrbitTarget,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<TrueMotion, VerificationError> {
     let found = TrueMotion::of(oscillator, meant, numbers);
@@ -914,7 +918,11 @@ fn about_the_cycle(truth: &TrueMotion, coordinate: Symbol) -> Option<validity::R
 }
 
 /// Why the displacement is not judged, where the true path is not known.
-fn unfollowed(truth: &TrueMotion, physics: &Physics, coordinate: Symbol) -> Option<String> {
+fn unfollowed(
+    truth: &TrueMotion,
+    physics: &NumericOscillator,
+    coordinate: Symbol,
+) -> Option<String> {
     if truth.has_path() {
         return None;
     }
@@ -954,7 +962,7 @@ fn attraction(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<f6
     own.attracts_where.as_ref()?.evaluate(&numbers).ok()
 }
 
-fn residual(physics: &Physics, frequency: f64, motion: &FourierSeries<Doubles>) -> f64 {
+fn residual(physics: &NumericOscillator, frequency: f64, motion: &FourierSeries<Doubles>) -> f64 {
     let velocity = motion.derivative();
     let acceleration = velocity.derivative();
     let (mut defects, mut forces) = (0.0, 0.0);

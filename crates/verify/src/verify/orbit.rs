@@ -21,7 +21,7 @@ use crate::symbol::Symbol;
 pub(super) const SAMPLES: usize = 1024;
 
 /// The true motion that an answer is compared with.
-pub(super) struct Meant {
+pub(super) struct OrbitTarget {
     /// The equilibrium about which it oscillates.
     pub(super) equilibrium: Expr,
     /// The definition of its amplitude.
@@ -42,7 +42,7 @@ pub(super) struct NearCycle {
     pub(super) attracts: Option<bool>,
 }
 
-impl Meant {
+impl OrbitTarget {
     /// The amplitude among the numbers; one where there is none, as for a frequency that is free of
     /// it.
     pub(super) fn amplitude_at(&self, numbers: &BTreeMap<Symbol, f64>) -> f64 {
@@ -92,13 +92,13 @@ impl TrueMotion {
     /// There is none, or it cannot be followed.
     pub(super) fn of(
         oscillator: &Oscillator,
-        meant: &Meant,
+        meant: &OrbitTarget,
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
         /// Relative agreement of the periods by Runge-Kutta and by the energy that is required to
         /// use the path.
         const AGREEMENT: f64 = 1e-6;
-        let physics = Physics::new(oscillator, meant, numbers)?;
+        let physics = NumericOscillator::new(oscillator, meant, numbers)?;
         if let Some(near) = &meant.limit_cycle {
             let cycle = physics.limit_cycle(near)?;
             let frequency = TAU / cycle.period();
@@ -130,7 +130,7 @@ impl TrueMotion {
     }
 
     fn from_orbit(
-        meant: &Meant,
+        meant: &OrbitTarget,
         numbers: &BTreeMap<Symbol, f64>,
         orbit: Orbit,
         frequency: f64,
@@ -191,7 +191,7 @@ impl TrueMotion {
 }
 
 /// The equation with numbers for its parameters, seen from its equilibrium.
-pub(super) struct Physics {
+pub(super) struct NumericOscillator {
     /// The force at rest.
     pub(super) rest: CentredForce,
     /// The velocity-dependent part of the force as a function of position and velocity; `None` if
@@ -203,10 +203,10 @@ pub(super) struct Physics {
     convention: AmplitudeConvention,
 }
 
-impl Physics {
+impl NumericOscillator {
     pub(super) fn new(
         oscillator: &Oscillator,
-        meant: &Meant,
+        meant: &OrbitTarget,
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
         let parts = oscillator.parts()?;
@@ -362,10 +362,10 @@ fn first_harmonic(orbit: &Orbit) -> (f64, f64) {
 /// omega of the true motion, without its path where energy alone gives it.
 pub(super) fn true_frequency(
     oscillator: &Oscillator,
-    meant: &Meant,
+    meant: &OrbitTarget,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<f64, VerificationError> {
-    let physics = Physics::new(oscillator, meant, numbers)?;
+    let physics = NumericOscillator::new(oscillator, meant, numbers)?;
     match meant.limit_cycle {
         Some(_) => TrueMotion::of(oscillator, meant, numbers).map(|truth| truth.frequency),
         None => physics.frequency(meant.amplitude_at(numbers)),

@@ -15,7 +15,7 @@ use crate::decimal::significant;
 use crate::expr::Expr;
 use crate::method::numbers::NumbersCache;
 use crate::method::table::{MethodEntry, MotionEvaluation};
-use crate::numeric::ode::root::{Until, bisect};
+use crate::numeric::ode::root::{BisectionStop, bisect};
 use crate::oscillator::Oscillator;
 use crate::solution::{Method, Solution};
 use crate::symbol::Symbol;
@@ -50,7 +50,7 @@ pub(super) fn places_of_law(
 
 /// The amplitude range in which a formula is within the tolerance; amplitudes have their sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reach {
+pub enum AmplitudeReach {
     /// At every amplitude looked at, up to this one.
     Everywhere(f64),
     /// Up to this amplitude.
@@ -69,7 +69,7 @@ pub enum Reach {
     Nowhere,
 }
 
-impl Reach {
+impl AmplitudeReach {
     /// Whether an amplitude is outside.
     pub fn leaves_out(self, amplitude: f64) -> bool {
         match self {
@@ -126,7 +126,7 @@ pub(super) fn reach(
     solution: &Solution,
     truth: &TrueBackbone,
     tolerance: f64,
-) -> Option<Reach> {
+) -> Option<AmplitudeReach> {
     // Of a motion whose amplitude changes, or is that of a cycle or a response, there is no curve
     // to follow.
     let fixed =
@@ -155,10 +155,12 @@ pub(super) fn reach(
         let good = error(asked.abs())?.abs() <= tolerance;
         let last = amplitudes.iter().rev().find(|&&size| truth.frequency(size).is_some());
         return last.filter(|_| good).map(|last| match truth.smallest_amplitude() {
-            inner if inner > 0.0 => {
-                Reach::Between { from: inner.copysign(asked), to: last.copysign(asked), open: true }
-            }
-            _ => Reach::Everywhere(last.copysign(asked)),
+            inner if inner > 0.0 => AmplitudeReach::Between {
+                from: inner.copysign(asked),
+                to: last.copysign(asked),
+                open: true,
+            },
+            _ => AmplitudeReach::Everywhere(last.copysign(asked)),
         });
     }
     amplitudes.extend(places_of_law(solution, truth.numbers, asked.signum() * truth.farthest()));
@@ -203,10 +205,10 @@ pub(super) fn reach(
     }
     for pair in points.windows(2) {
         if let Some(end) = follow.first_crossing(pair[0], pair[1]) {
-            return Some(Reach::UpTo(signed(end)));
+            return Some(AmplitudeReach::UpTo(signed(end)));
         }
     }
-    Some(Reach::Everywhere(signed(last)))
+    Some(AmplitudeReach::Everywhere(signed(last)))
 }
 
 /// The range about the amplitude asked for in which the frequency stays within the tolerance, or,
@@ -216,14 +218,14 @@ fn about_the_amplitude(
     amplitudes: &[f64],
     asked: f64,
     tolerance: f64,
-) -> Option<Reach> {
+) -> Option<AmplitudeReach> {
     // Close to the separatrix the truth may have no digits.
     let points: Vec<(f64, f64)> =
         amplitudes.iter().filter_map(|&size| Some((size, error(size)?))).collect();
     let good = |point: &(f64, f64)| point.1.abs() <= tolerance;
     let own = points.iter().position(|point| point.0 == asked.abs() && good(point));
     let Some(start) = own.or_else(|| points.iter().rposition(good)) else {
-        return (!points.is_empty()).then_some(Reach::Nowhere);
+        return (!points.is_empty()).then_some(AmplitudeReach::Nowhere);
     };
     let follow = |pairs: Vec<[(f64, f64); 2]>| {
         let follow = Follow { error, tolerance, evaluations: std::cell::Cell::new(0) };
@@ -237,7 +239,7 @@ fn about_the_amplitude(
         follow(points[..=start].windows(2).rev().map(|pair| [pair[1], pair[0]]).collect());
     let last = points.last().map_or(asked, |point| point.0);
     let signed = |size: f64| size.copysign(asked);
-    Some(Reach::Between {
+    Some(AmplitudeReach::Between {
         from: signed(inwards.unwrap_or(points[0].0)),
         to: signed(outwards.unwrap_or(last)),
         open: outwards.is_none(),
@@ -312,7 +314,7 @@ impl Follow<'_> {
     fn crossing(&self, good: (f64, f64), bad: (f64, f64)) -> f64 {
         let is_good =
             |size: f64| (self.error)(size).is_some_and(|error| error.abs() <= self.tolerance);
-        let [last, _] = bisect(is_good, good.0, bad.0, Until::Halvings(14));
+        let [last, _] = bisect(is_good, good.0, bad.0, BisectionStop::Halvings(14));
         last
     }
 }

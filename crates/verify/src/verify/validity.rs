@@ -14,7 +14,7 @@ use crate::conservative::well::Well;
 use crate::decimal::significant;
 use crate::method::inertia;
 use crate::method::numbers::{error_of_integral, frequency_squared_of, law_name};
-use crate::method::table::{MethodEntry, Sees};
+use crate::method::table::{ForceRepresentation, MethodEntry};
 use crate::numeric::ode::energy::PeriodError;
 use crate::numeric::ode::root::find_root;
 use crate::oscillator::Oscillator;
@@ -22,7 +22,7 @@ use crate::solution::{AmplitudeConvention, Method, Solution};
 use crate::symbol::Symbol;
 use crate::symbol::letters::of_frequency;
 
-pub use super::reach::Reach;
+pub use super::reach::AmplitudeReach;
 
 /// A place where the formula stops to hold, or another remark on its range.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +44,7 @@ pub(super) fn ranges(
 ) -> Vec<Range> {
     let mut ranges: Vec<Range> = of_equation(oscillator, solution, numbers).into_iter().collect();
     if let Some(cycle) = &solution.limit_cycle {
-        let series = MethodEntry::of(solution.method).sees == Sees::Derivatives
+        let series = MethodEntry::of(solution.method).sees == ForceRepresentation::Derivatives
             && cycle.small_with.is_empty();
         // Without self-excitation there is no cycle to expand from.
         let feeds = numbers.get(&solution.small_parameter).is_some_and(|value| *value != 0.0);
@@ -77,7 +77,7 @@ pub(super) fn ranges(
         inner if inner > 0.0 => ranges.extend(positive_from(oscillator, solution, numbers, &truth)),
         _ => ranges.extend(vanishing(oscillator, solution, numbers, truth.largest_amplitude())),
     }
-    if MethodEntry::of(solution.method).sees == Sees::Derivatives {
+    if MethodEntry::of(solution.method).sees == ForceRepresentation::Derivatives {
         ranges.extend(convergence(oscillator, solution, numbers));
     }
     if let Some(reach) = reach::reach(oscillator, solution, &truth, tolerance) {

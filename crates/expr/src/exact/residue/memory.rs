@@ -14,14 +14,14 @@ pub struct Memory {
 enum Pages {
     Usual(Vec<Lanes>),
     #[cfg(target_os = "linux")]
-    Large(large::Large),
+    Large(large::HugePages),
 }
 
 impl Memory {
     /// As much as that.
     pub fn zeroed(count: usize) -> Self {
         #[cfg(target_os = "linux")]
-        if let Some(large) = large::Large::zeroed(count) {
+        if let Some(large) = large::HugePages::zeroed(count) {
             return Self { pages: Pages::Large(large) };
         }
         Self { pages: Pages::Usual(vec![Lanes::default(); count]) }
@@ -51,12 +51,12 @@ mod large {
     const LEAST: usize = PAGE / 2;
 
     /// A mapping with the bytes that are used, from the beginning of a large page on.
-    pub struct Large {
+    pub struct HugePages {
         mapping: MmapMut,
         used: Range<usize>,
     }
 
-    impl Large {
+    impl HugePages {
         /// `None` where it is little, or where there is none.
         pub fn zeroed(count: usize) -> Option<Self> {
             let bytes = count.checked_mul(size_of::<Lanes>())?;

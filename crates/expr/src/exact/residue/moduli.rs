@@ -237,9 +237,9 @@ mod tests {
     use super::super::{Work, by_widest, primes_below};
     use super::*;
 
-    struct AsOneByOne;
+    struct LanesAgainstScalars;
 
-    impl Work for AsOneByOne {
+    impl Work for LanesAgainstScalars {
         type Output = ();
 
         fn by<A: Arithmetic>(self, arithmetic: A) {
@@ -288,7 +288,7 @@ mod tests {
 
     #[test]
     fn eight_primes_are_as_each_alone() {
-        AsOneByOne.by(Portable);
-        by_widest(AsOneByOne);
+        LanesAgainstScalars.by(Portable);
+        by_widest(LanesAgainstScalars);
     }
 }

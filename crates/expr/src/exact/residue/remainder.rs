@@ -77,7 +77,7 @@ impl<A: Arithmetic> Remainders<A> {
         numbers: &mut ReconstructedIntegers,
     ) {
         numbers.digits.resize(self.product.len(), Lanes::default());
-        self.arithmetic.vectorize(Lift(self, residues, weights, numbers));
+        self.arithmetic.vectorize(LiftRemainders(self, residues, weights, numbers));
     }
 
     /// One number, from its plain residues.
@@ -89,9 +89,14 @@ impl<A: Arithmetic> Remainders<A> {
     }
 }
 
-struct Lift<'a, A>(&'a Remainders<A>, &'a mut [Lanes], &'a [u64], &'a mut ReconstructedIntegers);
+struct LiftRemainders<'a, A>(
+    &'a Remainders<A>,
+    &'a mut [Lanes],
+    &'a [u64],
+    &'a mut ReconstructedIntegers,
+);
 
-impl<A: Arithmetic> NullaryFnOnce for Lift<'_, A> {
+impl<A: Arithmetic> NullaryFnOnce for LiftRemainders<'_, A> {
     type Output = ();
 
     #[inline(always)]
@@ -265,9 +270,9 @@ mod tests {
     use super::super::{Work, by_widest, portable::Portable, primes_below};
     use super::*;
 
-    struct ThereAndBack;
+    struct RoundTrip;
 
-    impl Work for ThereAndBack {
+    impl Work for RoundTrip {
         type Output = ();
 
         fn by<A: Arithmetic>(self, arithmetic: A) {
@@ -307,8 +312,8 @@ mod tests {
 
     #[test]
     fn a_number_is_what_its_residues_say() {
-        ThereAndBack.by(Portable);
-        by_widest(ThereAndBack);
+        RoundTrip.by(Portable);
+        by_widest(RoundTrip);
     }
 
     #[test]

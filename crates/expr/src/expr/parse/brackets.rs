@@ -10,7 +10,7 @@ use std::sync::Arc;
 use super::lexer::{Token, TokenKind};
 use super::parse_expression;
 use crate::expr::Expr;
-use crate::expr::typed::{Around, TypedTerm};
+use crate::expr::typed::{BracketContext, TypedTerm};
 use crate::symbol::Symbol;
 
 /// The deepest bracket in a bracket that is opened, and the most terms of one: what is typed by
@@ -44,7 +44,7 @@ fn typed_term(
     value: Expr,
     tokens: &[Token],
     right: bool,
-    around: Option<Arc<Around>>,
+    around: Option<Arc<BracketContext>>,
 ) -> TypedTerm {
     let (negative, rest) = unsigned(tokens);
     TypedTerm { value, span: span(rest), negative, right, around }
@@ -91,7 +91,7 @@ fn opened<'a>(
         None => (scale, ("", "", false)),
     };
     let bare = before.is_empty() && after.is_empty();
-    let around = Arc::new(Around {
+    let around = Arc::new(BracketContext {
         opening: format!("{}{before}{}", outer.0, if bare { "" } else { "(" }),
         closing: format!("{}{after}{}", if bare { "" } else { ")" }, outer.1),
         negative: outer.2 ^ negative,

@@ -24,7 +24,7 @@ use std::sync::LazyLock;
 
 use spec_math::cephes64::gamma;
 
-use super::swing::Spot;
+use super::swing::SwingAngle;
 use crate::impact::contact::hunt_crossley;
 use crate::impact::hertz;
 use crate::impact::model::{Model, Side};
@@ -75,7 +75,7 @@ pub(super) struct ChainBarrier {
     /// Which.
     pub side: Side,
     /// Its place, positive towards it from the bottom.
-    pub spot: Spot,
+    pub spot: SwingAngle,
     gamma: f64,
     /// gamma^(-2/5).
     softness: f64,
@@ -102,7 +102,7 @@ impl ChainBarrier {
     /// The barrier of this side, where there is one.
     pub fn of(model: &Model, side: Side) -> Option<Self> {
         let x = model.barrier(side).filter(|_| model.gamma > 0.0)?;
-        let spot = Spot::at(side.sign() * x);
+        let spot = SwingAngle::at(side.sign() * x);
         Some(Self {
             side,
             spot,

@@ -29,12 +29,12 @@ use thiserror::Error;
 use super::model::{Friction, Model, Side, Start};
 use super::simulation::{
     ClosedForm, ContactRecord, Integrator, REST_FRACTION, Regime, Settings, Simulation,
-    SimulationPath, SimulationStop, Turn, first_swing, has_rested,
+    SimulationPath, SimulationStop, TurningPoint, first_swing, has_rested,
 };
 use super::taylor;
 use crate::decimal::decimal;
 use bounce::ChainBarrier;
-use swing::{Spot, Stretch, UndampedSwing};
+use swing::{Stretch, SwingAngle, UndampedSwing};
 
 /// Why a motion has no chain of closed forms.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -122,7 +122,7 @@ pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulat
         t: 0.0,
         state: [start.x, start.velocity],
         count: 0,
-        remembered: [Remembered { ratio: (-3.0 * model.zeta).exp(), change: 0.0, guessed: true };
+        remembered: [EnergyRatio { ratio: (-3.0 * model.zeta).exp(), change: 0.0, guessed: true };
             2],
         impacts: Vec::with_capacity(MANY),
         turns: Vec::with_capacity(2 * MANY),
@@ -142,9 +142,9 @@ pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulat
 enum StretchStart {
     /// At rest on this side at this spot; the swing and how far it reaches to the barrier ahead,
     /// where they are known.
-    Turn(Side, Spot, Option<(UndampedSwing, Stretch)>),
+    Turn(Side, SwingAngle, Option<(UndampedSwing, Stretch)>),
     /// At this spot, counted towards this side, with this energy, on the way there.
-    Leaving(Side, Spot, f64),
+    Leaving(Side, SwingAngle, f64),
 }
 
 /// A stretch from or to its reference energy.
@@ -180,7 +180,7 @@ enum StretchKind {
 /// The reference energy of the last stretch of a kind in parts of that before it, and by how much
 /// that changed: the next one is near.
 #[derive(Debug, Clone, Copy)]
-struct Remembered {
+struct EnergyRatio {
     ratio: f64,
     change: f64,
     guessed: bool,
@@ -194,9 +194,9 @@ struct Chain<'a> {
     /// x and x' now.
     state: [f64; 2],
     count: usize,
-    remembered: [Remembered; 2],
+    remembered: [EnergyRatio; 2],
     impacts: Vec<ContactRecord>,
-    turns: Vec<Turn>,
+    turns: Vec<TurningPoint>,
     path: SimulationPath,
     stop: Option<SimulationStop>,
     /// A tenth of the amplitude of the first swing.
@@ -210,15 +210,15 @@ impl<'a> Chain<'a> {
         let Start { x, velocity } = start;
         let energy = self.model.swing_energy(x, velocity);
         let mut place = if velocity == 0.0 {
-            self.turns.push(Turn { t: 0.0, x });
+            self.turns.push(TurningPoint { t: 0.0, x });
             if x == 0.0 || self.sticks(x) {
                 return self.held(x);
             }
             let side = if x > 0.0 { Side::Right } else { Side::Left };
-            StretchStart::Turn(side, Spot::at(x.abs()), None)
+            StretchStart::Turn(side, SwingAngle::at(x.abs()), None)
         } else {
             let to = if velocity > 0.0 { Side::Right } else { Side::Left };
-            let spot = Spot::at(to.sign() * x);
+            let spot = SwingAngle::at(to.sign() * x);
             let touched = self.barrier(to).filter(|barrier| barrier.spot == spot);
             let place = StretchStart::Leaving(to, spot, energy);
             touched
@@ -262,7 +262,9 @@ impl<'a> Chain<'a> {
         let loss = leg.area / leg.time * growth;
         match alpha == 0.0 || leg.length == 0.0 {
             true => (loss, growth),
-            false => (loss + alpha * leg.length, growth + alpha / Spot::turn(swing.energy).x.sin()),
+            false => {
+                (loss + alpha * leg.length, growth + alpha / SwingAngle::turn(swing.energy).x.sin())
+            }
         }
     }
 
@@ -306,7 +308,7 @@ impl<'a> Chain<'a> {
                 swing.quarter.area -= swing.quarter.time * step;
                 leg.area -= leg.time * step;
                 let ratio = reference / energy;
-                self.remembered[kind as usize] = Remembered {
+                self.remembered[kind as usize] = EnergyRatio {
                     ratio,
                     change: if last.guessed { 0.0 } else { ratio - last.ratio },
                     guessed: false,
@@ -319,7 +321,12 @@ impl<'a> Chain<'a> {
 
     /// How much later than at the energy of the swing, where its phase is this one, the spot is
     /// passed with another energy.
-    fn later(swing: &UndampedSwing, (sine, cosine): (f64, f64), spot: &Spot, energy: f64) -> f64 {
+    fn later(
+        swing: &UndampedSwing,
+        (sine, cosine): (f64, f64),
+        spot: &SwingAngle,
+        energy: f64,
+    ) -> f64 {
         let (own_sine, own_cosine) = spot.phase(energy);
         let change = (own_sine * cosine - own_cosine * sine).clamp(-1.0, 1.0).asin();
         change / (1.0 - 0.5 * swing.energy * sine * sine).sqrt()
@@ -330,7 +337,7 @@ impl<'a> Chain<'a> {
     /// swing of this energy. Friction moves the middle of a linear swing of amplitude a by alpha
     /// against the motion, so with x = a sin phi there and the speed a cos phi it is arctan((x +
     /// alpha)/x') - arctan(x/x'); of the pendulum 1/a is [`slowness`].
-    fn rub_lag(&self, spot: &Spot, energy: f64, direction: f64) -> f64 {
+    fn rub_lag(&self, spot: &SwingAngle, energy: f64, direction: f64) -> f64 {
         if self.model.alpha == 0.0 {
             return 0.0;
         }
@@ -343,7 +350,7 @@ impl<'a> Chain<'a> {
     fn after_turn(
         &mut self,
         side: Side,
-        turn: Spot,
+        turn: SwingAngle,
         known: Option<(UndampedSwing, Stretch)>,
     ) -> Option<StretchStart> {
         let (to, energy) = (side.opposite(), turn.energy);
@@ -371,7 +378,7 @@ impl<'a> Chain<'a> {
     }
 
     /// From one turning point to the next, or the next two, where no barrier is in reach.
-    fn free(&mut self, side: Side, from: Spot) -> Option<StretchStart> {
+    fn free(&mut self, side: Side, from: SwingAngle) -> Option<StretchStart> {
         let out_of_reach =
             |barrier: &ChainBarrier| barrier.spot.x > 0.0 && barrier.spot.energy >= from.energy;
         let turns =
@@ -387,7 +394,7 @@ impl<'a> Chain<'a> {
 
     /// Two turning points under viscous damping, about the energy of the first; nothing where there
     /// is none.
-    fn undulate(&mut self, side: Side, from: Spot) -> Option<StretchStart> {
+    fn undulate(&mut self, side: Side, from: SwingAngle) -> Option<StretchStart> {
         let half =
             |swing: &UndampedSwing| Leg::free(2.0 * swing.quarter.time, 2.0 * swing.quarter.area);
         let (swing, leg) = self.reference(from.energy, StretchKind::FromTurn, half)?;
@@ -395,7 +402,7 @@ impl<'a> Chain<'a> {
         if !is_positive(energy) {
             return None;
         }
-        let [first, second] = [swing.energy, energy].map(Spot::turn);
+        let [first, second] = [swing.energy, energy].map(SwingAngle::turn);
         // The mean energy on the way there is greater, on the way back less: dK/dE = area/(8 m (1 -
         // m)) with E = 2 m.
         let stretched = swing.quarter.area / (swing.energy * (2.0 - swing.energy));
@@ -416,20 +423,20 @@ impl<'a> Chain<'a> {
 
     /// The next turning point with dry friction: half of the viscous damping before it, half after
     /// it; nothing where there is none.
-    fn rub(&mut self, side: Side, from: Spot) -> Option<StretchStart> {
+    fn rub(&mut self, side: Side, from: SwingAngle) -> Option<StretchStart> {
         let to = side.opposite();
         let quarter = |swing: &UndampedSwing| Leg::free(swing.quarter.time, swing.quarter.area);
         let (before, _) = self.reference(from.energy, StretchKind::FromTurn, quarter)?;
         let angle = match self.model.alpha == 0.0 {
-            true => Spot::turn(before.energy).x,
-            false => rubbed(Spot::turn(before.energy).x, self.model.alpha),
+            true => SwingAngle::turn(before.energy).x,
+            false => rubbed(SwingAngle::turn(before.energy).x, self.model.alpha),
         };
         if angle <= 0.0 {
             // It comes to rest before the bottom, where friction holds it.
             return None;
         }
-        let after = UndampedSwing::new(Spot::at(angle).energy);
-        let mut turn = Spot::turn(after.energy - self.below(&quarter(&after)));
+        let after = UndampedSwing::new(SwingAngle::at(angle).energy);
+        let mut turn = SwingAngle::turn(after.energy - self.below(&quarter(&after)));
         if let Some(ahead) = self.barrier(to)
             && turn.x > ahead.spot.x
         {
@@ -445,7 +452,7 @@ impl<'a> Chain<'a> {
     }
 
     /// From a spot on the way to a side: to the barrier there, or to the turning point.
-    fn after_leaving(&mut self, to: Side, spot: Spot, energy: f64) -> Option<StretchStart> {
+    fn after_leaving(&mut self, to: Side, spot: SwingAngle, energy: f64) -> Option<StretchStart> {
         let ahead = self.barrier(to);
         if let Some(ahead) = ahead
             && energy > ahead.spot.energy
@@ -473,7 +480,7 @@ impl<'a> Chain<'a> {
         let Some((swing, leg)) = found else {
             return self.integrate();
         };
-        let turn = Spot::turn(swing.energy);
+        let turn = SwingAngle::turn(swing.energy);
         if ahead.is_some_and(|ahead| turn.x > ahead.spot.x) || turn.x < spot.x {
             return self.integrate();
         }
@@ -497,14 +504,14 @@ impl<'a> Chain<'a> {
     fn turned(
         &mut self,
         side: Side,
-        turn: Spot,
+        turn: SwingAngle,
         known: Option<(UndampedSwing, Stretch)>,
     ) -> Option<StretchStart> {
         if self.stop.is_some() {
             return None;
         }
         let x = side.sign() * turn.x;
-        self.turns.push(Turn { t: self.t, x });
+        self.turns.push(TurningPoint { t: self.t, x });
         self.state = [x, 0.0];
         if self.sticks(x) {
             self.held(x);
@@ -534,7 +541,7 @@ impl<'a> Chain<'a> {
         let deepest = self.t + 0.5 * bounce.duration;
         if deepest <= self.settings.duration {
             let x = x + side.sign() * bounce.depth;
-            self.turns.push(Turn { t: deepest, x });
+            self.turns.push(TurningPoint { t: deepest, x });
         }
         self.advance(bounce.duration, Regime::Contact(side), || {
             ClosedForm::contact(
@@ -584,7 +591,7 @@ impl<'a> Chain<'a> {
             self.path.push_rest([self.t, end], x);
         }
         if end > self.t && self.model.sticks() {
-            self.turns.push(Turn { t: end, x });
+            self.turns.push(TurningPoint { t: end, x });
         }
         self.t = end;
         self.state = [x, 0.0];
@@ -615,7 +622,7 @@ impl<'a> Chain<'a> {
                     .turns
                     .iter()
                     .filter(|turn| turn.t > 0.0)
-                    .map(|turn| Turn { t: from + turn.t, ..*turn }),
+                    .map(|turn| TurningPoint { t: from + turn.t, ..*turn }),
             );
             self.impacts.extend(motion.impacts.iter().map(|impact| impact.later(from)));
             self.path.extend(&motion.path, from);
@@ -646,14 +653,14 @@ fn is_positive(value: f64) -> bool {
 
 /// The leg between the turning point of a swing and a spot, which is counted from the bottom away
 /// from the turning point.
-fn leg(model: &Model, swing: &UndampedSwing, spot: &Spot, reach: Stretch) -> Leg {
+fn leg(model: &Model, swing: &UndampedSwing, spot: &SwingAngle, reach: Stretch) -> Leg {
     let Model { zeta, alpha, .. } = *model;
     let phase = spot.phase(swing.energy);
     let (_, cosine) = phase;
     let (length, rubbed) = match alpha == 0.0 {
         true => (0.0, 0.0),
         false => {
-            let turn = Spot::turn(swing.energy).x;
+            let turn = SwingAngle::turn(swing.energy).x;
             (turn + spot.x, alpha / turn.sin().max(alpha))
         }
     };
@@ -707,9 +714,9 @@ fn slowness(energy: f64) -> f64 {
 /// The area in the phase plane of the undamped swing of this amplitude, rad, and of the same
 /// between the barriers, units of m g L/omega.
 pub(super) fn actions(model: &Model, amplitude: f64) -> (f64, f64) {
-    let swing = UndampedSwing::new(Spot::at(amplitude).energy);
+    let swing = UndampedSwing::new(SwingAngle::at(amplitude).energy);
     let reach = |side: Side| match model.barrier(side) {
-        Some(x) => swing.reach(&Spot::at(side.sign() * x)).area,
+        Some(x) => swing.reach(&SwingAngle::at(side.sign() * x)).area,
         None => swing.quarter.area,
     };
     (4.0 * swing.quarter.area, 2.0 * (reach(Side::Left) + reach(Side::Right)))
@@ -724,8 +731,8 @@ fn closed(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) -> ClosedFo
     // The time from the bottom of the swing of mean energy to the phase that the place has in its
     // own.
     let phase = |energy: f64, place: f64| {
-        let (sine, _) = Spot::at(place).phase(energy);
-        middle.reach(&Spot::at(2.0 * (mean * sine).clamp(-1.0, 1.0).asin())).time
+        let (sine, _) = SwingAngle::at(place).phase(energy);
+        middle.reach(&SwingAngle::at(2.0 * (mean * sine).clamp(-1.0, 1.0).asin())).time
     };
     let [start, end] = [0, 1].map(|index| phase(energies[index], places[index]));
     ClosedForm::Swing {

@@ -18,7 +18,7 @@ use super::FrictionError;
 use crate::impact::model::{Friction, Model, STEEPNESS, Start};
 use crate::impact::simulate::simulate;
 use crate::impact::simulation::{
-    Integrator, NoRest, Regime, Settings, Simulation, SimulationStop, Turn,
+    Integrator, NoRest, Regime, Settings, Simulation, SimulationStop, TurningPoint,
 };
 use crate::numeric::ode::{IntegrationOptions, Point, Trajectory, integrate_first_order};
 
@@ -104,7 +104,7 @@ impl RestTimes {
 #[derive(Debug, Clone)]
 pub struct NearRest {
     /// When and where Coulomb's law stops it for good.
-    pub stop: Turn,
+    pub stop: TurningPoint,
     /// The half swings until then.
     pub half_swings: usize,
     /// The state by the arctangent at that time: displacement and velocity.
@@ -175,7 +175,7 @@ fn followed(model: &Model, x: f64, duration: f64) -> Result<Simulation, Friction
 }
 
 /// Where Coulomb's law stops it for good, and after how many half swings.
-fn stop(alpha: f64, amplitude: f64) -> Result<(Turn, usize), FrictionError> {
+fn stop(alpha: f64, amplitude: f64) -> Result<(TurningPoint, usize), FrictionError> {
     let mut duration = 50.0;
     loop {
         let motion = swing(alpha, Friction::Exact, -amplitude, duration)?;
@@ -183,7 +183,7 @@ fn stop(alpha: f64, amplitude: f64) -> Result<(Turn, usize), FrictionError> {
         if let Some(held) = held {
             let half_swings =
                 motion.turns.iter().filter(|turn| turn.t > 0.0 && turn.t <= held.start).count();
-            let stop = Turn { t: held.start, x: motion.end_x };
+            let stop = TurningPoint { t: held.start, x: motion.end_x };
             return Ok((stop, half_swings));
         }
         duration *= 2.0;

@@ -15,11 +15,11 @@
 use super::Coordinate;
 use crate::impact::model::{Model, Side, Start};
 use crate::impact::simulation::{
-    ContactRecord, Integrator, Regime, Settings, Simulation, SimulationPath, SimulationStop, Turn,
-    enter, scaled,
+    ContactRecord, Integrator, Regime, Settings, Simulation, SimulationPath, SimulationStop,
+    TurningPoint, enter, scaled,
 };
 use crate::numeric::ode::{
-    self, Event, IntegrationError, Occurrence, StopReason, Trajectory, integrate_phases,
+    self, Event, EventOccurrence, IntegrationError, StopReason, Trajectory, integrate_phases,
 };
 
 /// Where the pendulum is and which way dry friction acts: a phase of the run.
@@ -33,7 +33,7 @@ struct HybridMode {
 
 /// What an event means.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Meaning {
+enum JudgeEvent {
     Touch(Side),
     Release,
     Turn,
@@ -136,14 +136,14 @@ fn beginning(model: &Model, start: Start) -> Regime {
 }
 
 /// An event, and what it means.
-type Watched<'a> = (Event<'a>, Meaning);
+type Watched<'a> = (Event<'a>, JudgeEvent);
 
 /// A phase of the run, and what its events mean in turn.
 fn phase<'a>(
     model: &'a Model,
     settings: &Settings,
     number: usize,
-) -> (ode::IntegrationPhase<'a>, Vec<Meaning>) {
+) -> (ode::IntegrationPhase<'a>, Vec<JudgeEvent>) {
     let (place, stuck) = place(number);
     let HybridMode { region, direction } = place;
     if stuck {
@@ -187,7 +187,7 @@ fn letting_go(model: &Model, HybridMode { region, .. }: HybridMode) -> Watched<'
         };
         (index(HybridMode { region, direction }, false), state)
     };
-    (Event::switch(excess, next).rising(), Meaning::LetGo)
+    (Event::switch(excess, next).rising(), JudgeEvent::LetGo)
 }
 
 /// In free flight: the barriers.
@@ -201,7 +201,7 @@ fn touches(model: &Model, direction: f64) -> Vec<Watched<'_>> {
             (index(contact, false), ode::State { x: 0.0, v, ..state })
         };
         let depth = move |_: f64, x: f64, _: f64| side.sign() * (x - barrier);
-        Some((Event::switch(depth, next).rising(), Meaning::Touch(side)))
+        Some((Event::switch(depth, next).rising(), JudgeEvent::Touch(side)))
     };
     [Side::Left, Side::Right].into_iter().filter_map(touch).collect()
 }
@@ -220,17 +220,17 @@ fn ends_of_contact(
         (to(Regime::Free), ode::State { x: origin, v, ..state })
     };
     let mut watched =
-        vec![(Event::switch(|_, depth, _| depth, release).falling(), Meaning::Release)];
+        vec![(Event::switch(|_, depth, _| depth, release).falling(), JudgeEvent::Release)];
     if model.mu > 0.0 {
         let push = move |_: f64, _: f64, speed: f64| model.gamma + model.mu * speed;
         watched.push(match region {
             Regime::Contact(_) => {
                 let next = move |state: ode::State| (to(Regime::Detached(side)), state);
-                (Event::switch(push, next).falling(), Meaning::Detach)
+                (Event::switch(push, next).falling(), JudgeEvent::Detach)
             }
             _ => {
                 let next = move |state: ode::State| (to(Regime::Contact(side)), state);
-                (Event::switch(push, next).rising(), Meaning::Reattach)
+                (Event::switch(push, next).rising(), JudgeEvent::Reattach)
             }
         });
     }
@@ -240,7 +240,7 @@ fn ends_of_contact(
 /// The turning points: under Coulomb friction each decides how the motion goes on.
 fn turning(model: &Model, HybridMode { region, direction }: HybridMode) -> Watched<'_> {
     if direction == 0.0 {
-        return (Event::record(|_, _, v| v), Meaning::Turn);
+        return (Event::record(|_, _, v| v), JudgeEvent::Turn);
     }
     let next = move |state: ode::State| {
         let state = ode::State { v: 0.0, ..state };
@@ -249,7 +249,7 @@ fn turning(model: &Model, HybridMode { region, direction }: HybridMode) -> Watch
     let turn = Event::switch(move |_, _, v| v, next);
     let inwards = direction * Coordinate::of(model, region).sign > 0.0;
     let turn = if inwards { turn.falling() } else { turn.rising() };
-    (turn, Meaning::Turn)
+    (turn, JudgeEvent::Turn)
 }
 
 /// The energy falls to that of rest, and the run ends.
@@ -262,7 +262,7 @@ fn fall_to_rest(model: &Model, region: Regime, rest_energy: f64) -> Watched<'_> 
         };
         model.swing_energy(coordinate.x(value), v) + stored - rest_energy
     };
-    (Event::stop(energy).falling(), Meaning::RestEnergy)
+    (Event::stop(energy).falling(), JudgeEvent::RestEnergy)
 }
 
 /// The motion by Runge-Kutta.
@@ -335,8 +335,8 @@ fn contacts_and_turns(
     start: Start,
     first: Regime,
     trajectory: &Trajectory,
-    meanings: &[Vec<Meaning>],
-) -> (Vec<ContactRecord>, Vec<Turn>) {
+    meanings: &[Vec<JudgeEvent>],
+) -> (Vec<ContactRecord>, Vec<TurningPoint>) {
     let mut impacts: Vec<ContactRecord> = Vec::new();
     if let Regime::Contact(side) | Regime::Detached(side) = first {
         let depth = model.depth(start.x).map_or(0.0, |(_, depth)| depth);
@@ -345,29 +345,30 @@ fn contacts_and_turns(
     }
     let mut turns = Vec::new();
     if start.velocity == 0.0 {
-        turns.push(Turn { t: 0.0, x: start.x });
+        turns.push(TurningPoint { t: 0.0, x: start.x });
     }
-    for Occurrence { phase, event, state, .. } in trajectory.occurrences().iter().copied() {
+    for EventOccurrence { phase, event, state, .. } in trajectory.occurrences().iter().copied() {
         let region = place(phase).0.region;
         match meanings.get(phase).and_then(|list| list.get(event)) {
-            Some(&Meaning::Touch(side)) => {
+            Some(&JudgeEvent::Touch(side)) => {
                 let speed = (side.sign() * state.v).max(0.0);
                 enter(&mut impacts, (model, settings), side, state.t, [0.0, speed]);
             }
-            Some(Meaning::Release) => {
+            Some(JudgeEvent::Release) => {
                 if let Some(impact) = impacts.last_mut() {
                     impact.released(model, state.t, (-state.v).max(0.0));
                 }
             }
-            Some(meaning @ (Meaning::Turn | Meaning::LetGo)) => {
+            Some(meaning @ (JudgeEvent::Turn | JudgeEvent::LetGo)) => {
                 let direction = force_at_rest(model, region, state.t, state.x).signum();
-                if let Meaning::LetGo = meaning
+                if let JudgeEvent::LetGo = meaning
                     && let Some(Regime::Contact(side)) =
                         pushed_into(model, region, state.x, direction)
                 {
                     enter(&mut impacts, (model, settings), side, state.t, [0.0, 0.0]);
                 }
-                turns.push(Turn { t: state.t, x: Coordinate::of(model, region).x(state.x) });
+                turns
+                    .push(TurningPoint { t: state.t, x: Coordinate::of(model, region).x(state.x) });
                 if matches!(region, Regime::Contact(_))
                     && let Some(impact) = impacts.last_mut()
                 {

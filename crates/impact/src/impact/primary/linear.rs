@@ -27,7 +27,7 @@ pub struct Alone {
 
 /// The main mass without its damper and with the damper locked.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Others {
+pub struct UndampedAndLocked {
     /// Without.
     pub without: Alone,
     /// Locked.
@@ -36,8 +36,8 @@ pub struct Others {
 
 impl Primary {
     /// The two linear cases beside the damper.
-    pub fn others(&self) -> Others {
-        Others { without: self.alone(self.mass), locked: self.alone(self.mass + 1.0) }
+    pub fn others(&self) -> UndampedAndLocked {
+        UndampedAndLocked { without: self.alone(self.mass), locked: self.alone(self.mass + 1.0) }
     }
 
     fn alone(&self, mass: f64) -> Alone {

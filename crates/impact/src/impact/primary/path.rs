@@ -2,7 +2,7 @@
 //! which they are analytic.
 
 use super::super::model::Side;
-use crate::numeric::ode::root::{Until, try_bisect};
+use crate::numeric::ode::root::{BisectionStop, try_bisect};
 use crate::system::Path;
 
 /// Angle and velocity of the pendulum, displacement and speed of the main mass.
@@ -62,7 +62,7 @@ fn own_time(path: &Path, time: f64) -> Option<f64> {
         return Some(end);
     }
     let is_before = |s: f64| clock(s).map(|t| t < time).ok_or(());
-    let [last, _] = try_bisect(is_before, 0.0, end, Until::Halvings(200)).ok()?;
+    let [last, _] = try_bisect(is_before, 0.0, end, BisectionStop::Halvings(200)).ok()?;
     Some(last)
 }
 

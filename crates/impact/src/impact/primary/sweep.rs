@@ -2,7 +2,8 @@
 //! rest, with its damper, with the damper locked and without.
 
 use super::{
-    Others, Primary, PrimaryCase, PrimaryError, PrimarySettings, PrimaryStop, simulate_primary,
+    Primary, PrimaryCase, PrimaryError, PrimarySettings, PrimaryStop, UndampedAndLocked,
+    simulate_primary,
 };
 use crate::impact::NoRest;
 use crate::parallel::each;
@@ -27,7 +28,7 @@ pub struct PrimaryRow {
     /// [`PrimaryMotion::rest_time`](super::PrimaryMotion::rest_time) says, or why it does not.
     pub rest_time: Result<f64, NoRest>,
     /// The main mass without its damper and with the damper locked, in closed form.
-    pub others: Others,
+    pub others: UndampedAndLocked,
     /// Why the run ended.
     pub stop: PrimaryStop,
 }

@@ -320,7 +320,7 @@ pub(super) fn enter(
 
 /// A moment of rest: x is largest or smallest there, or friction begins or ceases to hold it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turn {
+pub struct TurningPoint {
     /// When.
     pub t: f64,
     /// Where, rad.
@@ -344,7 +344,7 @@ pub struct Simulation {
     /// Every contact, in order.
     pub impacts: Vec<ContactRecord>,
     /// Every turning point, in order; the start where it is one.
-    pub turns: Vec<Turn>,
+    pub turns: Vec<TurningPoint>,
     /// Time at the end.
     pub end_time: f64,
     /// Displacement there, rad.

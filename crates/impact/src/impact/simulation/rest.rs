@@ -34,7 +34,7 @@ use std::f64::consts::{PI, TAU};
 use thiserror::Error;
 
 use super::place::RestPoint;
-use super::{Integrator, Simulation, SimulationStop, Turn};
+use super::{Integrator, Simulation, SimulationStop, TurningPoint};
 use crate::impact::model::{Model, Side, Start};
 use crate::impact::polynomial::crossing_of;
 
@@ -79,11 +79,11 @@ pub enum NoRest {
 
 /// How the turning points tell the rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum ByTurns {
+enum RestByTurningPoints {
     /// The envelope goes through the level between these two.
-    Line { above: Turn, below: Turn },
+    Line { above: TurningPoint, below: TurningPoint },
     /// It creeps from here on.
-    Fall(Turn),
+    Fall(TurningPoint),
 }
 
 impl Simulation {
@@ -99,14 +99,14 @@ impl Simulation {
         let time = match self.rest_by_turns(level) {
             Err(_) if !self.stop.is_complete() => Err(NoRest::BrokeOff),
             Err(reason) => Err(reason),
-            Ok(ByTurns::Line { above, below }) => {
+            Ok(RestByTurningPoints::Line { above, below }) => {
                 let time = between(above, below, level);
                 Ok(match may_be_late(above, below, level) {
                     true => self.fall(above, level).map_or(time, |fall| time.max(fall)),
                     false => time,
                 })
             }
-            Ok(ByTurns::Fall(from)) => self.fall(from, level).ok_or(NoRest::NotYetSeen),
+            Ok(RestByTurningPoints::Fall(from)) => self.fall(from, level).ok_or(NoRest::NotYetSeen),
         };
         Rest { amplitude, place, time, last_crossing }
     }
@@ -124,21 +124,21 @@ impl Simulation {
 
     /// The points of the envelope of the amplitude in order, the first swing at the start: (t, |x|)
     /// are what is joined by straight lines of log|x|, with x counted from the place of rest.
-    pub fn envelope(&self) -> Vec<Turn> {
+    pub fn envelope(&self) -> Vec<TurningPoint> {
         self.envelope_from(self.first_swing())
     }
 
     /// The same from this first swing; only the points that are known to belong to it.
-    fn envelope_from(&self, amplitude: f64) -> Vec<Turn> {
-        let mut envelope = vec![Turn { t: 0.0, x: amplitude }];
+    fn envelope_from(&self, amplitude: f64) -> Vec<TurningPoint> {
+        let mut envelope = vec![TurningPoint { t: 0.0, x: amplitude }];
         let place = self.place();
         let free = place.free_side(&self.model);
-        let counted = |turn: &Turn| Turn { t: turn.t, x: turn.x - place.x };
+        let counted = |turn: &TurningPoint| TurningPoint { t: turn.t, x: turn.x - place.x };
         // From where it came tells on which side a turning point lies; a moment of rest without
         // motion before it, as under friction, lies where the last one did.
         let mut before = self.start.x;
         let mut side = None;
-        let mut last: Option<Turn> = None;
+        let mut last: Option<TurningPoint> = None;
         for &turn in &self.turns {
             match turn.x - before {
                 rise if rise > 0.0 => side = Some(Side::Right),
@@ -173,7 +173,7 @@ impl Simulation {
             let at_rest = self.turns.iter().rev().take_while(|turn| turn.x == self.end_x);
             envelope.extend(at_rest.last().map(counted));
         } else if self.stop == SimulationStop::RestEnergy {
-            envelope.push(Turn { t: self.end_time, x: self.last_swing() });
+            envelope.push(TurningPoint { t: self.end_time, x: self.last_swing() });
         }
         envelope
     }
@@ -186,14 +186,14 @@ impl Simulation {
     }
 
     /// What the turning points say of the rest.
-    fn rest_by_turns(&self, level: f64) -> Result<ByTurns, NoRest> {
+    fn rest_by_turns(&self, level: f64) -> Result<RestByTurningPoints, NoRest> {
         let envelope = self.envelope();
         let Some(index) = envelope.iter().rposition(|turn| turn.x.abs() > level) else {
             return Err(NoRest::StaysAbove);
         };
         let above = envelope[index];
         match envelope.get(index + 1) {
-            Some(below) => Ok(ByTurns::Line { above, below: *below }),
+            Some(below) => Ok(RestByTurningPoints::Line { above, below: *below }),
             None => self.creeping(above, level),
         }
     }
@@ -201,34 +201,37 @@ impl Simulation {
     /// Where no turning point of the envelope follows `above`: a motion that has not turned for a
     /// whole period of the linear swing creeps, and is its own envelope; any other has to be
     /// followed further.
-    fn creeping(&self, above: Turn, level: f64) -> Result<ByTurns, NoRest> {
+    fn creeping(&self, above: TurningPoint, level: f64) -> Result<RestByTurningPoints, NoRest> {
         if self.model.beta != 0.0 || self.last_swing() > level {
             return Err(NoRest::StaysAbove);
         }
         let place = self.place().x;
-        let last = self.turns.last().map_or(above, |last| Turn { t: last.t, x: last.x - place });
+        let last =
+            self.turns.last().map_or(above, |last| TurningPoint { t: last.t, x: last.x - place });
         if self.end_time - last.t <= TAU {
             return Err(NoRest::NotYetSeen);
         }
         Ok(match last.x.abs() > level {
-            true => ByTurns::Fall(last),
-            false => ByTurns::Line { above, below: last },
+            true => RestByTurningPoints::Fall(last),
+            false => RestByTurningPoints::Line { above, below: last },
         })
     }
 
     /// The turning point from which the fall to a tenth has to be known and no path tells it: none
     /// is kept, or it is that of a chain, whose formulas are only near the motion between turning
     /// points.
-    pub(in crate::impact) fn untold_fall(&self) -> Option<Turn> {
+    pub(in crate::impact) fn untold_fall(&self) -> Option<TurningPoint> {
         let level = REST_FRACTION * self.first_swing();
         if level == 0.0 || self.path_tells_the_fall() || !self.stop.is_complete() {
             return None;
         }
         let from = match self.rest_by_turns(level).ok()? {
-            ByTurns::Line { above, below } => may_be_late(above, below, level).then_some(above)?,
-            ByTurns::Fall(from) => from,
+            RestByTurningPoints::Line { above, below } => {
+                may_be_late(above, below, level).then_some(above)?
+            }
+            RestByTurningPoints::Fall(from) => from,
         };
-        Some(Turn { t: from.t, x: from.x + self.place().x })
+        Some(TurningPoint { t: from.t, x: from.x + self.place().x })
     }
 
     fn path_tells_the_fall(&self) -> bool {
@@ -237,7 +240,7 @@ impl Simulation {
 
     /// When |x| has fallen to the level on the way from a turning point, or the start, to the next,
     /// all counted from the place of rest.
-    pub(in crate::impact) fn fall(&self, from: Turn, level: f64) -> Option<f64> {
+    pub(in crate::impact) fn fall(&self, from: TurningPoint, level: f64) -> Option<f64> {
         if !self.path_tells_the_fall() {
             return self.fall;
         }
@@ -259,8 +262,8 @@ impl Simulation {
         if self.path.pieces().is_empty() || beyond(self.end_x) {
             return None;
         }
-        let start = Turn { t: 0.0, x: self.start.x };
-        let end = Turn { t: self.end_time, x: self.end_x };
+        let start = TurningPoint { t: 0.0, x: self.start.x };
+        let end = TurningPoint { t: self.end_time, x: self.end_x };
         let index = self.turns.iter().rposition(|turn| beyond(turn.x));
         let from = match index {
             Some(index) => self.turns[index],
@@ -290,7 +293,7 @@ pub(in crate::impact) fn first_swing(model: &Model, start: Start) -> f64 {
 
 /// Whether the turning points show that the envelope is below this level, where nothing can raise
 /// it again.
-pub(in crate::impact) fn has_rested(model: &Model, turns: &[Turn], level: f64) -> bool {
+pub(in crate::impact) fn has_rested(model: &Model, turns: &[TurningPoint], level: f64) -> bool {
     if model.beta != 0.0 {
         return false;
     }
@@ -298,7 +301,7 @@ pub(in crate::impact) fn has_rested(model: &Model, turns: &[Turn], level: f64) -
         return false;
     };
     let place = RestPoint::near(model, last.x);
-    let small = |turn: &Turn| (turn.x - place.x).abs() <= level;
+    let small = |turn: &TurningPoint| (turn.x - place.x).abs() <= level;
     // On the free side, not in the barrier.
     let free = |side: Side| {
         let from_barrier =
@@ -324,7 +327,7 @@ fn swing_of(energy: f64) -> Option<f64> {
 /// To the level the linear swing of amplitude a takes acos(level/a). Where a turning point is at
 /// least half as far out as the one before, a is twice the level at most: the swing of the pendulum
 /// is longer by a fortieth there, and what damps, viscous or dry, makes it longer by a fifth.
-fn may_be_late(above: Turn, below: Turn, level: f64) -> bool {
+fn may_be_late(above: TurningPoint, below: TurningPoint, level: f64) -> bool {
     let halves = 2.0 * below.x.abs() < above.x.abs();
     halves || between(above, below, level) - above.t < LONGEST_FALL * (level / above.x.abs()).acos()
 }
@@ -335,9 +338,9 @@ const LONGEST_FALL: f64 = 1.5;
 
 /// The time at which the straight line of log|x| from one turning point to a later one passes the
 /// level between them.
-fn between(above: Turn, below: Turn, level: f64) -> f64 {
+fn between(above: TurningPoint, below: TurningPoint, level: f64) -> f64 {
     // Friction may hold it at zero, whose logarithm is not to be had.
-    let height = |turn: Turn| turn.x.abs().max(1e-12 * level).ln();
+    let height = |turn: TurningPoint| turn.x.abs().max(1e-12 * level).ln();
     let fraction = (level.ln() - height(above)) / (height(below) - height(above));
     above.t + fraction * (below.t - above.t)
 }

@@ -5,7 +5,7 @@ use crate::impact::hertz;
 use crate::impact::model::{Model, Side};
 use crate::impact::polynomial::{bracketed, crossing_of, sign_changes, value, variation};
 use crate::impact::simulation::Regime;
-use crate::impact::simulation::{Turn, enter};
+use crate::impact::simulation::{TurningPoint, enter};
 use crate::impact::taylor::course::StepEvents;
 use crate::impact::taylor::series::{HIGHEST_ORDER, StepEndState};
 
@@ -75,7 +75,7 @@ impl Runner {
         let mut deepest = w * w;
         if let Some(turn) = course.turn {
             deepest = deepest.max(turn.place * turn.place);
-            self.turns.push(Turn { t: self.t + turn.time, x: x(turn.place) });
+            self.turns.push(TurningPoint { t: self.t + turn.time, x: x(turn.place) });
         }
         if let Some(impact) = self.impacts.last_mut() {
             impact.penetration = impact.penetration.max(deepest);
@@ -170,7 +170,10 @@ impl Runner {
             }
             deepest = deepest.max(w_to * w_to);
             if turning {
-                self.turns.push(Turn { t: self.t + value(step.time, to), x: step.x(w_to * w_to) });
+                self.turns.push(TurningPoint {
+                    t: self.t + value(step.time, to),
+                    x: step.x(w_to * w_to),
+                });
                 if self.model.sticks() {
                     return (to, Some(StepEvent::Turn), deepest);
                 }

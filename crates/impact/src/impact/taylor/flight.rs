@@ -6,7 +6,7 @@ use super::{LIGHT, Loaded, MOST_IDLE, Runner, SLOWEST_TOUCH, StepEvent, turning_
 use crate::impact::model::Side;
 use crate::impact::polynomial::{bracketed, crossing_of, level_crossing, sign_changes, value};
 use crate::impact::simulation::Regime;
-use crate::impact::simulation::{Turn, enter};
+use crate::impact::simulation::{TurningPoint, enter};
 use crate::impact::taylor::angle::sine_and_cosine;
 use crate::impact::taylor::course::StepEvents;
 use crate::impact::taylor::series::{HIGHEST_ORDER, StepEndState, TIME_TERMS};
@@ -41,7 +41,7 @@ impl Runner {
             return false;
         }
         if let Some(turn) = course.turn {
-            self.turns.push(Turn { t: self.t + turn.time, x: turn.place });
+            self.turns.push(TurningPoint { t: self.t + turn.time, x: turn.place });
         }
         let start = self.t;
         let (at, time) =
@@ -181,7 +181,7 @@ impl Runner {
                 }
             }
             if turning {
-                self.turns.push(Turn { t: self.t + value(time, to), x: x_to });
+                self.turns.push(TurningPoint { t: self.t + value(time, to), x: x_to });
                 if self.model.sticks() {
                     return (to, Some(StepEvent::Turn));
                 }

@@ -3,7 +3,7 @@
 
 use super::Runner;
 use crate::impact::simulation::Regime;
-use crate::impact::simulation::{SimulationStop, Turn};
+use crate::impact::simulation::{SimulationStop, TurningPoint};
 
 impl Runner {
     /// The acceleration by all but friction at rest, now.
@@ -39,7 +39,7 @@ impl Runner {
             self.path.push_rest([start, end], x);
         }
         if end > start {
-            self.turns.push(Turn { t: end, x });
+            self.turns.push(TurningPoint { t: end, x });
         }
         self.t = end;
         self.velocity = 0.0;

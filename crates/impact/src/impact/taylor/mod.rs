@@ -40,7 +40,7 @@ use super::model::{Friction, Model, Side, Start};
 use super::polynomial::{Roots, near_sign_changes};
 use super::simulation::{
     ContactRecord, Integrator, REST_FRACTION, Regime, Settings, Simulation, SimulationPath,
-    SimulationStop, Turn, enter, first_swing, has_rested, scaled,
+    SimulationStop, TurningPoint, enter, first_swing, has_rested, scaled,
 };
 use angle::sine_and_cosine;
 use course::{Courses, StepEvents, courses};
@@ -119,7 +119,7 @@ pub(super) struct Runner {
     /// A tenth of the amplitude of the first swing.
     level: f64,
     impacts: Vec<ContactRecord>,
-    turns: Vec<Turn>,
+    turns: Vec<TurningPoint>,
     path: SimulationPath,
 }
 
@@ -177,7 +177,7 @@ pub(super) fn fall(simulation: &Simulation) -> Option<f64> {
     }
     let again = alone(simulation.model, start, settings);
     let level = REST_FRACTION * first_swing(&simulation.model, simulation.start);
-    let fall = again.fall(Turn { t: 0.0, x: start.x }, level)?;
+    let fall = again.fall(TurningPoint { t: 0.0, x: start.x }, level)?;
     Some(from.t + fall)
 }
 
@@ -226,7 +226,7 @@ impl Runner {
         };
         runner.fly();
         if start.velocity == 0.0 {
-            runner.turns.push(Turn { t: 0.0, x: start.x });
+            runner.turns.push(TurningPoint { t: 0.0, x: start.x });
         }
         for side in [Side::Left, Side::Right] {
             if model.barrier(side) == Some(start.x) && side.sign() * start.velocity > 0.0 {

@@ -14,7 +14,9 @@ use super::State;
 use super::event::{Action, Event, SignTracker};
 use super::sample::{Point, Sample, StateVector};
 use super::scheme::{Scheme, explicit, implicit};
-use super::trajectory::{FRACTIONS, Occurrence, StopReason, TERMS, Trajectory, TrajectoryStep};
+use super::trajectory::{
+    EventOccurrence, FRACTIONS, StopReason, TERMS, Trajectory, TrajectoryStep,
+};
 use crate::interrupt::Interrupt;
 
 /// How closely and how long to integrate.
@@ -187,7 +189,7 @@ pub fn integrate<'a>(
     options: &IntegrationOptions,
 ) -> Result<Trajectory, IntegrationError> {
     let rates = first_order(acceleration);
-    run(&[(&rates, events)], 0, start, end_time, Looks::NOWHERE, options)
+    run(&[(&rates, events)], 0, start, end_time, StepLimits::NOWHERE, options)
         .map_err(|error| of_motion(error, start))
 }
 
@@ -222,7 +224,7 @@ pub fn integrate_phases(
 ) -> Result<Trajectory, IntegrationError> {
     let parts: Vec<PhaseFunctions<State>> =
         phases.iter().map(|phase| (&*phase.rates as _, phase.events.as_slice())).collect();
-    run(&parts, first, start, end_time, Looks::NOWHERE, options)
+    run(&parts, first, start, end_time, StepLimits::NOWHERE, options)
         .map_err(|error| of_motion(error, start))
 }
 
@@ -253,7 +255,7 @@ pub fn integrate_first_order<'a, Y: StateVector>(
     events: &[Event<'a, Point<Y>>],
     options: &IntegrationOptions,
 ) -> Result<Trajectory<Point<Y>>, IntegrationError> {
-    run(&[(&rates, events)], 0, start, end_time, Looks::NOWHERE, options)
+    run(&[(&rates, events)], 0, start, end_time, StepLimits::NOWHERE, options)
 }
 
 /// As [`integrate_first_order`], with steps that end where they have to.
@@ -264,7 +266,7 @@ pub fn integrate_through<'a, Y: StateVector>(
     rates: impl Fn(f64, &Y, &mut Y) + 'a,
     start: Point<Y>,
     end_time: f64,
-    looks: Looks<Point<Y>>,
+    looks: StepLimits<Point<Y>>,
     events: &[Event<'a, Point<Y>>],
     options: &IntegrationOptions,
 ) -> Result<Trajectory<Point<Y>>, IntegrationError> {
@@ -272,29 +274,29 @@ pub fn integrate_through<'a, Y: StateVector>(
 }
 
 /// What ends a step beside its error.
-pub struct Looks<'a, S> {
+pub struct StepLimits<'a, S> {
     /// Times, in order, that no step crosses.
     pub critical: &'a [f64],
     /// From a step as a function of its fraction the fraction of it that may be kept; nothing for
     /// all of it.
-    pub kept: Option<&'a Kept<'a, S>>,
+    pub kept: Option<&'a AcceptedFraction<'a, S>>,
 }
 
 /// From a step as a function of its fraction the fraction of it that may be kept; `None` for all of
 /// it.
-pub type Kept<'a, S> = dyn Fn(&dyn Fn(f64) -> S) -> Option<f64> + 'a;
+pub type AcceptedFraction<'a, S> = dyn Fn(&dyn Fn(f64) -> S) -> Option<f64> + 'a;
 
-impl<S> Looks<'_, S> {
+impl<S> StepLimits<'_, S> {
     const NOWHERE: Self = Self { critical: &[], kept: None };
 }
 
-impl<S> Clone for Looks<'_, S> {
+impl<S> Clone for StepLimits<'_, S> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<S> Copy for Looks<'_, S> {}
+impl<S> Copy for StepLimits<'_, S> {}
 
 /// The error in the words of displacement and velocity.
 fn of_motion(error: IntegrationError, State { t, x, v }: State) -> IntegrationError {
@@ -320,7 +322,7 @@ fn run<S: Sample>(
     first: usize,
     start: S,
     end_time: f64,
-    looks: Looks<S>,
+    looks: StepLimits<S>,
     options: &IntegrationOptions,
 ) -> Result<Trajectory<S>, IntegrationError> {
     check(&start, end_time, options)?;
@@ -346,7 +348,7 @@ fn run<S: Sample>(
     loop {
         let &(rates, events) = parts.get(phase).ok_or(unknown(phase))?;
         let equations =
-            Counted::<S> { rates, evaluations: &evaluations, non_finite: Cell::new(false) };
+            CountedRates::<S> { rates, evaluations: &evaluations, non_finite: Cell::new(false) };
         let begin = trajectory.end.time();
         let leg = Leg { equations, phase, events, end_time, looks, options };
         let end = match options.stiff {
@@ -405,13 +407,13 @@ fn check(
 }
 
 /// The right side, counting its evaluations and remembering whether one of them was not finite.
-struct Counted<'r, S: Sample> {
+struct CountedRates<'r, S: Sample> {
     rates: &'r RateFunction<'r, S>,
     evaluations: &'r Cell<usize>,
     non_finite: Cell<bool>,
 }
 
-impl<S: Sample> ODE<f64, S::Values> for Counted<'_, S> {
+impl<S: Sample> ODE<f64, S::Values> for CountedRates<'_, S> {
     fn diff(&self, t: f64, values: &S::Values, derivative: &mut S::Values) {
         (self.rates)(t, values, derivative);
         self.evaluations.set(self.evaluations.get() + 1);
@@ -423,11 +425,11 @@ impl<S: Sample> ODE<f64, S::Values> for Counted<'_, S> {
 
 /// The part of a run with one right side.
 struct Leg<'r, 'a, S: Sample> {
-    equations: Counted<'r, S>,
+    equations: CountedRates<'r, S>,
     phase: usize,
     events: &'r [Event<'a, S>],
     end_time: f64,
-    looks: Looks<'r, S>,
+    looks: StepLimits<'r, S>,
     options: &'r IntegrationOptions,
 }
 
@@ -541,7 +543,7 @@ impl<S: Sample> Leg<'_, '_, S> {
         trajectory: &mut Trajectory<S>,
     ) -> Option<LegEnd<S>> {
         for (happening, event, rising) in happenings {
-            trajectory.occurrences.push(Occurrence {
+            trajectory.occurrences.push(EventOccurrence {
                 phase: self.phase,
                 event,
                 state: happening.clone(),

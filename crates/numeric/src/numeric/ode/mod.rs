@@ -50,13 +50,13 @@ mod scheme;
 mod trajectory;
 
 pub use event::{Action, Direction, Event};
+pub use integrate::{AcceptedFraction, StepLimits, integrate_through};
 pub use integrate::{
     IntegrationError, IntegrationOptions, IntegrationPhase, integrate, integrate_first_order,
     integrate_phases,
 };
-pub use integrate::{Kept, Looks, integrate_through};
 pub use sample::{Point, Sample, StateVector};
-pub use trajectory::{Occurrence, StopReason, Trajectory};
+pub use trajectory::{EventOccurrence, StopReason, Trajectory};
 
 /// A point of the motion: time, displacement, velocity. Also the initial condition.
 #[derive(Debug, Clone, Copy, PartialEq)]

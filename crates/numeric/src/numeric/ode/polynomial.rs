@@ -15,7 +15,7 @@
 //! assert!(zeros.len() == 2 && (zeros[1].place - 2.0).abs() < 1e-15 && zeros[1].crosses);
 //! ```
 
-use super::root::{Until, bisect, find_root};
+use super::root::{BisectionStop, bisect, find_root};
 
 /// A real zero of a polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +44,7 @@ pub fn real_zeros(coefficients: &[f64], ends: [f64; 2]) -> Vec<RealZero> {
         |x: f64| coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c.abs()).is_finite();
     let farthest = match is_finite(farthest) {
         true => farthest,
-        false => bisect(is_finite, 0.0, farthest, Until::Width(0.0))[0],
+        false => bisect(is_finite, 0.0, farthest, BisectionStop::Width(0.0))[0],
     };
     let [low, high] = ends.map(|end| if end.is_infinite() { farthest.copysign(end) } else { end });
     let mut derivatives = vec![coefficients[..=degree].to_vec()];

@@ -29,14 +29,14 @@ pub struct Trajectory<S: Sample = State> {
     pub(super) start: S,
     pub(super) end: S,
     pub(super) steps: Vec<TrajectoryStep<S>>,
-    pub(super) occurrences: Vec<Occurrence<S>>,
+    pub(super) occurrences: Vec<EventOccurrence<S>>,
     pub(super) stop_reason: StopReason,
     pub(super) evaluations: usize,
 }
 
 /// An event that was met.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Occurrence<S = State> {
+pub struct EventOccurrence<S = State> {
     /// Index of the phase whose right side was in force (0 for [`integrate`](super::integrate)).
     pub phase: usize,
     /// Index of the event in that phase's list.
@@ -168,7 +168,7 @@ impl<S: Sample> Trajectory<S> {
     }
 
     /// The events met, in the order of time.
-    pub fn occurrences(&self) -> &[Occurrence<S>] {
+    pub fn occurrences(&self) -> &[EventOccurrence<S>] {
         &self.occurrences
     }
 

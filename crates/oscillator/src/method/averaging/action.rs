@@ -21,7 +21,7 @@ use crate::solution::Note;
 use crate::symbol::Symbol;
 
 /// The only damping term of an equation.
-enum Drain {
+enum OnlyDamping {
     /// `rate * x'`.
     Viscous(Expr),
     /// `size * sgn(x')`.
@@ -29,7 +29,7 @@ enum Drain {
 }
 
 /// The damping, where it is one of the two alone.
-fn drain(oscillator: &Oscillator, parts: &Parts) -> Option<Drain> {
+fn drain(oscillator: &Oscillator, parts: &Parts) -> Option<OnlyDamping> {
     if !parts.inertia.is_zero() || !parts.forcing.is_zero() {
         return None;
     }
@@ -38,7 +38,7 @@ fn drain(oscillator: &Oscillator, parts: &Parts) -> Option<Drain> {
     let free = |expression: &Expr| own.iter().all(|&name| !expression.contains(name));
     let rate = Expr::divide(&parts.damping, &Expr::from(velocity)).ok()?.expand().ok()?;
     if free(&rate) {
-        return Some(Drain::Viscous(rate));
+        return Some(OnlyDamping::Viscous(rate));
     }
     let (number, factors) = parts.damping.factors();
     let mut size = Expr::number(number);
@@ -54,7 +54,7 @@ fn drain(oscillator: &Oscillator, parts: &Parts) -> Option<Drain> {
             _ => return None,
         }
     }
-    (signs == 1).then_some(Drain::Dry(size))
+    (signs == 1).then_some(OnlyDamping::Dry(size))
 }
 
 /// Remarks that hold beside the slow equations if the restoring force is not linear.
@@ -66,11 +66,11 @@ pub(super) fn notes(oscillator: &Oscillator, parts: &Parts) -> Vec<Note> {
         return vec![];
     }
     let note = match drain(oscillator, parts) {
-        Some(Drain::Viscous(rate)) => {
+        Some(OnlyDamping::Viscous(rate)) => {
             let sine = Expr::from(x).sin().is_ok_and(|sine| sine == parts.restoring);
             Some(Note::Action { rate, pendulum: sine })
         }
-        Some(Drain::Dry(size)) if is_odd(&parts.restoring, x).unwrap_or(false) => {
+        Some(OnlyDamping::Dry(size)) if is_odd(&parts.restoring, x).unwrap_or(false) => {
             let at = |name: &str| {
                 potential(&parts.restoring, x)?.substitute(x, &Expr::symbol(name)).ok()
             };
@@ -92,7 +92,7 @@ pub fn falls_to(
     [start, end]: [f64; 2],
 ) -> Option<f64> {
     let parts = oscillator.parts().ok()?;
-    let Some(Drain::Viscous(rate)) = drain(oscillator, &parts) else {
+    let Some(OnlyDamping::Viscous(rate)) = drain(oscillator, &parts) else {
         return None;
     };
     let rate = rate.evaluate(numbers).ok().filter(|rate| *rate > 0.0)?;

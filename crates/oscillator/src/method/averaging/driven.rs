@@ -63,7 +63,7 @@ pub(super) fn solve(
     let drive = Drive::of(parts, oscillator, Method::Averaging)?;
     let mut free = oscillator.clone();
     free.force = (&oscillator.force - &parts.forcing).expand()?;
-    let averaged = UnderDrive {
+    let averaged = DrivenAveraging {
         oscillator,
         free: &free,
         small: SmallTerms::of(&free, options)?,
@@ -95,7 +95,7 @@ pub(super) fn solve(
 }
 
 /// A driven motion that is to be averaged.
-struct UnderDrive<'a> {
+struct DrivenAveraging<'a> {
     oscillator: &'a Oscillator,
     /// Without its drive.
     free: &'a Oscillator,
@@ -103,7 +103,7 @@ struct UnderDrive<'a> {
     asked: DrivenRequest<'a>,
 }
 
-impl UnderDrive<'_> {
+impl DrivenAveraging<'_> {
     /// All that is small as terms of an expansion.
     ///
     /// # Errors

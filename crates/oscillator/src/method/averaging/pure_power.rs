@@ -39,7 +39,7 @@ use crate::method::{Options, Reason, Refusal, transient};
 use crate::oscillator::{Oscillator, Parts};
 use crate::series::FourierSeries;
 use crate::solution::modulation::Release;
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{
     AmplitudeConvention, ClosedForm, Definition, Law, Method, Modulation, Note, Solution,
 };
@@ -397,6 +397,6 @@ fn small_in_words(
     let first = names.next().unwrap_or_else(|| fresh("delta", &oscillator.names()));
     let others: Vec<Symbol> = names.collect();
     let small = std::iter::once(first).chain(others.iter().copied()).collect();
-    let cut = Note::Cut(Cut::Truncated { small, order: 1, marks });
+    let cut = Note::Cut(Truncation::Truncated { small, order: 1, marks });
     Ok((first, others, cut))
 }

@@ -15,7 +15,7 @@ use crate::exact::polynomial::Monomial;
 use crate::exact::{Polynomial, Rational};
 use crate::expr::{Expr, ExprError};
 use crate::oscillator::{Oscillator, OscillatorError, Parts, PerturbedForce, SmallParameter, Term};
-use crate::solution::note::Cut;
+use crate::solution::note::Truncation;
 use crate::solution::{AmplitudeConvention, Definition, Method, Note};
 use crate::symbol::{Symbol, fresh};
 
@@ -89,7 +89,7 @@ impl Scaling {
         let bookkeeping = self.bookkeeping.as_ref().map(|definition| definition.meaning.clone());
         // The marker itself is the small parameter where no letter is one.
         let marker = || self.marks.clone().filter(|_| self.marker == Some(self.small));
-        Note::Cut(Cut::Truncated {
+        Note::Cut(Truncation::Truncated {
             small: std::iter::once(self.small).chain(together).collect(),
             order: self.order,
             marks: bookkeeping.or_else(|| marker().map(Expr::number)),

@@ -126,7 +126,7 @@ impl Factored {
     }
 
     /// As residues of it are formed.
-    pub(super) fn ladder(&self) -> Ladder {
+    pub(super) fn ladder(&self) -> ExponentBits {
         let digits = self.0.iter().map(|factor| factor.1.checked_ilog2().map_or(0, |log| log + 1));
         let digits = digits.max().unwrap_or(0);
         let with_digit = |digit: u32| -> Vec<u64> {
@@ -134,7 +134,7 @@ impl Factored {
             let primes: Vec<u64> = factors.map(|factor| factor.0).collect();
             words(&primes).into_iter().map(|lot| lot.iter().product()).collect()
         };
-        Ladder((0..digits).rev().map(with_digit).collect())
+        ExponentBits((0..digits).rev().map(with_digit).collect())
     }
 
     /// The number of its binary digits.
@@ -238,9 +238,9 @@ impl Factored {
 
 /// A number by the binary digits of the exponents of its primes, the highest first: for each digit
 /// the product of the primes that have it, in words. A square for each digit serves all primes.
-pub(super) struct Ladder(Vec<Vec<u64>>);
+pub(super) struct ExponentBits(Vec<Vec<u64>>);
 
-impl Ladder {
+impl ExponentBits {
     /// The residue of the number.
     pub fn residue(&self, modulus: &Modulus) -> u64 {
         self.0.iter().fold(modulus.one, |power, words| {

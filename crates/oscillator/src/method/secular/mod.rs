@@ -31,7 +31,7 @@ use std::collections::HashMap;
 
 use num_integer::Integer as _;
 
-use crate::exact::ring::Indivisible;
+use crate::exact::ring::NotInvertible;
 use crate::exact::{Integers, Polynomials, Ring};
 use crate::interrupt::Supervision;
 use crate::series::convolution::{Convolutions, SeriesNode};
@@ -138,7 +138,7 @@ pub enum SecularError {
         /// The order at which it fails.
         order: usize,
         /// The divisor and the ring.
-        indivisible: Indivisible,
+        indivisible: NotInvertible,
     },
     /// Far more algebra than anyone waits for.
     #[error(

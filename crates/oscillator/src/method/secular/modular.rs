@@ -199,9 +199,9 @@ struct Variation {
 }
 
 /// Converts the last expansion from Montgomery's form to plain residues.
-struct Plain<'r, 'a, A>(&'r mut Recursion<'a, A>, &'r Residues<A>);
+struct ToPlainResidues<'r, 'a, A>(&'r mut Recursion<'a, A>, &'r Residues<A>);
 
-impl<A: Arithmetic> NullaryFnOnce for Plain<'_, '_, A> {
+impl<A: Arithmetic> NullaryFnOnce for ToPlainResidues<'_, '_, A> {
     type Output = ();
 
     #[inline(always)]
@@ -307,7 +307,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let mut field = ResidueField::new(self.arithmetic, self.plan, &moduli)?;
         let coefficients = std::mem::take(&mut field.coefficients);
         self.expand(&mut field, &coefficients)?;
-        self.arithmetic.vectorize(Plain(self, &field.residues));
+        self.arithmetic.vectorize(ToPlainResidues(self, &field.residues));
         let plan = self.plan;
         let image = |(lane, modulus): (usize, &Modulus)| {
             let own = |residues: &[Lanes]| residues.iter().map(|own| own.0[lane]).collect();
@@ -448,13 +448,19 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
                 multiply(&residues, change_here, field.factors.derivative(own));
                 self.damped.push(plan, order, change_here);
                 if any && plan.scheme.detuning == Detuning::Acceleration {
-                    self.delayed(&residues, Delayed::Damped, order, 1..order + 1, change_here);
+                    self.delayed(
+                        &residues,
+                        FrequencyFactor::Damped,
+                        order,
+                        1..order + 1,
+                        change_here,
+                    );
                 }
             }
             subtract(&residues, out, change_here);
         }
         if order > 1 {
-            self.delayed(&residues, Delayed::Motion, order, 1..order, change_here);
+            self.delayed(&residues, FrequencyFactor::Motion, order, 1..order, change_here);
             multiply(&residues, change_here, &field.factors.detuning);
             subtract(&residues, out, change_here);
         }
@@ -546,16 +552,16 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     fn delayed(
         &mut self,
         residues: &Residues<A>,
-        series: Delayed,
+        series: FrequencyFactor,
         order: usize,
         range: Range<usize>,
         out: &mut [Lanes],
     ) {
         let plan = self.plan;
         let (harmonics, frequency) = match series {
-            Delayed::Motion => (&self.motion, &self.frequency_squared),
-            Delayed::Velocity => (&self.motion, &self.frequency),
-            Delayed::Damped => (&self.damped, &self.frequency),
+            FrequencyFactor::Motion => (&self.motion, &self.frequency_squared),
+            FrequencyFactor::Velocity => (&self.motion, &self.frequency),
+            FrequencyFactor::Damped => (&self.damped, &self.frequency),
         };
         let step = plan.step();
         // Latest first, as the frequencies stand.
@@ -649,7 +655,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
             let own = &mut change[..count];
             match plan.scheme.detuning {
                 Detuning::Acceleration => {
-                    self.delayed(&residues, Delayed::Velocity, order, 0..order + 1, own)
+                    self.delayed(&residues, FrequencyFactor::Velocity, order, 0..order + 1, own)
                 }
                 Detuning::Displacement => own.copy_from_slice(displacement),
             }
@@ -724,7 +730,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
 /// The factor of the frequency corrections of later orders: `y_n`, with which its derivatives go,
 /// and that of the terms with one velocity.
 #[derive(Clone, Copy)]
-enum Delayed {
+enum FrequencyFactor {
     Motion,
     Velocity,
     Damped,

@@ -432,7 +432,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             }
         }
         let group = |(count, orders): &(usize, std::ops::Range<usize>)| {
-            Lift::new(self.arithmetic, self.plan, &all[..=*count]).orders(
+            LiftOrders::new(self.arithmetic, self.plan, &all[..=*count]).orders(
                 orders.clone(),
                 motion,
                 frequency,
@@ -580,7 +580,7 @@ impl Guess {
 }
 
 /// The way back for orders that share their primes.
-struct Lift<'a, A> {
+struct LiftOrders<'a, A> {
     arithmetic: A,
     plan: &'a Plan<'a>,
     images: &'a [&'a PrimeImage],
@@ -591,7 +591,7 @@ struct Lift<'a, A> {
     powers: Vec<u64>,
 }
 
-impl<'a, A: Arithmetic> Lift<'a, A> {
+impl<'a, A: Arithmetic> LiftOrders<'a, A> {
     /// The last of the images is the one that tests.
     fn new(arithmetic: A, plan: &'a Plan<'a>, images: &'a [&'a PrimeImage]) -> Self {
         let (test, images) = images.split_last().expect("one image at least");
@@ -666,7 +666,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
     }
 
     /// Empty where no prime keeps the motion.
-    fn displacement(&self, order: usize, over: &Over) -> Option<Vec<Integer>> {
+    fn displacement(&self, order: usize, over: &WeightedDenominator) -> Option<Vec<Integer>> {
         let count = self.test.displacement(self.plan, order).len();
         self.numbers(over, count, |image, block, lanes| {
             let own = image.displacement(self.plan, order).iter().skip(block * WIDTH);
@@ -675,7 +675,11 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
     }
 
     /// From what the last order needed, where that divides.
-    fn over(&self, denominator: &Factored, last: Option<Over>) -> Over {
+    fn over(
+        &self,
+        denominator: &Factored,
+        last: Option<WeightedDenominator>,
+    ) -> WeightedDenominator {
         match last.filter(|last| last.denominator.over(denominator).is_one()) {
             Some(mut last) => {
                 let ratio = denominator.over(&last.denominator).ladder();
@@ -683,7 +687,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
                     *weight = image.modulus.product(*weight, ratio.residue(&image.modulus));
                 }
                 let test = &self.test.modulus;
-                Over {
+                WeightedDenominator {
                     denominator: denominator.clone(),
                     in_test: test.product(last.in_test, ratio.residue(test)),
                     ..last
@@ -691,7 +695,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
             }
             None => {
                 let ladder = denominator.ladder();
-                Over {
+                WeightedDenominator {
                     denominator: denominator.clone(),
                     weights: self.remainders.weights(|modulus| ladder.residue(modulus)).collect(),
                     in_test: ladder.residue(&self.test.modulus),
@@ -704,7 +708,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
     /// residues.
     fn numbers(
         &self,
-        over: &Over,
+        over: &WeightedDenominator,
         count: usize,
         eight: impl Fn(&PrimeImage, usize, &mut Lanes),
     ) -> Option<Vec<Integer>> {
@@ -733,7 +737,7 @@ impl<'a, A: Arithmetic> Lift<'a, A> {
 }
 
 /// A denominator, as the way back needs it.
-struct Over {
+struct WeightedDenominator {
     denominator: Factored,
     /// By which residues are multiplied.
     weights: Vec<u64>,

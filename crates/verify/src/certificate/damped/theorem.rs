@@ -596,7 +596,7 @@ mod tests {
     use super::*;
     use crate::exact::ratio;
     use crate::expr::parse_expression;
-    use crate::numeric::ode::root::{Until, bisect};
+    use crate::numeric::ode::root::{BisectionStop, bisect};
     use crate::{Options, Oscillator, solve};
 
     fn certificate() -> DampedCertificate {
@@ -686,8 +686,12 @@ mod tests {
             const STEP: f64 = 1.0 / 512.0;
             let next = step(state, STEP);
             if state[0] < 0.0 && next[0] >= 0.0 {
-                let [part, _] =
-                    bisect(|part| step(state, part)[0] < 0.0, 0.0, STEP, Until::Halvings(60));
+                let [part, _] = bisect(
+                    |part| step(state, part)[0] < 0.0,
+                    0.0,
+                    STEP,
+                    BisectionStop::Halvings(60),
+                );
                 crossings.push(t + part);
             }
             (state, t) = (next, t + STEP);

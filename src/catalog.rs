@@ -1,7 +1,8 @@
 //! Classical oscillators by name, each with its source and, where one is printed, the published
 //! law.
 //!
-//! In: a name. Out: an [`Entry`] with an equation to be parsed, and which methods apply to it.
+//! In: a name. Out: a [`CatalogEntry`] with an equation to be parsed, and which methods apply to
+//! it.
 //!
 //! A published law is only what a derived one is compared with: nothing here is ever used as an
 //! answer.

@@ -2,7 +2,7 @@
 //! table.
 //!
 //! In: an [`Audit`]'s question, a list of [`Claim`]s, from a file by [`Claims`] or made in Rust.
-//! Out: the [`Audit`], a [`Finding`] for each: `reproduced` to every printed digit;
+//! Out: the [`Audit`], a [`ClaimFinding`] for each: `reproduced` to every printed digit;
 //! `reproduced-under-assumption`, by the fewest of the things that the claim allows to be supposed,
 //! or by an unknown number solved for; `not-reproducible` for want of what is not printed;
 //! `inconsistent` with what is computed. What is printed is only ever compared with.

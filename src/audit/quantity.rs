@@ -1,7 +1,7 @@
 //! What a claim may be about: the names that formulas may use, and the program that computes them.
 //!
-//! In: a [`Question`] and the values of an entry. Out: what is computed, or what it lacks. The
-//! numbers come from where every other command has them: laws from
+//! In: a [`ClaimComputation`] and the values of an entry. Out: what is computed, or what it lacks.
+//! The numbers come from where every other command has them: laws from
 //! [`method::solve`](crate::method::solve), true frequencies from the judge, phases and contacts
 //! from [`impact`](crate::impact), rest times from its simulation.
 

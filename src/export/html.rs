@@ -34,13 +34,13 @@ pub struct HtmlPage<'a> {
 /// A document as a page.
 ///
 /// ```
-/// use lindstedt::export::html::{self, Page};
+/// use lindstedt::export::html::{self, HtmlPage};
 /// use lindstedt::{Options, Oscillator, solve};
 ///
 /// let duffing = Oscillator::parse("x'' + x + eps*x^3 = 0")?;
 /// let solution = solve(&duffing, &Options::default())?;
 /// let document = lindstedt::report::solution(&solution, None, 0.01);
-/// let page = html::document(&document, &Page { title: "Duffing", ..Page::default() });
+/// let page = html::document(&document, &HtmlPage { title: "Duffing", ..HtmlPage::default() });
 /// assert!(page.starts_with("<!doctype html>") && page.contains("<math"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -78,9 +78,9 @@ fn heading(page: &HtmlPage) -> String {
 /// A text whose lines stand below each other as they are, as a page.
 ///
 /// ```
-/// use lindstedt::export::html::{self, Page};
+/// use lindstedt::export::html::{self, HtmlPage};
 ///
-/// let page = html::lines("a < b\n", &Page::default());
+/// let page = html::lines("a < b\n", &HtmlPage::default());
 /// assert!(page.contains("<pre>a &lt; b\n</pre>"));
 /// ```
 pub fn lines(text: &str, page: &HtmlPage) -> String {

@@ -12,9 +12,9 @@ use crate::response::{SteadyMotion, bifurcation::BifurcationKind};
 /// first line of comment says what the columns are.
 ///
 /// ```
-/// use lindstedt::response::{Question, respond};
+/// use lindstedt::response::{ResponseRequest, respond};
 ///
-/// let question = Question::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
+/// let question = ResponseRequest::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
 /// let table = lindstedt::export::response::csv(&respond(&question)?);
 /// assert!(table.lines().nth(2).is_some_and(|row| row.starts_with("branch,1,0.5,")));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -197,9 +197,9 @@ fn curves<'a>(
 /// As [`figure`].
 ///
 /// ```
-/// use lindstedt::response::{Question, respond};
+/// use lindstedt::response::{ResponseRequest, respond};
 ///
-/// let question = Question::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
+/// let question = ResponseRequest::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
 /// assert!(lindstedt::export::response::picture(&respond(&question)?)?.starts_with("<svg"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -28,9 +28,9 @@ fn times(report: &TrajectoryReport) -> Vec<f64> {
 /// ```
 /// use lindstedt::Oscillator;
 /// use lindstedt::report::TrajectoryReport;
-/// use lindstedt::trajectory::Course;
+/// use lindstedt::trajectory::TrajectoryRequest;
 ///
-/// let mut course = Course::of_equation(&Oscillator::parse("x'' + x = 0")?);
+/// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
 /// course.begin("x'".into(), 1.0)?;
 /// let motion = course.follow()?;
 /// let report = TrajectoryReport { motion: &motion, judge: None, samples: &[0.0], known_until: None };
@@ -61,9 +61,9 @@ pub fn csv(report: &TrajectoryReport) -> String {
 /// ```
 /// use lindstedt::Oscillator;
 /// use lindstedt::report::TrajectoryReport;
-/// use lindstedt::trajectory::Course;
+/// use lindstedt::trajectory::TrajectoryRequest;
 ///
-/// let mut course = Course::of_equation(&Oscillator::parse("x'' + x = 0")?);
+/// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
 /// course.begin("x".into(), 1.0)?;
 /// let motion = course.follow()?;
 /// let report = TrajectoryReport { motion: &motion, judge: None, samples: &[], known_until: None };

@@ -1,8 +1,8 @@
 //! The pendulum and its bodies in SI units: `[design]`, or by their own names `[pendulum]`,
 //! `[sphere]` and `[barrier]`.
 //!
-//! In: a [`Problem`]. Out: its [`Design`], from which gamma follows by equation (8), and its
-//! [`Units`]. A quantity has two keys, one of which may be given. The modulus is that of the
+//! In: a [`Problem`]. Out: its [`StiffnessDesign`], from which gamma follows by equation (8), and
+//! its [`Units`]. A quantity has two keys, one of which may be given. The modulus is that of the
 //! barrier alone, as in the paper, unless `[barrier] poisson` is given: then that of a rigid sphere
 //! on it, or with `[sphere] modulus` and `[sphere] poisson` that of both bodies.
 //!

@@ -1,9 +1,9 @@
 //! What `optimize` reads of a problem file: a pendulum and what damps it, `[limits]`, `[genetic]`,
 //! and `[[material]]` to choose from.
 //!
-//! In: a [`Problem`]. Out: a [`Question`]. A quantity of the paper's Table 4 varies between its
-//! limits there unless `[limits]` has others; given in `[design]`, or by its own name, it is fixed.
-//! With `[[material]]` a material takes the place of the modulus.
+//! In: a [`Problem`]. Out: an [`OptimizationProblem`]. A quantity of the paper's Table 4 varies
+//! between its limits there unless `[limits]` has others; given in `[design]`, or by its own name,
+//! it is fixed. With `[[material]]` a material takes the place of the modulus.
 
 use super::primary::at_rest;
 use super::simulate::refuse_two_forms;
@@ -51,7 +51,7 @@ impl Problem {
     ///
     /// # Errors
     /// [`ProblemError`] names the key. Whether the options make a search is seen by
-    /// [`Question::check`].
+    /// [`OptimizationProblem::check`].
     ///
     /// ```
     /// use lindstedt::problem::Problem;

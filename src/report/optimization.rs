@@ -25,9 +25,9 @@ const GENERATIONS: [usize; 9] = [0, 1, 2, 5, 10, 20, 50, 100, 200];
 /// The document of a search.
 ///
 /// ```
-/// use lindstedt::optimize::{Question, Watch, optimize};
+/// use lindstedt::optimize::{OptimizationProblem, StudyObserver, optimize};
 ///
-/// let study = optimize(Question { runs: 1, ..Question::default() }, vec![], &Watch::default())?;
+/// let study = optimize(OptimizationProblem { runs: 1, ..OptimizationProblem::default() }, vec![], &StudyObserver::default())?;
 /// let document = lindstedt::report::optimization(&study);
 /// assert!(lindstedt::export::text::document(&document, 120).contains("What decides"));
 /// # Ok::<(), lindstedt::optimize::OptimizeError>(())

@@ -23,9 +23,9 @@ const MOST_BIFURCATIONS: usize = 40;
 /// The document of a response.
 ///
 /// ```
-/// use lindstedt::response::{Question, respond};
+/// use lindstedt::response::{ResponseRequest, respond};
 ///
-/// let question = Question::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
+/// let question = ResponseRequest::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
 /// let document = lindstedt::report::response(&respond(&question)?);
 /// let text = lindstedt::export::text::document(&document, 120);
 /// assert!(text.contains("verdict") && text.contains("branch 1"), "{text}");

@@ -33,11 +33,11 @@ impl StabilityReport<'_> {
 ///
 /// ```
 /// use lindstedt::Oscillator;
-/// use lindstedt::hill::{Options, transition_curves};
+/// use lindstedt::hill::{HillOptions, transition_curves};
 /// use lindstedt::report::{StabilityReport, stability};
 ///
 /// let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0")?;
-/// let curves = transition_curves(&mathieu, &Options::default())?;
+/// let curves = transition_curves(&mathieu, &HillOptions::default())?;
 /// let report = StabilityReport { curves: &curves, judged: None, tolerance: 0.01 };
 /// let text = lindstedt::export::text::document(&stability(&report), 100);
 /// assert!(text.contains("delta   = 1 + eps/2 - eps^2/32"));

@@ -97,9 +97,9 @@ impl TrajectoryReport<'_> {
 /// ```
 /// use lindstedt::Oscillator;
 /// use lindstedt::report::TrajectoryReport;
-/// use lindstedt::trajectory::Course;
+/// use lindstedt::trajectory::TrajectoryRequest;
 ///
-/// let mut course = Course::of_equation(&Oscillator::parse("x'' + x = 0")?);
+/// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
 /// course.begin("x".into(), 1.0)?;
 /// let motion = course.follow()?;
 /// let report = TrajectoryReport { motion: &motion, judge: None, samples: &[1.0], known_until: None };

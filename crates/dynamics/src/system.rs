@@ -12,12 +12,12 @@
 //! ```
 //! # use lindstedt_dynamics as lindstedt;
 //! use lindstedt::expr::parse_expression;
-//! use lindstedt::system::{Event, Options, System};
+//! use lindstedt::system::{Event, SystemOptions, System};
 //!
 //! // The pendulum from 1.5 rad at rest: its first passage through the vertical is a quarter of its period.
 //! let pendulum = System::parse(&[("x", "v"), ("v", "-sin(x)")], &[])?;
 //! let vertical = Event::stop(parse_expression("x")?);
-//! let path = pendulum.solve(0.0, &[1.5, 0.0], 10.0, &[vertical], &Options::default())?;
+//! let path = pendulum.solve(0.0, &[1.5, 0.0], 10.0, &[vertical], &SystemOptions::default())?;
 //! let quarter_period = std::f64::consts::FRAC_PI_2 / 0.860_608_346_679_613;
 //! assert!((path.end() - quarter_period).abs() < 1e-13);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -48,14 +48,14 @@ use taylor::{SystemSeries, TaylorRun, TaylorStep};
 ///
 /// ```
 /// # use lindstedt_dynamics as lindstedt;
-/// use lindstedt::system::{Options, System};
+/// use lindstedt::system::{SystemOptions, System};
 /// let links = System::parse(&[
 ///     ("a", "p"),
 ///     ("b", "q"),
 ///     ("p", "(-2*sin(a) + cos(a - b)*sin(b) - sin(a - b)*(q^2 + cos(a - b)*p^2))/(2 - cos(a - b)^2)"),
 ///     ("q", "(2*cos(a - b)*sin(a) - 2*sin(b) + sin(a - b)*(2*p^2 + cos(a - b)*q^2))/(2 - cos(a - b)^2)"),
 /// ], &[])?;
-/// let path = links.solve(0.0, &[1.5, -0.5, 0.0, 0.0], 20.0, &[], &Options::default())?;
+/// let path = links.solve(0.0, &[1.5, -0.5, 0.0, 0.0], 20.0, &[], &SystemOptions::default())?;
 /// let [a, b, p, q] = path.at(20.0).expect("a state")[..] else { unreachable!() };
 /// let energy = p * p + q * q / 2.0 + (a - b).cos() * p * q - 2.0 * a.cos() - b.cos();
 /// assert!((energy + 2.0 * 1.5_f64.cos() + 0.5_f64.cos()).abs() < 1e-12);
@@ -179,11 +179,11 @@ impl Event {
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
     /// use lindstedt::expr::parse_expression;
-    /// use lindstedt::system::{Event, Options, System};
+    /// use lindstedt::system::{Event, SystemOptions, System};
     ///
     /// let wave = System::parse(&[("x", "v"), ("v", "-x")], &[])?;
     /// let upwards = Event::stop(parse_expression("x")?).rising();
-    /// let path = wave.solve(0.0, &[1.0, 0.0], 10.0, &[upwards], &Options::default())?;
+    /// let path = wave.solve(0.0, &[1.0, 0.0], 10.0, &[upwards], &SystemOptions::default())?;
     /// assert!((path.end() - 1.5 * std::f64::consts::PI).abs() < 1e-13); // cos t falls through zero at pi/2
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
@@ -373,10 +373,10 @@ impl Path {
 ///
 /// ```
 /// # use lindstedt_dynamics as lindstedt;
-/// use lindstedt::system::{Options, System};
+/// use lindstedt::system::{SystemOptions, System};
 ///
 /// let stiffness = |k: f64| [("k".into(), k)].into();
-/// let solver = System::parse(&[("x", "v"), ("v", "-k*x")], &[("k", 4.0)])?.solver(&[], &Options::default());
+/// let solver = System::parse(&[("x", "v"), ("v", "-k*x")], &[("k", 4.0)])?.solver(&[], &SystemOptions::default());
 /// let slower = solver.with_numbers(&stiffness(0.25)).expect("equations of the same form");
 /// let path = slower.solve(0.0, &[1.0, 0.0], 2.0)?;
 /// assert!((path.at(2.0).expect("a state")[0] - 1.0_f64.cos()).abs() < 1e-14);
@@ -521,12 +521,12 @@ impl System {
     ///
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
-    /// use lindstedt::system::{Integrator, Options, System};
+    /// use lindstedt::system::{Integrator, SystemOptions, System};
     ///
     /// // Prey and predator of Lotka and Volterra, by both integrators.
     /// let system = System::parse(&[("x", "x*(1 - y)"), ("y", "y*(x - 1)")], &[])?;
     /// let [taylor, runge_kutta] = [Integrator::Taylor, Integrator::RungeKutta].map(|integrator| {
-    ///     let options = Options { integrator, ..Options::default() };
+    ///     let options = SystemOptions { integrator, ..SystemOptions::default() };
     ///     system.solve(0.0, &[2.0, 1.0], 10.0, &[], &options).map(|path| path.at(10.0))
     /// });
     /// let difference = taylor?.expect("a state")[0] - runge_kutta?.expect("a state")[0];

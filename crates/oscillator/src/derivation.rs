@@ -1,7 +1,8 @@
 //! The derivation of an answer as on paper: the orders of an expansion, and lines of words and
 //! equations.
 //!
-//! In: what a method did, in its order. Out: [`Step`]s and [`Line`]s for every format to lay out.
+//! In: what a method did, in its order. Out: [`Step`]s and [`DerivationLine`]s for every format to
+//! lay out.
 //!
 //! Text and LaTeX are printed from the same formulas.
 

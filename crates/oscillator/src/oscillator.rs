@@ -461,7 +461,7 @@ impl Oscillator {
 
     /// Returns the equation with the names that an answer uses for its amplitudes and its
     /// frequency, `A`, `a` and `omega`, kept [apart](Symbol::apart) from those of the answer: the
-    /// answer then writes other [`Letters`].
+    /// answer then writes other [`ResultSymbols`].
     ///
     /// # Errors
     /// An expression beyond all limits.

@@ -361,7 +361,7 @@ impl Solution {
 
     /// The letters of amplitude and frequency: those in force on this thread, else the ones that
     /// the equation leaves free. They are how the symbols of this answer print while they are
-    /// [in force](Letters::in_force).
+    /// [in force](ResultSymbols::in_force).
     pub fn letters(&self) -> ResultSymbols {
         ResultSymbols::current().unwrap_or_else(|| {
             let own: Vec<Symbol> = self.names_of_equation().collect();

@@ -289,9 +289,9 @@ impl TrajectoryRequest {
     /// ```
     /// # use lindstedt_verify as lindstedt;
     /// use lindstedt::Oscillator;
-    /// use lindstedt::trajectory::Course;
+    /// use lindstedt::trajectory::TrajectoryRequest;
     ///
-    /// let mut course = Course::of_equation(&Oscillator::parse("x'' + 4*x = 0")?);
+    /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + 4*x = 0")?);
     /// course.begin("x".into(), 1.0)?;
     /// let motion = course.follow()?;
     /// assert!((motion.at(10.0).ok_or("no state")?[0] - 20.0_f64.cos()).abs() < 1e-13);
@@ -326,7 +326,7 @@ impl TrajectoryRequest {
     /// Follows the motion by this integrator alone.
     ///
     /// # Errors
-    /// As [`Course::follow`].
+    /// As [`TrajectoryRequest::follow`].
     pub fn follow_by(self, integrator: Integrator) -> Result<Trajectory, TrajectoryError> {
         self.followed_by(integrator, Accounted::Yes)
     }

@@ -162,9 +162,9 @@ impl FrictionTable {
     /// Table 1 of the paper, and the speeds of a study beside its own.
     ///
     /// ```
-    /// use lindstedt::{audit::paper::Table, impact::friction};
+    /// use lindstedt::{audit::paper::FrictionTable, impact::friction};
     ///
-    /// let table = Table::of(&friction::study(friction::FrictionSetup::default())?);
+    /// let table = FrictionTable::of(&friction::study(friction::FrictionSetup::default())?);
     /// assert_eq!((table.best().name, table.best().either), ("3.14", table.entries()));
     /// # Ok::<(), friction::FrictionError>(())
     /// ```

@@ -10,8 +10,8 @@
 //! polynomial   {"terms": [{"monomial": {"A": 2}, "exact": "-1/8", "value": -0.125}, ...]}
 //! ```
 //!
-//! What stands in the documentation of a field stands in the schema, [`Kind::json_schema`]. What
-//! has no value is null: a key is never left out.
+//! What stands in the documentation of a field stands in the schema, [`DocumentKind::json_schema`].
+//! What has no value is null: a key is never left out.
 
 pub mod audit;
 pub mod catalog;

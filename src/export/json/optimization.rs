@@ -388,16 +388,16 @@ pub struct Sensitivity {
     pub range: Option<[f64; 2]>,
     /// What follows: every value is as good, a limit decides, a constraint does, or something is
     /// lost on either side.
-    #[cfg_attr(feature = "schema", schemars(extend("enum" = Role::ALL.map(Role::name))))]
+    #[cfg_attr(feature = "schema", schemars(extend("enum" = VariableRole::ALL.map(VariableRole::name))))]
     pub role: String,
 }
 
 /// The document of kind `optimization`.
 ///
 /// ```
-/// use lindstedt::optimize::{Question, Watch, optimize};
+/// use lindstedt::optimize::{OptimizationProblem, StudyObserver, optimize};
 ///
-/// let study = optimize(Question { runs: 1, ..Question::default() }, vec![], &Watch::default())?;
+/// let study = optimize(OptimizationProblem { runs: 1, ..OptimizationProblem::default() }, vec![], &StudyObserver::default())?;
 /// let document = lindstedt::export::json::optimization(&study);
 /// assert_eq!(document.asked.variables[2].name, "length");
 /// # Ok::<(), lindstedt::optimize::OptimizeError>(())
@@ -743,14 +743,14 @@ fn asked(question: &OptimizationProblem) -> Result<Value, JsonError> {
 ///
 /// ```
 /// use lindstedt::export::json::optimization::{read_record, record_head, record_line};
-/// use lindstedt::optimize::{Question, Watch, optimize};
+/// use lindstedt::optimize::{OptimizationProblem, StudyObserver, optimize};
 ///
-/// let question = Question { runs: 2, ..Question::default() };
-/// let study = optimize(question.clone(), vec![], &Watch::default())?;
+/// let question = OptimizationProblem { runs: 2, ..OptimizationProblem::default() };
+/// let study = optimize(question.clone(), vec![], &StudyObserver::default())?;
 /// let text = record_head(&question)? + &record_line(&study.runs[1])? + "{\"number\": 0, \"fou";
 /// let (runs, whole) = read_record(&text, &question)?;
 /// assert_eq!((&runs[..], whole), (&study.runs[1..], text.len() - 18));
-/// assert_eq!(optimize(question, runs, &Watch::default())?, study);
+/// assert_eq!(optimize(question, runs, &StudyObserver::default())?, study);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_record(

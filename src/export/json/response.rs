@@ -189,9 +189,9 @@ fn stuck(branch: &response::Branch) -> Vec<f64> {
 /// The document of kind `response`.
 ///
 /// ```
-/// use lindstedt::response::{Question, respond};
+/// use lindstedt::response::{ResponseRequest, respond};
 ///
-/// let question = Question::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
+/// let question = ResponseRequest::new("x'' + x'/5 + x - cos(Omega*t) = 0", "Omega", [0.5, 1.5], "")?;
 /// let document = lindstedt::export::json::response(&respond(&question)?);
 /// assert!(document.branches.len() == 1 && document.verification.verdict == "pass");
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -124,9 +124,9 @@ impl DocumentKind {
     /// the types that write and read the documents.
     ///
     /// ```
-    /// use lindstedt::export::json::Kind;
+    /// use lindstedt::export::json::DocumentKind;
     ///
-    /// let kind = Kind::from_name("impact").ok_or("no such kind")?;
+    /// let kind = DocumentKind::from_name("impact").ok_or("no such kind")?;
     /// let schema: serde_json::Value = serde_json::from_str(kind.json_schema())?;
     /// assert_eq!(schema["title"], "lindstedt/impact/1");
     /// # Ok::<(), Box<dyn std::error::Error>>(())

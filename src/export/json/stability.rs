@@ -93,11 +93,11 @@ fn verdict(passes: bool) -> String {
 ///
 /// ```
 /// use lindstedt::Oscillator;
-/// use lindstedt::hill::{Options, transition_curves};
+/// use lindstedt::hill::{HillOptions, transition_curves};
 /// use lindstedt::report::StabilityReport;
 ///
 /// let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0")?;
-/// let curves = transition_curves(&mathieu, &Options::default())?;
+/// let curves = transition_curves(&mathieu, &HillOptions::default())?;
 /// let report = StabilityReport { curves: &curves, judged: None, tolerance: 0.01 };
 /// assert_eq!(lindstedt::export::json::stability(&report).curves[1].name, "a1");
 /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -7,9 +7,9 @@ use crate::optimize::{Finalist, Objective, OptimizationProblem, SearchRun, Study
 /// integration. A first line of comment has the units; what has no value is empty.
 ///
 /// ```
-/// use lindstedt::optimize::{Question, Watch, optimize};
+/// use lindstedt::optimize::{OptimizationProblem, StudyObserver, optimize};
 ///
-/// let study = optimize(Question { runs: 2, ..Question::default() }, vec![], &Watch::default())?;
+/// let study = optimize(OptimizationProblem { runs: 2, ..OptimizationProblem::default() }, vec![], &StudyObserver::default())?;
 /// assert_eq!(lindstedt::export::optimization::csv(&study).lines().count(), 4);
 /// # Ok::<(), lindstedt::optimize::OptimizeError>(())
 /// ```

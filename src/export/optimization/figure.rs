@@ -19,9 +19,9 @@ const DRAWN: usize = 200;
 ///
 /// ```
 /// use lindstedt::export::optimization::figure;
-/// use lindstedt::optimize::{Question, Watch, optimize};
+/// use lindstedt::optimize::{OptimizationProblem, StudyObserver, optimize};
 ///
-/// let study = optimize(Question { runs: 3, ..Question::default() }, vec![], &Watch::default())?;
+/// let study = optimize(OptimizationProblem { runs: 3, ..OptimizationProblem::default() }, vec![], &StudyObserver::default())?;
 /// assert!(figure::optimization(&study)?.contains("Convergence"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

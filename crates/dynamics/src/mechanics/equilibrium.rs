@@ -49,11 +49,11 @@ impl Rest {
 ///
 /// ```
 /// # use lindstedt_dynamics as lindstedt;
-/// use lindstedt::mechanics::{Mechanism, Place, equilibria};
+/// use lindstedt::mechanics::{Mechanism, RestPosition, equilibria};
 ///
 /// let spring = Mechanism::parse(&["r", "x"], "m*(r'^2 + r^2*x'^2)/2", "k*(r - L)^2/2 - m*g*r*cos(x)")?;
 /// let found = equilibria(&spring.equations()?)?;
-/// assert_eq!(found[0].places[0], Place::At("L + g*m/k".parse()?));
+/// assert_eq!(found[0].places[0], RestPosition::At("L + g*m/k".parse()?));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn equilibria(equations: &EquationsOfMotion) -> Result<Vec<Rest>, MechanicsError> {

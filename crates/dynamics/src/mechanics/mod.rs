@@ -8,9 +8,9 @@
 //!
 //! (L. Meirovitch, *Fundamentals of Vibrations*, 2001, sections 6.4 and 7.2; J. W. Strutt, Lord
 //! Rayleigh, *The Theory of Sound*, section 81, for D.) In: a [`Mechanism`], energies as
-//! expressions with `q'` for the velocity of `q`. Out: its [`Equations`], the places where it can
-//! rest and how it swings there, and, where its parameters have units, a check of every term and
-//! the dimensionless [`Groups`] on which the motion depends.
+//! expressions with `q'` for the velocity of `q`. Out: its [`EquationsOfMotion`], the places where
+//! it can rest and how it swings there, and, where its parameters have units, a check of every term
+//! and the dimensionless [`Groups`] on which the motion depends.
 //!
 //! ```
 //! # use lindstedt_dynamics as lindstedt;

@@ -2,7 +2,7 @@
 //!
 //! In come whole numbers of any length, fractions and symbols; out go their sums, products and
 //! quotients, exact, and their values as doubles where numbers are wanted. A division that a ring
-//! cannot do is an [`Indivisible`], which names the divisor.
+//! cannot do is a [`NotInvertible`], which names the divisor.
 //!
 //! [`Rational`] is the coefficient people see; [`Polynomial`] carries the symbols; [`Ring`] is what
 //! a derivation asks of its coefficients, so that one derivation serves exact numbers, symbols,

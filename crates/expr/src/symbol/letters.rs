@@ -4,7 +4,7 @@
 //! In an answer the amplitude is `A`, that of the first harmonic `a`, the frequency `omega`. Where
 //! an equation has one of these names for something of its own, the equation keeps it, and the
 //! answer takes another. Inside the crate the symbols of an answer are the same for every equation,
-//! those of such an equation are [apart](Symbol::apart), and [`Letters`] in force say how the
+//! those of such an equation are [apart](Symbol::apart), and [`ResultSymbols`] in force say how the
 //! former are printed: in formulas and in sentences, in every format.
 
 use std::cell::Cell;

@@ -106,10 +106,10 @@ pub struct JudgedPhases {
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
-/// use lindstedt::impact::{Reading, Setup, solve};
+/// use lindstedt::impact::{PhaseReading, Setup, solve};
 ///
 /// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
-/// let derived = impact.column(Reading::Derived).ok_or("none passes")?;
+/// let derived = impact.column(PhaseReading::Derived).ok_or("none passes")?;
 /// let contact = &derived.phases.phases[1];
 /// assert!(contact.end > contact.start && contact.at(contact.start).1 > 0.0); // pressed into the barrier
 /// assert!((derived.phases.penetration / impact.truth.penetration - 1.0).abs() < 0.01);

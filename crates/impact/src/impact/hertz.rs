@@ -57,8 +57,8 @@ pub struct StiffnessDesign {
     pub gravity: f64,
 }
 
-/// The stiffness gamma of the default [`Design`], by equation (8): that of every impact and every
-/// simulation for which no other is given.
+/// The stiffness gamma of the default [`StiffnessDesign`], by equation (8): that of every impact
+/// and every simulation for which no other is given.
 pub const DEFAULT_STIFFNESS: f64 = 30_406_664.685_165_863;
 
 impl Default for StiffnessDesign {

@@ -2,7 +2,7 @@
 //! x - q.
 //!
 //! In: the force per unit of gamma as a closure of the depth, the greatest depth D, a [`Rule`].
-//! Out: a [`Line`].
+//! Out: a [`LinearContactForce`].
 //!
 //! With F(d) the force, the six rules ask, on 0 <= d <= D,
 //!
@@ -17,7 +17,7 @@
 //!
 //! The paper says "least square method" and no more; the affine line is the plain reading, so that
 //! is the default. It is not zero at touch: the acceleration jumps there by gamma times
-//! [`Line::at_touch`].
+//! [`LinearContactForce::at_touch`].
 
 use std::f64::consts::PI;
 use std::fmt;

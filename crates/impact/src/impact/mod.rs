@@ -46,14 +46,14 @@
 //!
 //! ```
 //! # use lindstedt_impact as lindstedt;
-//! use lindstedt::impact::hertz::{Design, elastic_force};
+//! use lindstedt::impact::hertz::{StiffnessDesign, elastic_force};
 //! use lindstedt::impact::Rule;
-//! use lindstedt::impact::{ContactSpeed, Swing, three_phases};
+//! use lindstedt::impact::{ContactSpeed, ImpactProblem, three_phases};
 //!
-//! let swing = Swing {
+//! let swing = ImpactProblem {
 //!     amplitude: 1.5,
 //!     barrier: 0.323,
-//!     stiffness: Design::default().stiffness()?,
+//!     stiffness: StiffnessDesign::default().stiffness()?,
 //!     frequency_squared: 1.0 - 1.5 * 1.5 / 8.0,
 //!     linear_stiffness: 1.0,
 //!     restoring_force: &|x| x.sin(),

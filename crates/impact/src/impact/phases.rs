@@ -1,7 +1,8 @@
 //! Approach, contact, return: one impact of the pendulum in closed form, equations (13) to (16).
 //!
-//! In: a [`Swing`]: amplitude A, barrier x_c, stiffness gamma, the law omega^2 of the free swing,
-//! the forces as closures. Out: [`ThreePhases`], the motion from release at x = -A back to -A.
+//! In: an [`ImpactProblem`]: amplitude A, barrier x_c, stiffness gamma, the law omega^2 of the free
+//! swing, the forces as closures. Out: [`ThreePhases`], the motion from release at x = -A back to
+//! -A.
 //!
 //! ```text
 //! approach   x = -A cos(omega t)                                  t1 = acos(-x_c/A)/omega          (13)
@@ -134,9 +135,9 @@ pub struct MotionPhase {
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
-/// use lindstedt::impact::{ContactSpeed, Rule, Swing, hertz::elastic_force, three_phases};
+/// use lindstedt::impact::{ContactSpeed, Rule, ImpactProblem, hertz::elastic_force, three_phases};
 ///
-/// let swing = Swing {
+/// let swing = ImpactProblem {
 ///     amplitude: 1.5,
 ///     barrier: 0.323,
 ///     stiffness: 1e6,

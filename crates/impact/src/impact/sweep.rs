@@ -50,7 +50,7 @@ pub struct TooManyRuns {
 /// The number of motions of a grid: the product of the numbers of values.
 ///
 /// # Errors
-/// [`TooMany`], beyond [`MOST_MOTIONS`].
+/// [`TooManyRuns`], beyond [`MOST_MOTIONS`].
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;

@@ -60,7 +60,7 @@ pub struct StudyObserver<'a> {
     pub stop: &'a (dyn Fn() -> bool + Sync),
     /// Hears of every run that has ended by itself.
     pub done: &'a (dyn Fn(&SearchRun) + Sync),
-    /// Hears of so many more generations, of those that [`Question::most_work`] counts.
+    /// Hears of so many more generations, of those that [`OptimizationProblem::most_work`] counts.
     pub progress: &'a (dyn Fn(usize) + Sync),
 }
 

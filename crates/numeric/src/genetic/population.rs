@@ -214,9 +214,9 @@ impl GeneticOptions {
     ///
     /// ```
     /// # use lindstedt_numeric as lindstedt;
-    /// use lindstedt::genetic::Options;
+    /// use lindstedt::genetic::GeneticOptions;
     ///
-    /// assert_eq!(Options::default().children(), (78, 20)); // of 100 with an elite of 2
+    /// assert_eq!(GeneticOptions::default().children(), (78, 20)); // of 100 with an elite of 2
     /// ```
     pub fn children(&self) -> (usize, usize) {
         let all = self.population.saturating_sub(self.elite);

@@ -29,7 +29,7 @@ pub enum ContinuationStep<Point, End> {
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::continuation::{Step, bordered, follow, tangent};
+/// use lindstedt::numeric::continuation::{ContinuationStep, bordered, follow, tangent};
 /// use lindstedt::numeric::ode::newton::{Progress, newton};
 /// use nalgebra::{DMatrix, DVector};
 ///
@@ -49,9 +49,9 @@ pub enum ContinuationStep<Point, End> {
 ///     };
 ///     let found = newton(guess.clone(), 5, equations, judged);
 ///     match found.and_then(|at| Some((tangent(&bordered(&slopes(&at), along).lu())?, at))) {
-///         None => Step::TooLong,
-///         Some((_, at)) if here[1] < 0.0 && at[1] >= 0.0 => Step::Ended(Some((at, along.clone())), "around"),
-///         Some((along, at)) => Step::Taken((at, along), 1.4),
+///         None => ContinuationStep::TooLong,
+///         Some((_, at)) if here[1] < 0.0 && at[1] >= 0.0 => ContinuationStep::Ended(Some((at, along.clone())), "around"),
+///         Some((along, at)) => ContinuationStep::Taken((at, along), 1.4),
 ///     }
 /// };
 /// let (points, end) = follow((vector(1.0, 0.0), vector(0.0, 1.0)), 0.01, 0.3, step);

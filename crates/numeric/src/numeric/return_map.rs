@@ -135,10 +135,10 @@ impl NumericalLimitCycle {
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::return_map::{Equation, nearest_limit_cycle};
+/// use lindstedt::numeric::return_map::{AutonomousEquation, nearest_limit_cycle};
 ///
 /// // Van der Pol with mu = 1: the period of the cycle is 6.6632868593.
-/// let equation = Equation {
+/// let equation = AutonomousEquation {
 ///     acceleration: &|x, v| (1.0 - x * x) * v - x,
 ///     equilibrium: 0.0,
 ///     amplitude: 2.0,

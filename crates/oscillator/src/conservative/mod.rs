@@ -11,8 +11,8 @@
 //!
 //! In comes the force as an expression and the name of its coordinate; out go `V` and `c_k` as
 //! expressions, or `None` where a term has no closed form here: the methods fall back on quadrature
-//! and say so. With numbers for all symbols out goes a [`Force`], which has a value, a slope and a
-//! turning point as near to rest as one likes, and knows where it turns fast; its
+//! and say so. With numbers for all symbols out goes a [`CentredForce`], which has a value, a slope
+//! and a turning point as near to rest as one likes, and knows where it turns fast; its
 //! [well](well::Well) has ends.
 
 pub mod features;

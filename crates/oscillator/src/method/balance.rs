@@ -133,7 +133,7 @@ impl Continuation {
 /// `degree` is that of a polynomial force.
 ///
 /// # Errors
-/// [`Lost`].
+/// [`BalanceError`].
 pub fn balance(
     force: &CentredForce,
     degree: Option<u32>,

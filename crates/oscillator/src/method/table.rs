@@ -1,7 +1,7 @@
 //! The table of methods: a row each, with what the rest of the program needs to know of it.
 //!
-//! In: a [`Method`]. Out: its [`Entry`]: the function that solves, the options it takes, what it
-//! sees of a force.
+//! In: a [`Method`]. Out: its [`MethodEntry`]: the function that solves, the options it takes, what
+//! it sees of a force.
 
 use super::{
     Options, Refusal, amplitude_frequency, averaging, energy_balance, exact, frequency_formula,

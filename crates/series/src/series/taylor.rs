@@ -293,7 +293,7 @@ impl TaylorExpansion<'_> {
         series
     }
 
-    /// As [`Expansion::power`], of a series without a pole that does not vanish.
+    /// As [`TaylorExpansion::power`], of a series without a pole that does not vanish.
     fn regular_power(
         &self,
         base: &TruncatedSeries,

@@ -299,10 +299,10 @@ struct Hill {
 /// ```
 /// # use lindstedt_verify as lindstedt;
 /// use lindstedt::Oscillator;
-/// use lindstedt::hill::{Options, transition_curves};
+/// use lindstedt::hill::{HillOptions, transition_curves};
 ///
 /// let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0")?;
-/// let curves = transition_curves(&mathieu, &Options { order: 2, tongues: 1, ..Options::default() })?;
+/// let curves = transition_curves(&mathieu, &HillOptions { order: 2, tongues: 1, ..HillOptions::default() })?;
 /// let formulas: Vec<String> = curves.curves.iter().map(|curve| format!("{}: {}", curve.name, curve.middle)).collect();
 /// assert_eq!(formulas, ["a0: -eps^2/8", "a1: 1 - eps/2 - eps^2/32", "b1: 1 + eps/2 - eps^2/32"]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())

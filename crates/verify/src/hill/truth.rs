@@ -102,10 +102,10 @@ pub enum TruthError {
 /// ```
 /// # use lindstedt_verify as lindstedt;
 /// use lindstedt::Oscillator;
-/// use lindstedt::hill::{Options, judge, transition_curves};
+/// use lindstedt::hill::{HillOptions, judge, transition_curves};
 ///
 /// let mathieu = Oscillator::parse("x'' + (delta + eps*cos(2*t))*x = 0")?;
-/// let curves = transition_curves(&mathieu, &Options::default())?;
+/// let curves = transition_curves(&mathieu, &HillOptions::default())?;
 /// let judged = judge(&curves, &"eps = 2/5".parse()?, 1e-3)?;
 /// // a_1 and b_1 of Mathieu's equation in the form of Abramowitz and Stegun, q = eps/2.
 /// assert!(judged.iter().all(|curve| curve.passes));

@@ -5,11 +5,11 @@
 //! x'' + f(x, x', t; p) = 0,  f periodic in t:    X(theta) = a_0 + sum a_k cos(k theta) + b_k sin(k theta),  theta = omega t
 //! ```
 //!
-//! In: a [`Question`]: an oscillator with numbers for all parameters but one, and the range in
-//! which that one varies. Out: a [`Response`]: branches found by harmonic balance and followed by
-//! pseudo-arclength; the multipliers of the true motion beside each of their points; folds,
-//! crossings, period doublings, second frequencies; backbones; and how far all of that is from
-//! motions that Runge-Kutta finds. Units are those of the equation.
+//! In: a [`ResponseRequest`]: an oscillator with numbers for all parameters but one, and the range
+//! in which that one varies. Out: a [`ResponseDiagram`]: branches found by harmonic balance and
+//! followed by pseudo-arclength; the multipliers of the true motion beside each of their points;
+//! folds, crossings, period doublings, second frequencies; backbones; and how far all of that is
+//! from motions that Runge-Kutta finds. Units are those of the equation.
 //!
 //! - [`driven`]: the equation in the phase of the motion.
 //! - [`balance`]: its equations for Fourier coefficients.
@@ -287,10 +287,10 @@ const MOST_BRANCHES: usize = 12;
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
-/// use lindstedt::response::{Question, respond};
+/// use lindstedt::response::{ResponseRequest, respond};
 ///
 /// // Duffing's equation, hardening: a jump down on the way up.
-/// let question = Question::new("x'' + x'/10 + x + x^3 - F*cos(Omega*t) = 0", "Omega", [0.5, 2.5], "F = 3/10")?;
+/// let question = ResponseRequest::new("x'' + x'/10 + x + x^3 - F*cos(Omega*t) = 0", "Omega", [0.5, 2.5], "F = 3/10")?;
 /// let response = respond(&question)?;
 /// let fold = &response.bifurcations[0];
 /// assert_eq!((fold.kind.name(), response.branches.len()), ("fold", 1));

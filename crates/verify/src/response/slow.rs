@@ -1,9 +1,9 @@
 //! Steady motions by the slow equations of a method, beside the branches that were found and
 //! judged.
 //!
-//! In: a [`Response`] and a [`Solution`] with slow equations of the primary resonance, such as that
-//! of multiple scales. Out: its steady motions over the range, and how far they are from the stable
-//! points of the branches, each of which has its true motion beside it.
+//! In: a [`ResponseDiagram`] and a [`Solution`] with slow equations of the primary resonance, such
+//! as that of multiple scales. Out: its steady motions over the range, and how far they are from
+//! the stable points of the branches, each of which has its true motion beside it.
 
 use super::{ResponseDiagram, ResponseRequest};
 use crate::solution::Solution;
@@ -92,10 +92,10 @@ impl ResponseDiagram {
     ///
     /// ```
     /// # use lindstedt_verify as lindstedt;
-    /// use lindstedt::response::{Question, respond};
+    /// use lindstedt::response::{ResponseRequest, respond};
     /// use lindstedt::{Method, Options, solve};
     ///
-    /// let question = Question::new("x'' + x'/25 + x + x^3/20 = cos(Omega*t)/20", "Omega", [0.8, 1.2], "")?;
+    /// let question = ResponseRequest::new("x'' + x'/25 + x + x^3/20 = cos(Omega*t)/20", "Omega", [0.8, 1.2], "")?;
     /// let options = Options { method: Some(Method::MultipleScales), ..Options::default() };
     /// let solution = solve(&question.oscillator, &options)?;
     /// let response = respond(&question)?.beside(solution);

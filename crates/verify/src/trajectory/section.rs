@@ -87,11 +87,11 @@ impl Trajectory {
     /// # use lindstedt_verify as lindstedt;
     /// use lindstedt::Oscillator;
     /// use lindstedt::expr::parse_expression;
-    /// use lindstedt::trajectory::{Course, Section};
+    /// use lindstedt::trajectory::{TrajectoryRequest, PoincareSection};
     ///
-    /// let mut course = Course::of_equation(&Oscillator::parse("x'' + x = 0")?);
+    /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
     /// course.begin("x".into(), 1.0)?;
-    /// course.section = Some(Section::Rising(parse_expression("x'")?));
+    /// course.section = Some(PoincareSection::Rising(parse_expression("x'")?));
     /// let turning: Vec<f64> = course.follow()?.crossings().iter().map(|crossing| crossing.time).collect();
     /// assert!((turning[2] - 5.0 * std::f64::consts::PI).abs() < 1e-12);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -108,11 +108,11 @@ impl Trajectory {
     /// # use lindstedt_verify as lindstedt;
     /// use lindstedt::Oscillator;
     /// use lindstedt::expr::parse_expression;
-    /// use lindstedt::trajectory::{Course, Section};
+    /// use lindstedt::trajectory::{TrajectoryRequest, PoincareSection};
     ///
-    /// let mut course = Course::of_equation(&Oscillator::parse("x'' + x = 0")?);
+    /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + x = 0")?);
     /// course.begin("x".into(), 1.0)?;
-    /// course.section = Some(Section::Rising(parse_expression("x - 1")?));
+    /// course.section = Some(PoincareSection::Rising(parse_expression("x - 1")?));
     /// let motion = course.follow()?;
     /// assert_eq!((motion.crossings().len(), motion.touches().len()), (0, 7));
     /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -34,9 +34,9 @@ impl Trajectory {
     /// ```
     /// # use lindstedt_verify as lindstedt;
     /// use lindstedt::Oscillator;
-    /// use lindstedt::trajectory::Course;
+    /// use lindstedt::trajectory::TrajectoryRequest;
     ///
-    /// let mut course = Course::of_equation(&Oscillator::parse("x'' + 0.25*x' - x + x^3 - 0.3*cos(t)")?);
+    /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + 0.25*x' - x + x^3 - 0.3*cos(t)")?);
     /// course.begin("x".into(), 1.0)?;
     /// course.duration = 400.0;
     /// let known = course.clone().follow()?.known_until().ok_or("a chaotic motion")?;

@@ -1,9 +1,9 @@
 //! Many motions of one equation: a parameter, or a start, takes value after value, and each motion
 //! leaves its section behind.
 //!
-//! In: a [`Course`] and the values of some of its names. Out: a [`SweptMotion`] each, in their
-//! order, whatever the number of threads; where somebody asks to stop, those that were begun. With
-//! a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
+//! In: a [`TrajectoryRequest`] and the values of some of its names. Out: a [`SweptMotion`] each, in
+//! their order, whatever the number of threads; where somebody asks to stop, those that were begun.
+//! With a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
 
 use super::{Crossing, TrajectoryError, TrajectoryRequest};
 use crate::parallel::{each, threads};
@@ -40,9 +40,9 @@ pub struct SweptMotion {
 /// ```
 /// # use lindstedt_verify as lindstedt;
 /// use lindstedt::Oscillator;
-/// use lindstedt::trajectory::{Course, sweep};
+/// use lindstedt::trajectory::{TrajectoryRequest, sweep};
 ///
-/// let mut course = Course::of_equation(&Oscillator::parse("x'' + k*x = 0")?);
+/// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + k*x = 0")?);
 /// course.begin("x'".into(), 1.0)?;
 /// let motions = sweep(&course, &["k".into()], &[vec![1.0], vec![4.0]], || ()).map_err(|(_, error)| error)?;
 /// assert!((motions[1].extremes[0][1] - 0.5).abs() < 1e-12);

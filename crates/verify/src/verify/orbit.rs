@@ -1,6 +1,6 @@
 //! The true motion of an equation as it was typed: its period from the energy or the Runge-Kutta
-//! return, its path from Runge-Kutta. Which motion is meant comes as plain data ([`Meant`]); how a
-//! formula came about is not known here, and `tests/library/layers.rs` holds that wall.
+//! return, its path from Runge-Kutta. Which motion is meant comes as plain data ([`OrbitTarget`]);
+//! how a formula came about is not known here, and `tests/library/layers.rs` holds that wall.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;

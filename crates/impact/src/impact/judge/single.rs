@@ -120,7 +120,7 @@ fn way_forward(reason: &StopReason) -> String {
 /// ```
 /// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Collision, hertz::elastic_force, true_impact};
-/// use lindstedt::numeric::ode::Options;
+/// use lindstedt::numeric::ode::IntegrationOptions;
 ///
 /// let pendulum = Collision {
 ///     release: -1.5,
@@ -130,7 +130,7 @@ fn way_forward(reason: &StopReason) -> String {
 ///     elastic_force: &elastic_force,
 ///     damping: 0.0,
 /// };
-/// let truth = true_impact(&pendulum, &Options::with_tolerance(1e-12))?;
+/// let truth = true_impact(&pendulum, &IntegrationOptions::with_tolerance(1e-12))?;
 /// let by_energy = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();
 /// assert!((truth.touch.v - by_energy).abs() < 1e-10 && truth.energy_drift < 1e-9);
 /// # Ok::<(), lindstedt::impact::TrueImpactError>(())
@@ -314,7 +314,7 @@ const TIGHTEST: f64 = 1e-14;
 /// ```
 /// # use lindstedt_impact as lindstedt;
 /// use lindstedt::impact::{Collision, assured_impact, hertz::elastic_force};
-/// use lindstedt::numeric::ode::Options;
+/// use lindstedt::numeric::ode::IntegrationOptions;
 ///
 /// let pendulum = Collision {
 ///     release: -1.5,
@@ -324,7 +324,7 @@ const TIGHTEST: f64 = 1e-14;
 ///     elastic_force: &elastic_force,
 ///     damping: 0.0,
 /// };
-/// let truth = assured_impact(&pendulum, &Options::default())?;
+/// let truth = assured_impact(&pendulum, &IntegrationOptions::default())?;
 /// assert!((truth.penetration / 0.005446775 - 1.0).abs() < 1e-6); // rad
 /// # Ok::<(), lindstedt::impact::TrueImpactError>(())
 /// ```
@@ -408,10 +408,10 @@ impl TrueImpact {
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
-/// use lindstedt::impact::{Reading, Setup, deviation, solve};
+/// use lindstedt::impact::{PhaseReading, Setup, deviation, solve};
 ///
 /// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
-/// let derived = impact.column(Reading::Derived).ok_or("none")?;
+/// let derived = impact.column(PhaseReading::Derived).ok_or("none")?;
 /// assert_eq!(deviation(&derived.phases, &impact.truth), derived.deviation);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -175,9 +175,9 @@ pub enum IntegrationError {
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::ode::{Options, State, integrate};
+/// use lindstedt::numeric::ode::{IntegrationOptions, State, integrate};
 ///
-/// let path = integrate(|_t, x, _v| -x, State { t: 0.0, x: 1.0, v: 0.0 }, 3.0, &[], &Options::default())?;
+/// let path = integrate(|_t, x, _v| -x, State { t: 0.0, x: 1.0, v: 0.0 }, 3.0, &[], &IntegrationOptions::default())?;
 /// assert!((path.end().x - 3.0_f64.cos()).abs() < 1e-8);
 /// # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
 /// ```
@@ -202,15 +202,15 @@ pub fn integrate<'a>(
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::ode::{Event, Options, Phase, State, integrate_phases};
+/// use lindstedt::numeric::ode::{Event, IntegrationOptions, IntegrationPhase, State, integrate_phases};
 ///
 /// // Free fall from a height of 1 until a spring of stiffness 100 is met at x = 0.
 /// let met = Event::switch(|_t, x, _v| x, |state| (1, State { x: 0.0, ..state })).falling();
-/// let fall = Phase::new(|_t, _x, _v| -1.0, vec![met]);
+/// let fall = IntegrationPhase::new(|_t, _x, _v| -1.0, vec![met]);
 /// let deepest = Event::stop(|_t, _x, v| v).rising();
-/// let spring = Phase::new(|_t, x, _v| -1.0 - 100.0 * x, vec![deepest]);
+/// let spring = IntegrationPhase::new(|_t, x, _v| -1.0 - 100.0 * x, vec![deepest]);
 /// let start = State { t: 0.0, x: 1.0, v: 0.0 };
-/// let path = integrate_phases(&[fall, spring], 0, start, 10.0, &Options::default())?;
+/// let path = integrate_phases(&[fall, spring], 0, start, 10.0, &IntegrationOptions::default())?;
 /// let depth = -path.end().x;
 /// assert!((50.0 * depth * depth - (1.0 + depth)).abs() < 1e-8); // energy of the spring, work of the weight
 /// # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
@@ -233,13 +233,13 @@ pub fn integrate_phases(
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::ode::{Action, Event, Options, Point, integrate_first_order};
+/// use lindstedt::numeric::ode::{Action, Event, IntegrationOptions, Point, integrate_first_order};
 ///
 /// // Euler's equations of a body that turns freely: energy and angular momentum are kept.
 /// let spin = |_t: f64, w: &[f64; 3], rates: &mut [f64; 3]| *rates = [-w[1] * w[2], 2.0 * w[2] * w[0], -w[0] * w[1]];
 /// let start = Point { t: 0.0, y: [0.1, 1.0, 0.2] };
 /// let turned = Event::new(|point: &Point<[f64; 3]>| point.y[1], Action::Record).falling();
-/// let path = integrate_first_order(spin, start, 20.0, &[turned], &Options::with_tolerance(1e-12))?;
+/// let path = integrate_first_order(spin, start, 20.0, &[turned], &IntegrationOptions::with_tolerance(1e-12))?;
 /// let energy = |w: [f64; 3]| 2.0 * w[0] * w[0] + 2.0 * w[1] * w[1] + 2.0 * w[2] * w[2];
 /// assert!(path.samples(100).all(|point| (energy(point.y) - energy(start.y)).abs() < 1e-10));
 /// assert!(!path.occurrences().is_empty());

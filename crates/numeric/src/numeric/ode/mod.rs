@@ -18,13 +18,13 @@
 //!
 //! ```
 //! # use lindstedt_numeric as lindstedt;
-//! use lindstedt::numeric::ode::{Event, Options, State, integrate};
+//! use lindstedt::numeric::ode::{Event, IntegrationOptions, State, integrate};
 //!
 //! // The pendulum from 1.5 rad at rest: its first passage through the vertical is a quarter of its period.
 //! let pendulum = |_t: f64, x: f64, _v: f64| -x.sin();
 //! let start = State { t: 0.0, x: 1.5, v: 0.0 };
 //! let vertical = Event::stop(|_t, x, _v| x).falling();
-//! let path = integrate(pendulum, start, 10.0, &[vertical], &Options::default())?;
+//! let path = integrate(pendulum, start, 10.0, &[vertical], &IntegrationOptions::default())?;
 //!
 //! let period = std::f64::consts::TAU / 0.860_608_346_679_613;
 //! assert!((path.end().t - 0.25 * period).abs() < 1e-9);

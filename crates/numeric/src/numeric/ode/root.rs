@@ -116,9 +116,9 @@ pub enum BisectionStop {
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::ode::root::{Until, bisect};
+/// use lindstedt::numeric::ode::root::{BisectionStop, bisect};
 ///
-/// let [defined, undefined] = bisect(|x: f64| (2.0 - x).sqrt().is_finite(), 0.0, 3.0, Until::Width(0.0));
+/// let [defined, undefined] = bisect(|x: f64| (2.0 - x).sqrt().is_finite(), 0.0, 3.0, BisectionStop::Width(0.0));
 /// assert_eq!([defined, undefined], [2.0, 2.0_f64.next_up()]);
 /// ```
 pub fn bisect(

@@ -192,14 +192,14 @@ pub fn bounded(
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::exact::Doubles;
-/// use lindstedt::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand};
+/// use lindstedt::method::secular::{AmplitudeKind, Detuning, ForceTerm, Scheme, expand};
 /// use lindstedt::{series::FourierSeries, solution::AmplitudeConvention};
 ///
 /// // x'' + x + delta x^3 = 0
 /// let cubic = ForceTerm { order: 1, position: 3, velocity: 0, coefficient: FourierSeries::constant(Doubles, 1.0) };
 /// let scheme = Scheme {
 ///     normalisation: AmplitudeConvention::Initial,
-///     amplitude: Amplitude::Free,
+///     amplitude: AmplitudeKind::Free,
 ///     detuning: Detuning::Acceleration,
 /// };
 /// let found = expand(&Doubles, &[cubic], 1, &scheme)?;
@@ -216,7 +216,7 @@ pub fn expand<R: Ring>(
 }
 
 /// As [`expand`] over the whole numbers, and with the same result: by many primes where numbers are
-/// long. Of the [frequency alone](Extent::Frequency) where no more is wanted.
+/// long. Of the [frequency alone](ExpansionScope::Frequency) where no more is wanted.
 ///
 /// # Errors
 /// See [`SecularError`].
@@ -224,17 +224,17 @@ pub fn expand<R: Ring>(
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::exact::{Integers, Integer};
-/// use lindstedt::method::secular::{Amplitude, Detuning, Extent, ForceTerm, Scheme, expand_numbers};
+/// use lindstedt::method::secular::{AmplitudeKind, Detuning, ExpansionScope, ForceTerm, Scheme, expand_numbers};
 /// use lindstedt::{series::FourierSeries, solution::AmplitudeConvention};
 ///
 /// // Duffing: y'' + y + delta y^3 = 0
 /// let cube = ForceTerm { order: 1, position: 3, velocity: 0, coefficient: FourierSeries::integer(Integers, 1) };
 /// let scheme = Scheme {
 ///     normalisation: AmplitudeConvention::Initial,
-///     amplitude: Amplitude::Free,
+///     amplitude: AmplitudeKind::Free,
 ///     detuning: Detuning::Acceleration,
 /// };
-/// let found = expand_numbers(&[cube], 40, &scheme, Extent::Frequency)?;
+/// let found = expand_numbers(&[cube], 40, &scheme, ExpansionScope::Frequency)?;
 /// assert_eq!(found.frequency_squared[1].mean(), (Integer::from(3), &Integer::from(4)));
 /// assert!(found.frequency_squared[40].mean().1.bits() > 150);
 /// # Ok::<(), lindstedt::method::secular::SecularError>(())
@@ -292,7 +292,7 @@ pub(crate) fn expand_numbers_supervised(
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::exact::{Integers, Polynomial, Polynomials};
-/// use lindstedt::method::secular::{Amplitude, Detuning, Extent, ForceTerm, Scheme, expand_polynomials};
+/// use lindstedt::method::secular::{AmplitudeKind, Detuning, ExpansionScope, ForceTerm, Scheme, expand_polynomials};
 /// use lindstedt::{Symbol, series::FourierSeries, solution::AmplitudeConvention};
 ///
 /// // y'' + y + delta (a y^2 + b y^3) = 0
@@ -302,10 +302,10 @@ pub(crate) fn expand_numbers_supervised(
 /// };
 /// let scheme = Scheme {
 ///     normalisation: AmplitudeConvention::FirstHarmonic,
-///     amplitude: Amplitude::Free,
+///     amplitude: AmplitudeKind::Free,
 ///     detuning: Detuning::Acceleration,
 /// };
-/// let found = expand_polynomials(&[term(2, "a"), term(3, "b")], 6, &scheme, Extent::Frequency)?;
+/// let found = expand_polynomials(&[term(2, "a"), term(3, "b")], 6, &scheme, ExpansionScope::Frequency)?;
 /// let (numerator, denominator) = found.frequency_squared[2].mean();
 /// // -5/6 a^2 + 3/128 b^2
 /// assert_eq!((numerator.terms().len(), denominator.to_string().as_str()), (2, "384"));
@@ -389,7 +389,7 @@ impl SecularExpansion<Integers> {
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
 /// use lindstedt::exact::Doubles;
-/// use lindstedt::method::secular::{Amplitude, Detuning, ForceTerm, Scheme, expand_from_root};
+/// use lindstedt::method::secular::{AmplitudeKind, Detuning, ForceTerm, Scheme, expand_from_root};
 /// use lindstedt::{series::FourierSeries, solution::AmplitudeConvention};
 ///
 /// // The cycle of van der Pol, x = 2 y: y'' + y - delta y' + 4 delta y^2 y' = 0
@@ -397,7 +397,7 @@ impl SecularExpansion<Integers> {
 /// let term = |position, coefficient| ForceTerm { order: 1, position, velocity: 1, coefficient: number(coefficient) };
 /// let scheme = Scheme {
 ///     normalisation: AmplitudeConvention::FirstHarmonic,
-///     amplitude: Amplitude::Determined,
+///     amplitude: AmplitudeKind::Determined,
 ///     detuning: Detuning::Acceleration,
 /// };
 /// // Along a*cos(tau) the secular sine is a^3 - a: its slope at a = 1 is 2.

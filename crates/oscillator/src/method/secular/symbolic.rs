@@ -274,7 +274,8 @@ struct SymbolicImage {
     orders: Vec<Vec<u64>>,
 }
 
-/// One order: the numbers as numerators over one denominator, point by point as in an [`Image`].
+/// One order: the numbers as numerators over one denominator, point by point as in a
+/// [`SymbolicImage`].
 struct SymbolicOrder {
     denominator: Integer,
     numerators: Vec<Integer>,

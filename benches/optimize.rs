@@ -10,7 +10,7 @@ use lindstedt::optimize::{OptimizationProblem, Route, StudyObserver, optimize};
 fn benches(criterion: &mut Criterion) {
     let question = OptimizationProblem::default();
     let space = question.space().expect("a box");
-    let middle = space.at(&[0.5; 4]);
+    let middle = space.point_at(&[0.5; 4]);
     criterion.bench_function("optimize/one design", |bencher| {
         bencher.iter(|| question.follow(&middle, Route::Chain, false));
     });
@@ -26,7 +26,7 @@ fn benches(criterion: &mut Criterion) {
         bencher.iter(|| {
             let evaluate = |point: &[f64]| match question.follow(point, Route::Chain, false) {
                 Ok(design) => question.evaluation(&design),
-                Err(_) => lindstedt::genetic::Evaluation::of(f64::INFINITY),
+                Err(_) => lindstedt::genetic::Evaluation::unconstrained(f64::INFINITY),
             };
             search(&space, evaluate, &question.genetic, &mut generator(1, 0), &mut |_| true)
         });

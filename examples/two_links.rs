@@ -40,8 +40,8 @@ pub fn report() -> Result<String, Box<dyn std::error::Error>> {
     let (mut drift, mut difference) = (0.0_f64, 0.0_f64);
     for index in 0..=200 {
         let time = END * f64::from(index) / 200.0;
-        let state = path.at(time).ok_or("the motion ends before")?;
-        let other = check.at(time).ok_or("the motion ends before")?;
+        let state = path.states_at(time).ok_or("the motion ends before")?;
+        let other = check.states_at(time).ok_or("the motion ends before")?;
         drift = drift.max((energy(&state) - energy(&start)).abs());
         for (one, other) in state.iter().zip(other) {
             difference = difference.max((one - other).abs());

@@ -8,7 +8,7 @@ use lindstedt::export::{latex, printable, text};
 use lindstedt::report::Document;
 use lindstedt::solution::Solution;
 
-use super::{Common, Failure, Format, Outcome, whole};
+use super::{Common, Failure, Format, Outcome, text_writer};
 
 /// A result, and how it is written in each format.
 pub(super) struct Answer<'a> {
@@ -38,7 +38,7 @@ impl Answer<'_> {
             format => (self.other)(format)?,
         };
         Ok(Outcome {
-            result: whole(text),
+            result: text_writer(text),
             picture: pictured(common, self.picture),
             note: None,
             verdict: None,

@@ -109,5 +109,8 @@ fn outcome(
             format => no_such(format),
         },
     };
-    Ok(Outcome { verdict: Some(Verdict::of(audit.passes(own.strict))), ..answer.outcome(common)? })
+    Ok(Outcome {
+        verdict: Some(Verdict::from_passed(audit.passes(own.strict))),
+        ..answer.outcome(common)?
+    })
 }

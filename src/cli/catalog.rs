@@ -5,7 +5,7 @@ use lindstedt::catalog::{CATALOG, find, nearest};
 use lindstedt::export::{catalog, html, json};
 
 use super::answer::{no_such, page};
-use super::{Common, Failure, Format, Outcome, Work, json_text, whole};
+use super::{Common, Failure, Format, Outcome, Work, json_text, text_writer};
 
 /// List the classical oscillators that `derive` knows by name
 #[derive(Args)]
@@ -53,5 +53,11 @@ fn run(arguments: &CatalogArguments) -> Result<Outcome, Failure> {
         Format::Json => json_text(&json::catalog(entries))?,
         format => no_such(format)?,
     };
-    Ok(Outcome { result: whole(text), picture: None, note: None, verdict: None, partial: false })
+    Ok(Outcome {
+        result: text_writer(text),
+        picture: None,
+        note: None,
+        verdict: None,
+        partial: false,
+    })
 }

@@ -124,8 +124,10 @@ fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
         false => certificate::certify(&oscillator, &solution, &values),
     };
     let (certificate, certified) = proved.map_err(|error| refused(&error))?;
-    let supervision =
-        Supervision { interrupt: Interrupt::by(&STOP), progress: Progress::by(&PROGRESS) };
+    let supervision = Supervision {
+        interrupt: Interrupt::from_flag(&STOP),
+        progress: Progress::from_counter(&PROGRESS),
+    };
     let validity = arguments.range.as_ref().map(|(low, high)| {
         with_progress("of the range", || {
             certificate::validity(

@@ -98,7 +98,7 @@ fn run(arguments: &CompareArguments) -> Result<Outcome, Failure> {
     let notes = notes.into_iter().chain(of_letters.into_iter().flatten());
     let notes: Vec<String> = notes.map(|note| format!("note: {note}")).collect();
     Ok(Outcome {
-        verdict: Some(Verdict::of(passed)),
+        verdict: Some(Verdict::from_passed(passed)),
         note: (!notes.is_empty()).then(|| notes.join("\n")),
         ..answer.outcome(&arguments.common)?
     })

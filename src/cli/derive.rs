@@ -23,7 +23,7 @@ use lindstedt::{Interrupt, Oscillator, Progress, Supervision, Symbol};
 use super::answer::{Draw, drawn, no_such, page, pictured};
 use super::problem::problem;
 use super::progress::{PROGRESS, with_progress};
-use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, tolerance, whole};
+use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, text_writer, tolerance};
 
 /// An equation, and how it is to be answered.
 #[derive(Args)]
@@ -123,7 +123,7 @@ fn order(text: &str) -> Result<Order, String> {
     match *numbers.as_slice() {
         [order] => Ok(Order::Power(order)),
         _ => {
-            let degrees = Degrees::of(&numbers).map(Order::Degrees);
+            let degrees = Degrees::from_list(&numbers).map(Order::Degrees);
             degrees.ok_or_else(|| {
                 "expected a whole number, or the degrees of an approximant".to_owned()
             })
@@ -304,7 +304,7 @@ fn run(arguments: &DeriveArguments) -> Result<Outcome, Failure> {
         _ => None,
     });
     Ok(Outcome {
-        result: whole(text),
+        result: text_writer(text),
         picture: pictured(&arguments.common, picture),
         note: asked.map(|asked| {
             format!(
@@ -367,7 +367,7 @@ fn solve_at(
 
 /// A refusal, with the term that it names shown in the equation.
 pub(super) fn refused(oscillator: &Oscillator, refusal: &Refusal) -> Failure {
-    let place = refusal.term().and_then(|term| oscillator.typed.place(term));
+    let place = refusal.term().and_then(|term| oscillator.typed.locate(term));
     let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
     Failure::advised(&format!("{refusal}{shown}"), refusal.help())
 }
@@ -534,7 +534,7 @@ fn options(
             chosen.name()
         ))
     };
-    let entry = MethodEntry::of(chosen);
+    let entry = MethodEntry::for_method(chosen);
     if arguments.taylor.is_some() && !entry.takes(Choice::Taylor) {
         return without("--taylor", &that_take(Choice::Taylor));
     }
@@ -598,8 +598,8 @@ fn options(
         resonance: arguments.resonance,
         frequency_alone: arguments.omega_only,
         supervision: Supervision {
-            interrupt: Interrupt::by(&STOP),
-            progress: Progress::by(&PROGRESS),
+            interrupt: Interrupt::from_flag(&STOP),
+            progress: Progress::from_counter(&PROGRESS),
         },
     })
 }

@@ -157,7 +157,7 @@ fn writable(path: &Path) -> Result<(), String> {
     if is_special(path) {
         return Ok(());
     }
-    beside(path).map_err(refused).map(drop)
+    new_temporary(path).map_err(refused).map(drop)
 }
 
 fn replace(path: &Path, result: Writer) -> Result<(), String> {
@@ -166,7 +166,7 @@ fn replace(path: &Path, result: Writer) -> Result<(), String> {
         let mut device = OpenOptions::new().write(true).open(path).map_err(refused)?;
         return result(&mut device).map_err(refused);
     }
-    let file = beside(path).map_err(refused)?;
+    let file = new_temporary(path).map_err(refused)?;
     let mut output = BufWriter::new(file.as_file());
     result(&mut output).and_then(|()| output.flush()).map_err(refused)?;
     drop(output);
@@ -177,7 +177,7 @@ fn replace(path: &Path, result: Writer) -> Result<(), String> {
 
 /// An empty file beside this place, with the permissions that the file there has, or that a new one
 /// gets. It is gone when it is dropped.
-fn beside(path: &Path) -> std::io::Result<NamedTempFile> {
+fn new_temporary(path: &Path) -> std::io::Result<NamedTempFile> {
     let place = resolved(path).unwrap_or_else(|| path.to_owned());
     let mut builder = Builder::new();
     builder.prefix(".lindstedt-").suffix(".part");

@@ -76,7 +76,7 @@ impl Work for ImpactArguments {
 }
 
 fn run(arguments: &ImpactArguments) -> Result<Outcome, Failure> {
-    let problem = asked(arguments)?;
+    let problem = problem_of(arguments)?;
     let tolerance = tolerance(&arguments.common);
     let setup = Setup::try_from(&problem)?;
     let setup = Setup { tolerance, ..setup };
@@ -97,7 +97,10 @@ fn run(arguments: &ImpactArguments) -> Result<Outcome, Failure> {
         },
     };
     let passes = impact.verdicts(tolerance).contains(&Verdict::Pass);
-    Ok(Outcome { verdict: Some(Verdict::of(passes)), ..answer.outcome(&arguments.common)? })
+    Ok(Outcome {
+        verdict: Some(Verdict::from_passed(passes)),
+        ..answer.outcome(&arguments.common)?
+    })
 }
 
 /// What is proved of the impact, and with it of its closed forms.
@@ -150,7 +153,7 @@ fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         other: &no_such,
     };
     let passes = report.verdicts().iter().any(|(_, verdict)| *verdict == Verdict::Pass);
-    Ok(Outcome { verdict: Some(Verdict::of(passes)), ..answer.outcome(common)? })
+    Ok(Outcome { verdict: Some(Verdict::from_passed(passes)), ..answer.outcome(common)? })
 }
 
 /// A double as the fraction that its decimals say.
@@ -193,11 +196,11 @@ fn every_method(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
         },
     };
     let passes = table.rows.iter().any(|row| row.verdict(tolerance) == Verdict::Pass);
-    Ok(Outcome { verdict: Some(Verdict::of(passes)), ..answer.outcome(common)? })
+    Ok(Outcome { verdict: Some(Verdict::from_passed(passes)), ..answer.outcome(common)? })
 }
 
 /// The problem of the file with what the command line says, which wins.
-fn asked(arguments: &ImpactArguments) -> Result<Problem, Failure> {
+fn problem_of(arguments: &ImpactArguments) -> Result<Problem, Failure> {
     let mut asked = match &arguments.problem {
         None => Problem::default(),
         Some(text) => problem(text)?,

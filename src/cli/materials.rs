@@ -61,7 +61,7 @@ fn run(arguments: &MaterialsArguments) -> Result<Outcome, Failure> {
     let mut question = problem
         .materials(arguments.only_own)
         .map_err(|error| Failure::refused(&error, error.help()))?;
-    question.settings = Settings { interrupt: Interrupt::by(&STOP), ..question.settings };
+    question.settings = Settings { interrupt: Interrupt::from_flag(&STOP), ..question.settings };
     if arguments.chain {
         question.integrator = Integrator::Chain;
     }

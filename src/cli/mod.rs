@@ -56,28 +56,28 @@ paper always); 4 stopped before the end: what is printed is partial and says so.
 /// The commands, in the order of `--help`. A new one is a file with its arguments, documented by
 /// their line in `--help`, and their [`Work`], and a row here.
 static COMMANDS: [Command; 16] = [
-    Command::of::<derive::DeriveArguments>("derive")
+    Command::new::<derive::DeriveArguments>("derive")
         .writing(Formats::Programs)
         .waiting(derive::patience),
-    Command::of::<compare::CompareArguments>("compare").writing(Formats::Pictures),
-    Command::of::<impact::ImpactArguments>("impact").writing(Formats::Pictures),
-    Command::of::<simulate::SimulateArguments>("simulate").waiting(a_minute),
-    Command::of::<response::ResponseArguments>("response").waiting(a_minute),
-    Command::of::<friction::FrictionArguments>("friction"),
-    Command::of::<lagrange::LagrangeArguments>("lagrange").writing(Formats::Words),
-    Command::of::<materials::MaterialsArguments>("materials").waiting(a_minute),
-    Command::of::<optimize::OptimizeArguments>("optimize").waiting(a_minute),
-    Command::of::<stability::StabilityArguments>("stability"),
-    Command::of::<audit::AuditArguments>("audit").writing(Formats::Words).judged(),
-    Command::of::<audit::PaperArguments>("paper").writing(Formats::Words).judged(),
-    Command::of::<certify::CertifyArguments>("certify")
+    Command::new::<compare::CompareArguments>("compare").writing(Formats::Pictures),
+    Command::new::<impact::ImpactArguments>("impact").writing(Formats::Pictures),
+    Command::new::<simulate::SimulateArguments>("simulate").waiting(a_minute),
+    Command::new::<response::ResponseArguments>("response").waiting(a_minute),
+    Command::new::<friction::FrictionArguments>("friction"),
+    Command::new::<lagrange::LagrangeArguments>("lagrange").writing(Formats::Words),
+    Command::new::<materials::MaterialsArguments>("materials").waiting(a_minute),
+    Command::new::<optimize::OptimizeArguments>("optimize").waiting(a_minute),
+    Command::new::<stability::StabilityArguments>("stability"),
+    Command::new::<audit::AuditArguments>("audit").writing(Formats::Words).judged(),
+    Command::new::<audit::PaperArguments>("paper").writing(Formats::Words).judged(),
+    Command::new::<certify::CertifyArguments>("certify")
         .writing(Formats::Words)
         .waiting(derive::patience),
-    Command::of::<certify::CheckArguments>("check")
+    Command::new::<certify::CheckArguments>("check")
         .writing(Formats::Words)
         .limited(certify::LONGEST_CHECK),
-    Command::of::<catalog::CatalogArguments>("catalog").writing(Formats::Words),
-    Command::of::<schema::SchemaArguments>("schema").writing(Formats::One),
+    Command::new::<catalog::CatalogArguments>("catalog").writing(Formats::Words),
+    Command::new::<schema::SchemaArguments>("schema").writing(Formats::One),
 ];
 
 /// The command that runs where none is named.
@@ -120,7 +120,7 @@ trait Work: Send + RefUnwindSafe {
 impl Command {
     /// The command with these arguments. It writes pictures and tables and has no parts to wait
     /// for, unless its row says otherwise.
-    const fn of<A: Args + Work + 'static>(name: &'static str) -> Self {
+    const fn new<A: Args + Work + 'static>(name: &'static str) -> Self {
         Self {
             name,
             formats: Formats::PicturesAndTables,
@@ -404,7 +404,7 @@ fn in_flags(advice: &Advice) -> String {
 type Writer = Box<dyn FnOnce(&mut dyn std::io::Write) -> std::io::Result<()> + Send>;
 
 /// The writer of a text.
-fn whole(text: String) -> Writer {
+fn text_writer(text: String) -> Writer {
     Box::new(move |to| to.write_all(text.as_bytes()))
 }
 
@@ -424,7 +424,7 @@ struct Outcome {
 
 /// The row of the command that is asked for, and its arguments; an error is a message of the
 /// parser, `--help` among them.
-fn asked() -> Result<(&'static Command, Box<dyn Work>), clap::Error> {
+fn parse_command() -> Result<(&'static Command, Box<dyn Work>), clap::Error> {
     let matches = clap::Command::new("lindstedt")
         .version(env!("CARGO_PKG_VERSION"))
         .about("Closed-form approximations of nonlinear vibrations, derived exactly and judged against the true motion")
@@ -446,7 +446,7 @@ fn asked() -> Result<(&'static Command, Box<dyn Work>), clap::Error> {
 
 /// The program.
 pub fn run() -> ExitCode {
-    let (command, work) = match asked() {
+    let (command, work) = match parse_command() {
         Ok(asked) => asked,
         Err(error) => {
             // `--help` and `--version` are results and succeed; a closed pipe is no failure of
@@ -588,7 +588,7 @@ fn finish(outcome: Outcome, common: &Common, judged: bool) -> ExitCode {
     let mut no_picture = None;
     match outcome.picture {
         Some((path, Ok(picture))) => {
-            if let Err(error) = files::write(Some(&path), whole(picture)) {
+            if let Err(error) = files::write(Some(&path), text_writer(picture)) {
                 return fail(1, &error);
             }
         }

@@ -20,15 +20,15 @@ use super::{Failure, Format, Outcome, STOP, json_text};
 pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     check_format(&asked.common)?;
     match asked.sweep.as_slice() {
-        [] => one(problem, asked),
+        [] => run_single(problem, asked),
         axes => many(problem, asked, axes),
     }
 }
 
-fn one(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
+fn run_single(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     let (common, file) = (&asked.common, problem.primary_case(&[]));
     let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
-    let settings = PrimarySettings { interrupt: Interrupt::by(&STOP), ..file.settings };
+    let settings = PrimarySettings { interrupt: Interrupt::from_flag(&STOP), ..file.settings };
     check_samples(&asked.sample, settings.duration, "`duration` in [run]")?;
     let motion = simulate_primary(file.case, &settings)?;
     let report = PrimaryReport { motion: &motion, units: &file.units, samples: &asked.sample };
@@ -50,7 +50,7 @@ fn one(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, Failure>
             }
             doubt => doubt.map(|doubt| format!("warning: {doubt}")),
         },
-        verdict: Some(Verdict::of(kept && motion.is_complete())),
+        verdict: Some(Verdict::from_passed(kept && motion.is_complete())),
         partial: !report.is_complete(),
         ..answer.outcome(common)?
     })
@@ -76,7 +76,7 @@ fn many(problem: &Problem, asked: &SimulateArguments, axes: &[Axis]) -> Result<O
             parameters.iter().copied().zip(grid_values(axes, number)).collect();
         let file = problem.primary_case(&varied);
         let file = file.map_err(|error| Failure::refused(&error, error.help()))?;
-        let settings = PrimarySettings { interrupt: Interrupt::by(&STOP), ..file.settings };
+        let settings = PrimarySettings { interrupt: Interrupt::from_flag(&STOP), ..file.settings };
         motions.push((file.case, settings));
         units.push(file.units);
     }
@@ -100,7 +100,7 @@ fn many(problem: &Problem, asked: &SimulateArguments, axes: &[Axis]) -> Result<O
     Ok(Outcome {
         note: (broken > 0)
             .then(|| format!("warning: {broken} of {} motions stopped early", rows.len())),
-        verdict: Some(Verdict::of(broken == 0)),
+        verdict: Some(Verdict::from_passed(broken == 0)),
         partial: broken > 0,
         ..answer.outcome(common)?
     })

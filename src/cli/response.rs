@@ -89,8 +89,8 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         harmonics: order.filter(|_| method == Method::HarmonicBalance).map(|count| count as usize),
         periods: arguments.periods.or(problem.periods).unwrap_or(1) as usize,
         tolerance: tolerance(&arguments.common),
-        interrupt: Interrupt::by(&STOP),
-        progress: Progress::by(&PROGRESS),
+        interrupt: Interrupt::from_flag(&STOP),
+        progress: Progress::from_counter(&PROGRESS),
     };
     let slow = match method {
         Method::HarmonicBalance => None,
@@ -106,7 +106,7 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     let mut response = with_progress("of this search, or of its points", || respond(&question))
         .map_err(refused)?;
     if let Some(solution) = slow {
-        response = response.beside(solution);
+        response = response.with_slow_equations(solution);
     }
     let answer = Answer {
         document: &report::response(&response),

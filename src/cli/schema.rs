@@ -6,7 +6,7 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use lindstedt::export::json::DocumentKind;
 
-use super::{Common, Failure, Outcome, Work, whole};
+use super::{Common, Failure, Outcome, Work, text_writer};
 
 /// Print the JSON Schema of a kind of document: every key with its meaning and unit
 #[derive(Args)]
@@ -32,7 +32,7 @@ impl Work for SchemaArguments {
 
 fn run(arguments: &SchemaArguments) -> Result<Outcome, Failure> {
     Ok(Outcome {
-        result: whole(arguments.kind.json_schema().to_owned()),
+        result: text_writer(arguments.kind.json_schema().to_owned()),
         picture: None,
         note: None,
         verdict: None,

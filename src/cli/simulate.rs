@@ -21,7 +21,7 @@ use super::primary;
 use super::problem::problem;
 use super::progress::{self, MOTIONS};
 use super::trajectory;
-use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, whole};
+use super::{Common, Failure, Format, Outcome, STOP, Work, json_text, text_writer};
 
 /// The paper's equation (7) in full, event by event: trajectory, impacts, energy, rest time; or any
 /// equation or mechanism
@@ -153,7 +153,7 @@ fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
         ));
     }
     match arguments.sweep.is_empty() {
-        true => one(arguments, &problem),
+        true => run_single(arguments, &problem),
         false => many(arguments, &problem),
     }
 }
@@ -229,7 +229,7 @@ fn refused(error: ProblemError) -> Failure {
     Failure::refused(&error, help)
 }
 
-fn one(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
+fn run_single(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
     let asked = Simulate::try_from(problem).map_err(refused)?;
     let (model, start) = asked.case.motion().map_err(|error| refused(error.into()))?;
     let settings = settings(arguments, &asked);
@@ -278,7 +278,7 @@ fn one(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Fail
     let note = broken
         .map(|motion| format!("warning: stopped early, what there is is kept: {}", motion.stop));
     Ok(Outcome {
-        result: whole(text),
+        result: text_writer(text),
         picture,
         note,
         verdict: Some(match &judge {
@@ -294,7 +294,7 @@ fn one(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Fail
 /// The settings of the file. A chain goes on to rest, unless the file says how long or nothing
 /// damps the swing.
 fn settings(arguments: &SimulateArguments, asked: &Simulate) -> Settings {
-    let settings = Settings { interrupt: Interrupt::by(&STOP), ..asked.settings };
+    let settings = Settings { interrupt: Interrupt::from_flag(&STOP), ..asked.settings };
     let damped = asked.case.motion().is_ok_and(|(model, _)| model.zeta > 0.0 || model.alpha > 0.0);
     match arguments.chain && !asked.duration_given && (damped || !arguments.sweep.is_empty()) {
         true => Settings { duration: LONGEST_CHAIN, stop_at_rest: true, ..settings },
@@ -322,7 +322,7 @@ fn chain_verdict(motion: &Simulation, judge: &Simulation, tolerance: Option<f64>
         }
         _ => false,
     };
-    Verdict::of(agreed && motion.stop.is_complete() && judge.stop.is_complete())
+    Verdict::from_passed(agreed && motion.stop.is_complete() && judge.stop.is_complete())
 }
 
 /// Complete, the energy accounted for, and where there is a judge, agreed with.
@@ -334,7 +334,7 @@ fn verdict(motion: &Simulation, judge: Option<&Simulation>, tolerance: Option<f6
             && judge.impacts.len() == motion.impacts.len()
             && motion.difference(judge, 2001).displacement <= allowed * scale
     });
-    Verdict::of(agreed && motion.stop.is_complete() && motion.energy().residual <= allowed)
+    Verdict::from_passed(agreed && motion.stop.is_complete() && motion.energy().residual <= allowed)
 }
 
 /// The motions of a sweep, the last parameter varying fastest, and how to follow them.
@@ -434,7 +434,7 @@ fn many(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Fai
     let axes = arguments.sweep.clone();
     Ok(Outcome {
         result: match made_whole {
-            Some(text) => whole(text),
+            Some(text) => text_writer(text),
             None => Box::new(move |to| {
                 let report = SweepReport { axes: &axes, rows: &rows };
                 write(&report, to)
@@ -442,7 +442,7 @@ fn many(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Fai
         },
         picture,
         note,
-        verdict: Some(Verdict::of(incomplete == 0)),
+        verdict: Some(Verdict::from_passed(incomplete == 0)),
         partial: incomplete > 0,
     })
 }

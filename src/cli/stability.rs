@@ -119,12 +119,15 @@ fn run(arguments: &StabilityArguments) -> Result<Outcome, Failure> {
             (format, _) => no_such(format),
         },
     };
-    Ok(Outcome { verdict: report.passes().map(Verdict::of), ..answer.outcome(&arguments.common)? })
+    Ok(Outcome {
+        verdict: report.passes().map(Verdict::from_passed),
+        ..answer.outcome(&arguments.common)?
+    })
 }
 
 /// A refusal, with the term that it names shown in the equation.
 fn refused(typed: &lindstedt::expr::Typed, error: &HillError) -> Failure {
-    let place = error.term().and_then(|term| typed.place(term));
+    let place = error.term().and_then(|term| typed.locate(term));
     let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
     Failure::refused(&format!("{error}{shown}"), error.help())
 }

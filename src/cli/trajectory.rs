@@ -141,7 +141,7 @@ fn course(problem: &Problem, asked: &SimulateArguments) -> Result<TrajectoryRequ
     }
     course.values = values.numbers();
     course.after = asked.after.unwrap_or(0.0);
-    course.interrupt = Interrupt::by(&STOP);
+    course.interrupt = Interrupt::from_flag(&STOP);
     if let Some(until) = asked.until {
         course.duration = until;
     }
@@ -298,5 +298,5 @@ fn verdict(motion: &Trajectory, judge: Option<&Trajectory>, allowed: f64) -> Ver
     let kept = motion.balance.as_ref().is_none_or(|balance| balance.residual <= allowed);
     let agreed =
         judge.is_none_or(|judge| judge.is_complete() && motion.difference(judge) <= allowed);
-    Verdict::of(kept && agreed && motion.is_complete())
+    Verdict::from_passed(kept && agreed && motion.is_complete())
 }

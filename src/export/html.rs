@@ -64,7 +64,7 @@ pub fn document(document: &Document, page: &HtmlPage) -> String {
         true => String::new(),
         false => heading(page),
     };
-    whole(&(heading + &body.text), page)
+    page_around(&(heading + &body.text), page)
 }
 
 /// The heading of a page that has no equation as its own.
@@ -84,11 +84,11 @@ fn heading(page: &HtmlPage) -> String {
 /// assert!(page.contains("<pre>a &lt; b\n</pre>"));
 /// ```
 pub fn lines(text: &str, page: &HtmlPage) -> String {
-    whole(&format!("{}<pre>{}</pre>\n", heading(page), escaped(text)), page)
+    page_around(&format!("{}<pre>{}</pre>\n", heading(page), escaped(text)), page)
 }
 
 /// The page around its body.
-fn whole(body: &str, page: &HtmlPage) -> String {
+fn page_around(body: &str, page: &HtmlPage) -> String {
     let picture = match page.picture {
         Some(Ok(picture)) => format!("<figure>\n{}\n</figure>\n", scaled(picture)),
         Some(Err(reason)) => format!("<p class=\"soft\">No picture: {}</p>\n", escaped(reason)),

@@ -52,7 +52,7 @@ pub fn csv(report: &PrimaryReport) -> String {
         "# units: t 1/omega, x rad, velocity omega, y L, speed L*omega, energy m*g*L\nt,x,velocity,y,speed,energy\n",
     );
     for t in times(report) {
-        text.extend(motion.at(t).map(|state| {
+        text.extend(motion.state_at(t).map(|state| {
             let energy = motion.case.energy(state);
             line([t, state.x, state.velocity, state.y, state.speed, energy])
         }));
@@ -131,7 +131,8 @@ pub fn picture(report: &PrimaryReport) -> Result<String, FigureError> {
     let motion = report.motion;
     let (second, metre) = (report.units.time(), report.units.length);
     let all = PrimaryReport { samples: &[], ..*report };
-    let states: Vec<_> = times(&all).into_iter().filter_map(|t| Some((t, motion.at(t)?))).collect();
+    let states: Vec<_> =
+        times(&all).into_iter().filter_map(|t| Some((t, motion.state_at(t)?))).collect();
     let with: Points = states.iter().map(|(t, state)| (t * second, state.y * metre)).collect();
     let angle: Points = states.iter().map(|(t, state)| (t * second, state.x)).collect();
     let energy: Points =

@@ -107,7 +107,7 @@ impl Ordinate {
         }
     }
 
-    fn of(self, amplitude: f64, peak: f64, frequency: f64) -> f64 {
+    fn value(self, amplitude: f64, peak: f64, frequency: f64) -> f64 {
         match self {
             Self::Amplitude => amplitude,
             Self::Peak => peak,
@@ -122,7 +122,7 @@ fn pieces(height: Ordinate, points: &[SteadyMotion], stable: bool) -> Vec<Points
     let mut pieces: Vec<Points> = Vec::new();
     let mut open = false;
     let place = |point: &SteadyMotion| {
-        (point.parameter, height.of(point.amplitude, point.peak, point.frequency))
+        (point.parameter, height.value(point.amplitude, point.peak, point.frequency))
     };
     for pair in points.windows(2) {
         let [from, to] = pair else { continue };
@@ -175,14 +175,14 @@ fn curves<'a>(
     let states = states.map(|state| (state.parameter, state.amplitude)).collect();
     draw(slow_title, vec![states], CurveStyle::SLOW);
     let simulated = response.simulated.iter().map(|found| {
-        let height = height.of(found.amplitude, found.peak, found.frequency);
+        let height = height.value(found.amplitude, found.peak, found.frequency);
         (found.parameter, height)
     });
     draw("simulated", vec![simulated.collect()], CurveStyle::SIMULATED);
     for (kind, label, style) in MARKS {
         let of_kind = response.bifurcations.iter().filter(|found| found.kind == kind);
         let places = of_kind.map(|found| {
-            (found.parameter, height.of(found.amplitude, found.peak, found.frequency))
+            (found.parameter, height.value(found.amplitude, found.peak, found.frequency))
         });
         draw(label, vec![places.collect()], style);
     }

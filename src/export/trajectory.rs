@@ -47,7 +47,7 @@ pub fn csv(report: &TrajectoryReport) -> String {
         false => times(report),
     };
     for time in times {
-        let state = motion.at(time).into_iter();
+        let state = motion.states_at(time).into_iter();
         text.extend(state.map(|state| line(std::iter::once(time).chain(state))));
     }
     text + &end(motion.is_complete(), in_words(motion.reason()), report.doubt())
@@ -78,8 +78,10 @@ pub fn picture(report: &TrajectoryReport) -> Result<String, FigureError> {
         return on_section(motion, section);
     }
     let whole = TrajectoryReport { samples: &[], ..*report };
-    let states: Vec<(f64, Vec<f64>)> =
-        times(&whole).into_iter().filter_map(|time| Some((time, motion.at(time)?))).collect();
+    let states: Vec<(f64, Vec<f64>)> = times(&whole)
+        .into_iter()
+        .filter_map(|time| Some((time, motion.states_at(time)?)))
+        .collect();
     let in_time: Vec<Points> = (0..count)
         .map(|index| states.iter().map(|(time, state)| (*time, state[index])).collect())
         .collect();

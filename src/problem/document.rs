@@ -104,7 +104,7 @@ impl Order {
 fn degrees<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Degrees, D::Error> {
     let list = Vec::<u32>::deserialize(deserializer)?;
     // What an order is is said by the type.
-    Degrees::of(&list).ok_or_else(|| D::Error::custom("no degrees"))
+    Degrees::from_list(&list).ok_or_else(|| D::Error::custom("no degrees"))
 }
 
 /// `[pendulum]`: released from rest at `x = -amplitude`.

@@ -61,7 +61,7 @@ impl TryFrom<&Problem> for Setup {
         }
         let swing = swing(problem)?;
         let force = force(problem)?;
-        let given = ImpactValues::of(problem, swing.as_ref(), force.is_some())?;
+        let given = ImpactValues::from_problem(problem, swing.as_ref(), force.is_some())?;
         let side = match problem.pendulum.side {
             Some(BarrierSide::Left) => Side::Left,
             Some(BarrierSide::Right) | None => Side::Right,
@@ -135,7 +135,7 @@ impl ImpactValues {
     ///
     /// # Errors
     /// A number under both, and for an equation of its own one under neither.
-    fn of(
+    fn from_problem(
         problem: &Problem,
         swing: Option<&Oscillator>,
         has_force: bool,

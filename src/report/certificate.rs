@@ -187,7 +187,7 @@ impl CertificateReport<'_> {
     /// Whether the formula is proved to be within the tolerance; `None` where no formula is judged.
     pub fn verdict(&self) -> Option<Verdict> {
         let errors = self.certified.formula.as_ref()?;
-        Some(Verdict::of(errors.relative.upper <= not_above_typed(self.tolerance)))
+        Some(Verdict::from_passed(errors.relative.upper <= not_above_typed(self.tolerance)))
     }
 }
 

@@ -20,7 +20,7 @@ use crate::impact::friction::{Creep, FrictionStudy, NearRest};
 pub fn friction(study: &FrictionStudy) -> Document<'_> {
     let alpha = study.setup.alpha;
     let near_rest = &study.near_rest;
-    let table = FrictionTable::of(study);
+    let table = FrictionTable::from_study(study);
     Document {
         sections: vec![
             vec![

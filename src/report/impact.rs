@@ -28,7 +28,7 @@ use crate::symbol::Symbol;
 pub fn impact(impact: &Impact, tolerance: f64) -> Document<'_> {
     let mut sections = vec![
         vec![Block::QuestionAsTyped(&impact.equation), Block::Heading(start(impact))],
-        asked(
+        problem_blocks(
             &impact.setup,
             impact.letters,
             [impact.equilibrium, impact.turning_point],
@@ -95,7 +95,7 @@ fn start(impact: &Impact) -> String {
     )
 }
 
-pub(super) fn asked(
+pub(super) fn problem_blocks(
     setup: &Setup,
     letters: ImpactSymbols,
     [equilibrium, turning_point]: [f64; 2],
@@ -193,7 +193,7 @@ fn phases<'a>(impact: &Impact, column: &'a JudgedPhases) -> impl Iterator<Item =
         phase,
         letters,
         release: match phase.name == "return" && is_lossy {
-            true => decimal(phase.at(phase.end).0),
+            true => decimal(phase.phase_point_at(phase.end).0),
             false => release.clone(),
         },
     })

@@ -42,7 +42,9 @@ impl ImpactCertificateReport<'_> {
             ranges.all(|range| range.upper <= not_above_typed(self.tolerance))
         };
         let columns = self.impact.columns.iter().enumerate();
-        columns.map(|(index, column)| (column.reading, Verdict::of(within(index)))).collect()
+        columns
+            .map(|(index, column)| (column.reading, Verdict::from_passed(within(index))))
+            .collect()
     }
 }
 

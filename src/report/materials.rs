@@ -26,7 +26,7 @@ const LISTED: usize = 10;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn materials(study: &MaterialStudy) -> Document<'_> {
-    let mut sections = vec![asked(study)];
+    let mut sections = vec![problem_blocks(study)];
     if study.rows.iter().any(|row| row.first.is_some()) {
         sections.push(first_contacts(study));
         sections.push(vec![Block::Entries {
@@ -42,7 +42,7 @@ pub fn materials(study: &MaterialStudy) -> Document<'_> {
     Document { sections }
 }
 
-fn asked(study: &MaterialStudy) -> Vec<Block<'_>> {
+fn problem_blocks(study: &MaterialStudy) -> Vec<Block<'_>> {
     let Model { zeta, alpha, ref left, ref right, .. } = study.model;
     let is_default = |parameter| study.question.defaults.contains(&parameter);
     let count = study.rows.len();

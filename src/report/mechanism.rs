@@ -101,7 +101,7 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
     }
     let is_whole = !driven && !has(Function::Step) && !has(Function::Sign);
     for rest in &study.rests {
-        blocks.push(Block::Note(place(rest, coordinates)));
+        blocks.push(Block::Note(rest_in_words(rest, coordinates)));
         let anywhere = rest.rest.places.contains(&RestPosition::Anywhere);
         let unpulled = match (anywhere, is_whole) {
             (true, true) => "moves freely",
@@ -157,7 +157,7 @@ fn places(study: &MechanismStudy) -> Vec<Block<'_>> {
     blocks
 }
 
-fn place(rest: &RestStudy, coordinates: &[Symbol]) -> String {
+fn rest_in_words(rest: &RestStudy, coordinates: &[Symbol]) -> String {
     let place = |(name, place): (&Symbol, &RestPosition)| match place {
         RestPosition::At(value) => format!("{name} = {value}"),
         RestPosition::Anywhere => format!("any {name}"),

@@ -33,7 +33,7 @@ const GENERATIONS: [usize; 9] = [0, 1, 2, 5, 10, 20, 50, 100, 200];
 /// # Ok::<(), lindstedt::optimize::OptimizeError>(())
 /// ```
 pub fn optimization(study: &Study) -> Document<'_> {
-    let mut sections = vec![asked(study)];
+    let mut sections = vec![problem_blocks(study)];
     match study.question.objectives.len() {
         1 => {
             sections.push(best_design(study));
@@ -84,7 +84,7 @@ fn material_of(study: &Study, design: &EvaluatedDesign) -> String {
     material.map_or("-".to_owned(), |material| material.name.clone())
 }
 
-fn asked(study: &Study) -> Vec<Block<'_>> {
+fn problem_blocks(study: &Study) -> Vec<Block<'_>> {
     let question = &study.question;
     let wishes: Vec<&str> =
         question.objectives.iter().map(|objective| objective.meaning()).collect();

@@ -238,7 +238,7 @@ fn rest_times<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
 
 fn samples<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     let row = |time: &f64| {
-        let state = report.motion.at(*time)?;
+        let state = report.motion.state_at(*time)?;
         Some([*time, state.x, state.velocity, state.y, state.speed].map(decimal).into())
     };
     vec![Block::table(["t", "x", "x'", "y", "y'"], report.samples.iter().filter_map(row))]

@@ -135,7 +135,7 @@ fn states<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
     let times = std::iter::once(Heading::from(("t", "$t$")));
     let names = motion.course.rates.states.iter().map(|name| name.name().into());
     let row = |time: f64| {
-        let state = motion.at(time)?;
+        let state = motion.states_at(time)?;
         Some(std::iter::once(time).chain(state).map(decimal).collect())
     };
     vec![Block::table(times.chain(names), report.times().into_iter().filter_map(row))]

@@ -133,7 +133,7 @@ fn the_error_of_a_formula_is_enclosed() {
         let apart = samples
             .truth
             .iter()
-            .map(|(t, x, _)| (x - formula.at(t * truth / formula.frequency())).abs());
+            .map(|(t, x, _)| (x - formula.displacement_at(t * truth / formula.frequency())).abs());
         let largest = apart.fold(0.0, f64::max);
         assert!(
             errors.deviation.lower * 0.999 <= largest + 1e-9
@@ -148,7 +148,7 @@ fn the_error_of_a_formula_is_enclosed() {
         {
             let t = f64::from(turn) * period + instant;
             let bound = errors.deviation.upper + errors.drift.upper * t;
-            assert!((x - formula.at(t)).abs() <= bound + 1e-8, "t = {t}");
+            assert!((x - formula.displacement_at(t)).abs() <= bound + 1e-8, "t = {t}");
         }
     }
 }

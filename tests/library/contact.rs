@@ -272,12 +272,12 @@ proptest! {
         let case = ImpactProblem { rule: Rule::ALL[rule], ..swing(amplitude, part * amplitude, 10.0_f64.powf(power)) };
         let motion = three_phases(&case, ContactSpeed::Energy).unwrap();
         let contact = &motion.phases[1];
-        let (x, v) = contact.form.at(contact.end - contact.start);
+        let (x, v) = contact.form.phase_point_at(contact.end - contact.start);
         prop_assert!((x - case.barrier).abs() < 1e-9 * motion.penetration.max(1e-6));
         prop_assert!((v + motion.speed).abs() < 1e-9 * motion.speed);
         let Form::Oscillation { frequency, .. } = contact.form else { panic!("the contact oscillates") };
         // It turns in the middle, and the middle is the deepest point.
-        let (deepest, at_rest) = contact.form.at(0.5 * (contact.end - contact.start));
+        let (deepest, at_rest) = contact.form.phase_point_at(0.5 * (contact.end - contact.start));
         prop_assert!(at_rest.abs() < 1e-9 * motion.speed && frequency > 0.0);
         prop_assert!((deepest - case.barrier - motion.penetration).abs() < 1e-9 * motion.penetration.max(1e-6));
     }
@@ -339,10 +339,17 @@ fn the_derived_phases_join() {
         let found = impact::solve(Setup { release, barrier, side, ..Setup::default() }).unwrap();
         let derived = &found.column(PhaseReading::Derived).unwrap().phases;
         let [approach, contact, back] = &derived.phases;
-        assert!((approach.at(0.0).0 - release).abs() < 1e-12 && approach.at(0.0).1.abs() < 1e-12);
-        assert!((back.at(back.end).0 - release).abs() < 1e-12 && back.at(back.end).1.abs() < 1e-12);
+        assert!(
+            (approach.phase_point_at(0.0).0 - release).abs() < 1e-12
+                && approach.phase_point_at(0.0).1.abs() < 1e-12
+        );
+        assert!(
+            (back.phase_point_at(back.end).0 - release).abs() < 1e-12
+                && back.phase_point_at(back.end).1.abs() < 1e-12
+        );
         for (before, after) in [(approach, contact), (contact, back)] {
-            let (left, right) = (before.at(before.end), after.at(after.start));
+            let (left, right) =
+                (before.phase_point_at(before.end), after.phase_point_at(after.start));
             assert!((left.0 - right.0).abs() < 1e-12, "{left:?} {right:?}");
             assert!((left.1 - right.1).abs() < 2e-4 * derived.speed, "{left:?} {right:?}");
         }
@@ -547,7 +554,8 @@ fn the_derived_phases_join_by_every_law_of_the_contact() {
             // Of the corrected law the depth is exact at touch, the speed nearly.
             let speed_kept = if law == ContactLaw::CorrectedPowerLaw { 1e-2 } else { 1e-4 };
             for (left, right) in [(approach, contact), (contact, back)] {
-                let (before, after) = (left.at(left.end), right.at(right.start));
+                let (before, after) =
+                    (left.phase_point_at(left.end), right.phase_point_at(right.start));
                 assert!((before.0 - after.0).abs() < 1e-12, "{law}: {before:?} and {after:?}");
                 let jump = (before.1 - after.1).abs() / phases.speed;
                 assert!(jump < speed_kept, "{law}: the speed jumps by {jump} of itself");
@@ -556,7 +564,7 @@ fn the_derived_phases_join_by_every_law_of_the_contact() {
                 panic!("{law}: {:?}", contact.form)
             };
             assert!(depth.deviation <= 1e-6, "{law}: {}", depth.deviation);
-            let deepest = depth.at(0.5 * phases.duration).0;
+            let deepest = depth.phase_point_at(0.5 * phases.duration).0;
             assert!((deepest / phases.penetration - 1.0).abs() < 3e-6, "{law}: {deepest}");
             // The swing is the same by every law: none makes up for the error of another.
             assert!(
@@ -672,10 +680,17 @@ fn the_restitution_asked_for_is_the_one_that_is_simulated() {
         assert!((simulated - found.truth.restitution()).abs() < 1e-6, "{wanted}: {simulated}");
         // The joins, and where it turns.
         let [approach, contact, back] = &phases.phases;
-        assert!((contact.at(contact.end).1 - back.at(back.start).1).abs() < 1e-3);
-        assert!((approach.at(approach.end).0 - contact.at(contact.start).0).abs() < 1e-12);
-        assert!(back.at(back.end).1.abs() < 1e-12);
-        let turn = back.at(back.end).0;
+        assert!(
+            (contact.phase_point_at(contact.end).1 - back.phase_point_at(back.start).1).abs()
+                < 1e-3
+        );
+        assert!(
+            (approach.phase_point_at(approach.end).0 - contact.phase_point_at(contact.start).0)
+                .abs()
+                < 1e-12
+        );
+        assert!(back.phase_point_at(back.end).1.abs() < 1e-12);
+        let turn = back.phase_point_at(back.end).0;
         assert!((turn - found.place_of_turn()).abs() < 2e-3, "{wanted}: turns at {turn}");
         let verdict = found.verdicts(0.01);
         assert_eq!(verdict, [Verdict::Pass], "{wanted}: {:?}", found.shortcomings(0, 0.01));

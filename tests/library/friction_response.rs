@@ -29,7 +29,7 @@ fn after_a_period(
     course.begin("x".into(), start[0]).expect("a state");
     course.begin("x'".into(), start[1]).expect("a state");
     (course.duration, course.tolerance) = (period, 1e-12);
-    let state = course.follow().expect("a motion").at(period).expect("a state");
+    let state = course.follow().expect("a motion").states_at(period).expect("a state");
     [state[0], state[1]]
 }
 

@@ -28,7 +28,7 @@ fn numerics() {
         let start = State { t: 0.0, x: a, v: 1.0 };
         let options = ode::IntegrationOptions::default();
         if let Ok(path) = ode::integrate(|_, x, v| -x - v, start, b.min(100.0), &[], &options) {
-            let _ = HOSTILE.map(|t| (path.at(t), path.phase_at(t)));
+            let _ = HOSTILE.map(|t| (path.phase_point_at(t), path.phase_at(t)));
             let _ = [0, 1, 2].map(|count| path.samples(count).count());
         }
         let options = ode::IntegrationOptions {
@@ -79,7 +79,7 @@ fn systems_and_courses() {
             let options = limited(1e-9, 2000);
             for (from, start, to) in [(a, [1.0, b], 3.0), (0.0, [a, b], b)] {
                 if let Ok(path) = system.solve(from, &start, to, &events, &options) {
-                    let _ = HOSTILE.map(|t| path.at(t));
+                    let _ = HOSTILE.map(|t| path.states_at(t));
                 }
             }
             let _ = system.solve(0.0, &[1.0, 0.0], b, &[], &limited(a, 2000));
@@ -160,7 +160,8 @@ fn choices_of_a_method() {
                 let _ = HOSTILE
                     .map(|tolerance| judge(&oscillator, solution, &values, tolerance).is_ok());
                 let motion = solution.motion_at(&values);
-                let _ = motion.map(|motion| HOSTILE.map(|t| (motion.at(t), motion.velocity(t))));
+                let _ = motion
+                    .map(|motion| HOSTILE.map(|t| (motion.displacement_at(t), motion.velocity(t))));
             }
         }
     }

@@ -24,7 +24,7 @@ fn followed(equation: &str, start: f64, duration: f64) -> [Trajectory; 2] {
 }
 
 fn place(motion: &Trajectory, time: f64) -> f64 {
-    motion.at(time).expect("a state")[0]
+    motion.states_at(time).expect("a state")[0]
 }
 
 /// `x'' + 2 z x' + x = a exp(-((t - s)/w)^2)` rings behind it as

@@ -68,7 +68,7 @@ fn simulated(
     const SAMPLES: u32 = 512;
     let sample = |index: u32| end - period + period * f64::from(index) / f64::from(SAMPLES);
     let positions: Vec<f64> =
-        (0..SAMPLES).map(|index| path.at(sample(index)).expect("a state")[0]).collect();
+        (0..SAMPLES).map(|index| path.states_at(sample(index)).expect("a state")[0]).collect();
     let sum = |wave: fn(f64) -> f64| {
         let phase = |index: usize| std::f64::consts::TAU * index as f64 / f64::from(SAMPLES);
         let terms = positions.iter().enumerate().map(|(index, x)| x * wave(phase(index)));
@@ -76,7 +76,7 @@ fn simulated(
     };
     let highest = positions.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = positions.iter().copied().fold(f64::INFINITY, f64::min);
-    let state = path.at(end).expect("a state");
+    let state = path.states_at(end).expect("a state");
     ([state[0], state[1]], sum(f64::cos).hypot(sum(f64::sin)), 0.5 * (highest - lowest))
 }
 
@@ -531,7 +531,11 @@ fn slow_equations_come_nearer_with_their_order() {
             ..lindstedt::Options::default()
         };
         let solution = lindstedt::solve(&question.oscillator, &options).expect("slow equations");
-        let slow = respond(&question).expect("a response").beside(solution).slow.expect("states");
+        let slow = respond(&question)
+            .expect("a response")
+            .with_slow_equations(solution)
+            .slow
+            .expect("states");
         assert_eq!(slow.missing, 0);
         assert!(slow.points > 20 && slow.states.len() > 240);
         slow.error.expect("an error")

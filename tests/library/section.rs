@@ -148,7 +148,7 @@ fn a_sweep_is_its_motions_one_by_one() {
         alone.begin(names[1], values[1]).expect("a state");
         let alone = alone.follow().expect("a motion");
         assert_eq!(swept.crossings, alone.crossings());
-        assert_eq!(swept.state, alone.at(30.0).expect("a state"));
+        assert_eq!(swept.state, alone.states_at(30.0).expect("a state"));
         assert_eq!(swept.crossings.len(), (30.0 * 2.0 / TAU) as usize);
     }
     assert_ne!(motions[0].state, motions[1].state);
@@ -221,7 +221,7 @@ fn a_sweep_that_is_interrupted_begins_no_other_motion() {
     const MOTIONS: usize = 2000;
     const ENOUGH: usize = 5;
     let mut course = course("x'' + k*x = 0", &[("x'", 1.0)], 10.0);
-    course.interrupt = Interrupt::by(&STOP);
+    course.interrupt = Interrupt::from_flag(&STOP);
     let grid: Vec<Vec<f64>> = (0..MOTIONS).map(|index| vec![1.0 + index as f64 / 100.0]).collect();
     let count = || {
         if DONE.fetch_add(1, Ordering::Relaxed) + 1 >= ENOUGH {
@@ -278,7 +278,7 @@ fn a_motion_of_a_sweep_is_that_followed_alone() {
             }
             let alone = alone.follow().expect("a motion");
             assert_eq!(swept.reason, alone.reason(), "{equation}");
-            assert_eq!(swept.state, alone.at(alone.end()).expect("a state"), "{equation}");
+            assert_eq!(swept.state, alone.states_at(alone.end()).expect("a state"), "{equation}");
             assert_eq!(swept.extremes, alone.extremes(), "{equation}");
             assert_eq!(swept.crossings, alone.crossings(), "{equation}");
             assert_eq!(swept.touches, alone.touches(), "{equation}");

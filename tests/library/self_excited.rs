@@ -34,7 +34,7 @@ fn returned(
 ) -> Option<NumericalLimitCycle> {
     let equation = AutonomousEquation { acceleration, equilibrium: 0.0, amplitude, frequency: 1.0 };
     let found = nearest_limit_cycle(&equation, Some(attracts)).ok()?;
-    (found.attracts() == attracts && (found.at(0.0).0 / amplitude - 1.0).abs() < 0.05)
+    (found.attracts() == attracts && (found.phase_point_at(0.0).0 / amplitude - 1.0).abs() < 0.05)
         .then_some(found)
 }
 
@@ -106,7 +106,7 @@ fn two_cycles_meet_in_a_fold_and_one_is_born_from_rest() {
         let attracts = point.stable == Some(true);
         let acceleration = damped(point.parameter);
         let cycle = returned(&acceleration, point.peak, attracts).expect("a cycle");
-        assert!((cycle.at(0.0).0 / point.peak - 1.0).abs() < 1e-4, "{point:?}");
+        assert!((cycle.phase_point_at(0.0).0 / point.peak - 1.0).abs() < 1e-4, "{point:?}");
         let period = std::f64::consts::TAU / point.frequency;
         assert!((cycle.period() / period - 1.0).abs() < 1e-5, "{point:?}");
         seen[usize::from(attracts)] += 1;

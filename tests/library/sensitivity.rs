@@ -14,10 +14,11 @@ fn course(equation: &str, start: f64, duration: f64) -> TrajectoryRequest {
 
 /// How far two motions are from each other around a time, over the size of the first one.
 fn apart(motions: &[Trajectory; 2], around: f64) -> f64 {
-    let size = (0..1000).filter_map(|k| motions[0].at(0.1 * f64::from(k)));
+    let size = (0..1000).filter_map(|k| motions[0].states_at(0.1 * f64::from(k)));
     let size = size.fold(0.0_f64, |size, state| size.max(state[0].abs()));
     let times = (0..50).map(|k| around - 5.0 + 0.1 * f64::from(k));
-    let difference = |time: f64| Some((motions[0].at(time)?[0] - motions[1].at(time)?[0]).abs());
+    let difference =
+        |time: f64| Some((motions[0].states_at(time)?[0] - motions[1].states_at(time)?[0]).abs());
     times.filter_map(difference).fold(0.0, f64::max) / size
 }
 

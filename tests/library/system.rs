@@ -49,10 +49,14 @@ fn the_pendulum_is_its_elliptic_function_at_every_time() {
         let t = 0.1 * f64::from(i);
         let (_, cn, dn, _) = spec_math::cephes64::ellpj(t, k * k);
         let x = 2.0 * (k * cn / dn).asin();
-        let found = path.at(t).expect("a state")[0];
+        let found = path.states_at(t).expect("a state")[0];
         assert!((found - x).abs() < 2e-12, "{t}: {found} {x}");
     }
-    assert!(path.at(-0.1).is_none() && path.at(100.1).is_none() && path.at(f64::NAN).is_none());
+    assert!(
+        path.states_at(-0.1).is_none()
+            && path.states_at(100.1).is_none()
+            && path.states_at(f64::NAN).is_none()
+    );
 }
 
 /// Two equal links of length and mass one: angles from the vertical, `c = cos(a - b)`,
@@ -78,7 +82,7 @@ fn two_links_keep_their_energy() {
         let before = energy(&start);
         for i in 0..=500 {
             let [state, judged] =
-                [&path, &other].map(|path| path.at(0.1 * f64::from(i)).expect("a state"));
+                [&path, &other].map(|path| path.states_at(0.1 * f64::from(i)).expect("a state"));
             for (state, kept) in [(&state, 1e-12), (&judged, 1e-11)] {
                 let drift = energy(state) - before;
                 assert!(drift.abs() < kept, "{start:?} at {i}: {drift:e}");
@@ -111,7 +115,7 @@ fn two_links_keep_their_energy() {
         let size = 1e-6;
         let period = TAU / (2.0 - sign * 2.0_f64.sqrt()).sqrt();
         let path = follow(&links, &[size, sign * 2.0_f64.sqrt() * size, 0.0, 0.0], period, &[]);
-        let end = path.at(path.end()).expect("a state");
+        let end = path.states_at(path.end()).expect("a state");
         assert!((end[0] / size - 1.0).abs() < 1e-9, "{end:?}");
     }
 }
@@ -128,7 +132,7 @@ fn an_orbit_closes_after_its_period() {
         let start =
             [1.0 - eccentricity, 0.0, 0.0, f64::sqrt((1.0 + eccentricity) / (1.0 - eccentricity))];
         let path = follow(&kepler, &start, TAU, &[Event::record(expression("x"))]);
-        let end = path.at(TAU).expect("a state");
+        let end = path.states_at(TAU).expect("a state");
         for (value, expected) in end.iter().zip(start) {
             assert!((value - expected).abs() < 1e-11, "{eccentricity}: {end:?}");
         }
@@ -156,7 +160,7 @@ fn a_corner_is_met_and_left_where_it_is() {
             assert_eq!(path.reason(), PathEnd::Event(0));
             // From -1 up to the corner in a quarter of 2 pi, on to rest at 1/2 in a quarter of pi.
             assert!((path.end() - 0.75 * PI).abs() < 1e-12, "{right}: {}", path.end());
-            assert!((path.at(path.end()).expect("a state")[0] - 0.5).abs() < 1e-13);
+            assert!((path.states_at(path.end()).expect("a state")[0] - 0.5).abs() < 1e-13);
         }
     }
     // Free fall onto a wall of constant force: parabolas.
@@ -164,7 +168,7 @@ fn a_corner_is_met_and_left_where_it_is() {
     let end = 8.0 * 2.0_f64.sqrt();
     let paths = by_both(&wall, &[1.0, 0.0], end, &[Event::record(expression("x"))]);
     for (path, allowed) in paths.iter().zip([1e-13, 1e-11]) {
-        let end = path.at(path.end()).expect("a state");
+        let end = path.states_at(path.end()).expect("a state");
         assert!((end[0] - 1.0).abs() < allowed, "{end:?}");
         assert_eq!(path.occurrences().len(), 4);
     }
@@ -187,7 +191,7 @@ fn corners_are_met_in_any_units() {
                 "{omega} {:?}",
                 path.occurrences()
             );
-            let end = path.at(path.end()).expect("a state");
+            let end = path.states_at(path.end()).expect("a state");
             assert!((end[0] / length + 1.0).abs() < 1e-10, "{omega} {end:?}");
             let turns = path.occurrences().iter().filter(|met| met.time < 49.9 * period);
             assert_eq!(turns.count(), 99, "{omega}");
@@ -205,15 +209,15 @@ fn a_contact_is_gated_by_its_step() {
         // In time the contact has no series at the touch and the release: the series may end there,
         // and says so.
         if path.reason() == PathEnd::Singular && path.step_count() < 200 {
-            assert!(path.at(path.end()).expect("a state")[0].abs() < 1e-12);
+            assert!(path.states_at(path.end()).expect("a state")[0].abs() < 1e-12);
             continue;
         }
         assert_eq!(path.reason(), PathEnd::Event(1));
-        let end = path.at(path.end()).expect("a state");
+        let end = path.states_at(path.end()).expect("a state");
         assert!((end[1] + 1.0).abs() < 1e-8, "{end:?}");
         let deepest =
             path.occurrences().iter().find(|met| met.event == 0).expect("a turning point");
-        let depth = path.at(deepest.time).expect("a state")[0];
+        let depth = path.states_at(deepest.time).expect("a state")[0];
         assert!((depth / 1.25e-6_f64.powf(0.4) - 1.0).abs() < 1e-8, "{depth}");
     }
 }
@@ -244,7 +248,7 @@ fn any_number_of_states_by_a_closure() {
     for point in path.samples(101) {
         let [a, b, c] = point.y;
         assert!((2.0 * a * a + b * b - 1.02).abs() < 1e-11 && (a * a - c * c + 0.03).abs() < 1e-11);
-        for (value, expected) in series.at(point.t).expect("a state").iter().zip(point.y) {
+        for (value, expected) in series.states_at(point.t).expect("a state").iter().zip(point.y) {
             assert!((value - expected).abs() < 1e-10, "{point:?}");
         }
     }
@@ -273,7 +277,7 @@ fn fast_events_and_corners_are_all_met() {
     // Up on one half of every period, down on the other; and twice as long up as down.
     let square = system(&["x", "y"], &["sgn(sin(50*t))", "sgn(sin(50*t) + 1/2)"], &[]).unwrap();
     for path in by_both(&square, &[0.0, 0.0], TAU, &[]) {
-        let end = path.at(TAU).expect("a state");
+        let end = path.states_at(TAU).expect("a state");
         assert!(end[0].abs() < 1e-11 && (end[1] - TAU / 3.0).abs() < 1e-11, "{end:?}");
     }
     // A late start costs no digits.
@@ -282,7 +286,7 @@ fn fast_events_and_corners_are_all_met() {
         let path = bilinear
             .solve(1e6, &[-1.0, 0.0], 1e6 + 1.5 * PI * 20.0, &[], &options)
             .expect("a path");
-        let end = path.at(path.end()).expect("a state");
+        let end = path.states_at(path.end()).expect("a state");
         assert!((end[0] + 1.0).abs() < 1e-10 && end[1].abs() < 1e-8, "{end:?}");
     }
 }
@@ -316,7 +320,7 @@ fn an_event_on_a_corner_is_met_once() {
     let bounce = system(&["x", "v"], &["v", "-sgn(x)"], &[]).unwrap();
     for path in by_both(&bounce, &[0.0, 1.0], 9.0, &[Event::record(expression("x"))]) {
         assert_eq!((path.reason(), path.occurrences().len()), (PathEnd::Reached, 4));
-        let end = path.at(9.0).expect("a state");
+        let end = path.states_at(9.0).expect("a state");
         assert!((end[0] - 0.5).abs() < 1e-11 && end[1].abs() < 1e-11, "{end:?}");
     }
 }
@@ -331,7 +335,7 @@ fn dry_friction_stops_the_motion_where_it_holds() {
         // 1.05 -> 0.85 -> 0.65 -> 0.45 -> 0.25 -> 0.05, which is less than 0.1: five half swings of
         // time pi.
         assert!((path.end() - 5.0 * PI).abs() < 1e-11, "{}", path.end());
-        assert!((path.at(path.end()).expect("a state")[0] - 0.05).abs() < 1e-11);
+        assert!((path.states_at(path.end()).expect("a state")[0] - 0.05).abs() < 1e-11);
     }
 }
 
@@ -393,10 +397,10 @@ fn what_cannot_be_followed_is_said() {
         // Without a way to go the start is all there is.
         let path = root.solve(2.0, &[1.0], 2.0, &[], &options).expect("a start");
         assert_eq!(
-            (path.end(), path.reason(), path.at(2.0)),
+            (path.end(), path.reason(), path.states_at(2.0)),
             (2.0, PathEnd::Reached, Some(vec![1.0]))
         );
-        assert!(path.at(2.1).is_none() && path.at(1.9).is_none());
+        assert!(path.states_at(2.1).is_none() && path.states_at(1.9).is_none());
     }
     assert!(matches!(
         root.solve(0.0, &[f64::NAN], 1.0, &[], &SystemOptions::default()),
@@ -423,7 +427,7 @@ fn a_state_that_leaves_the_range_of_numbers_ends_the_path() {
     for path in by_both(&growing, &[1.0, 0.0], 1000.0, &events) {
         assert_eq!(path.reason(), PathEnd::Overflow);
         assert!((path.end() - expected).abs() < 1e-7, "{} {expected}", path.end());
-        let last = path.at(path.end()).expect("a state");
+        let last = path.states_at(path.end()).expect("a state");
         assert!(last.iter().all(|value| (value / 1e300 - 1.0).abs() < 1e-6), "{last:?}");
         assert_eq!(path.occurrences().len(), 1);
     }
@@ -473,7 +477,7 @@ fn corners_at_the_same_place_are_all_switched() {
             assert_eq!(path.reason(), PathEnd::Reached, "{force}");
             for (time, expected) in [(1.0 / 6.0, [0.0, -2.0]), (2.0, [1.0, 0.0]), (3.0, [1.0, 0.0])]
             {
-                let state = path.at(time * period).expect("a state");
+                let state = path.states_at(time * period).expect("a state");
                 let astray = (state[0] - expected[0]).abs().max((state[1] - expected[1]).abs());
                 assert!(astray < 1e-9, "{force}: {state:?} after {time} periods");
             }
@@ -501,7 +505,7 @@ fn a_loose_tolerance_is_followed_to_the_end() {
                 "{right:?} {tolerance}"
             );
             assert!(path.step_count() <= 60, "{right:?} {tolerance}: {} steps", path.step_count());
-            let error = (path.at(20.0).expect("a state")[0] - exact(20.0)).abs();
+            let error = (path.states_at(20.0).expect("a state")[0] - exact(20.0)).abs();
             assert!(error < 100.0 * tolerance + 1e-6, "{right:?} {tolerance}: {error}");
         }
     }
@@ -513,7 +517,7 @@ fn a_state_that_begins_with_a_high_power_is_followed() {
     let power = system(&["x"], &["14*t^13"], &[]).unwrap();
     for path in by_both(&power, &[0.0], 2.0, &[]) {
         assert_eq!(path.reason(), PathEnd::Reached);
-        let end = path.at(2.0).expect("a state")[0];
+        let end = path.states_at(2.0).expect("a state")[0];
         assert!((end / 2.0_f64.powi(14) - 1.0).abs() < 1e-12, "{end}");
     }
 }
@@ -536,7 +540,11 @@ fn motions_side_by_side_are_what_each_is_alone() {
                     assert_eq!(alone.occurrences(), together.occurrences(), "{what}");
                     for part in 0..=100 {
                         let time = alone.end() * f64::from(part) / 100.0;
-                        assert_eq!(alone.at(time), together.at(time), "{what} at {time}");
+                        assert_eq!(
+                            alone.states_at(time),
+                            together.states_at(time),
+                            "{what} at {time}"
+                        );
                     }
                 }
                 (alone, together) => panic!("{what}: {alone:?} and {together:?}"),

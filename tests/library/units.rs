@@ -229,7 +229,8 @@ fn the_peak_force_of_a_damped_contact_is_the_greatest_one() {
     let first = motion.impacts[0];
     let (from, to) = (first.entry_time, first.exit_time.expect("it leaves"));
     let force = |k: u32| {
-        let (x, v) = motion.path.at(from + (to - from) * f64::from(k) / 1e4).expect("a place");
+        let (x, v) =
+            motion.path.phase_point_at(from + (to - from) * f64::from(k) / 1e4).expect("a place");
         model.contact(x - 0.323, v)
     };
     let greatest = si.units.force() * (0..=10_000).map(force).fold(0.0, f64::max);

@@ -530,7 +530,7 @@ fn a_reader_in_python_rebuilds_frequency_and_motion() {
         for (phase, line) in phases().map(json::impact::Phase::read).zip(lines) {
             assert_eq!(line[0], phase.name);
             let inside = middles.iter().filter(|t| (phase.start..=phase.end).contains(t));
-            let expected: Vec<f64> = inside.map(|t| phase.at(*t).0).collect();
+            let expected: Vec<f64> = inside.map(|t| phase.phase_point_at(*t).0).collect();
             assert_eq!(line.len(), 1 + expected.len());
             assert!(expected.len() >= 3);
             for (x, value) in line[1..].iter().zip(expected) {

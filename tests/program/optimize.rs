@@ -102,7 +102,7 @@ fn the_best_design_rests_when_runge_kutta_says() {
     let (entry, exit) = (first.entry_time, first.exit_time.expect("an end"));
     let force = (0..=2000).map(|step| {
         let t = entry + (exit - entry) * f64::from(step) / 2000.0;
-        let (x, velocity) = judge.path.at(t).expect("a state");
+        let (x, velocity) = judge.path.phase_point_at(t).expect("a state");
         model.contact(x - 0.323, velocity)
     });
     let greatest = force.fold(0.0, f64::max) * best.design.units.force();
@@ -127,7 +127,7 @@ fn hardest_of(motion: &Simulation) -> (f64, f64, usize) {
         let barrier = motion.model.barrier(impact.side).expect("a barrier");
         let force = (0..=4000).map(|step| {
             let t = entry + (exit - entry) * f64::from(step) / 4000.0;
-            let (x, velocity) = motion.path.at(t).expect("a state");
+            let (x, velocity) = motion.path.phase_point_at(t).expect("a state");
             motion.model.contact(impact.side.sign() * (x - barrier), impact.side.sign() * velocity)
         });
         (force.fold(0.0, f64::max), impact.restitution.expect("a restitution"))
@@ -206,7 +206,7 @@ fn a_main_mass_and_its_pendulum_have_the_numbers_of_their_own_motion() {
             let barrier = model.barrier(impact.side).expect("a barrier");
             (0..=400).map(move |step| {
                 let t = impact.entry_time + (exit - impact.entry_time) * f64::from(step) / 400.0;
-                let state = motion.at(t).expect("a state");
+                let state = motion.state_at(t).expect("a state");
                 model.contact(sign * (state.x - barrier), sign * state.velocity)
             })
         });

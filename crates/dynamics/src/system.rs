@@ -318,13 +318,13 @@ impl Path {
     }
 
     /// All states at a time; `None` outside the path.
-    pub fn at(&self, time: f64) -> Option<Vec<f64>> {
+    pub fn states_at(&self, time: f64) -> Option<Vec<f64>> {
         if time.is_nan() || time > self.end {
             return None;
         }
         match &self.motion {
-            PathRepresentation::Taylor { steps, start } => taylor::at(steps, time - start),
-            PathRepresentation::RungeKutta(motion) => motion.at(time),
+            PathRepresentation::Taylor { steps, start } => taylor::states_at(steps, time - start),
+            PathRepresentation::RungeKutta(motion) => motion.states_at(time),
         }
     }
 }
@@ -337,7 +337,7 @@ impl Path {
             PathRepresentation::Taylor { steps, start } => {
                 taylor::state_at(steps, time - start, state)
             }
-            PathRepresentation::RungeKutta(_) => self.at(time)?.get(state).copied(),
+            PathRepresentation::RungeKutta(_) => self.states_at(time)?.get(state).copied(),
         }
     }
 
@@ -356,7 +356,7 @@ impl Path {
             }
             PathRepresentation::RungeKutta(_) => {
                 for time in times {
-                    let Some(states) = self.at(*time) else {
+                    let Some(states) = self.states_at(*time) else {
                         continue;
                     };
                     kept.push(*time);

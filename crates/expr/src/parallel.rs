@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use crate::symbol::letters::ResultSymbols;
 
 /// What `work` makes of each item, in their order.
-pub fn each<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<T> {
+pub fn par_map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<T> {
     let results: Vec<Mutex<Option<T>>> = items.iter().map(|_| Mutex::new(None)).collect();
     run(items.len(), &|number| {
         let result = work(&items[number]);
@@ -62,8 +62,8 @@ mod tests {
     fn results_keep_their_order() {
         let items: Vec<usize> = (0..1000).collect();
         let expected: Vec<usize> = items.iter().map(|item| item * item).collect();
-        assert_eq!(each(&items, |item| item * item), expected);
-        assert_eq!(each(&[] as &[usize], |item| *item), Vec::<usize>::new());
+        assert_eq!(par_map(&items, |item| item * item), expected);
+        assert_eq!(par_map(&[] as &[usize], |item| *item), Vec::<usize>::new());
         assert!(threads() > 0);
     }
 

@@ -21,7 +21,7 @@ pub struct Interrupt(Option<&'static AtomicBool>);
 
 impl Interrupt {
     /// Asked for by setting this flag.
-    pub fn by(flag: &'static AtomicBool) -> Self {
+    pub fn from_flag(flag: &'static AtomicBool) -> Self {
         Self(Some(flag))
     }
 
@@ -56,7 +56,7 @@ impl Counter {
 
 impl Progress {
     /// Seen in this counter.
-    pub fn by(counter: &'static Counter) -> Self {
+    pub fn from_counter(counter: &'static Counter) -> Self {
         Self(Some(counter))
     }
 

@@ -500,7 +500,7 @@ impl Oscillator {
     pub fn letters(&self) -> ResultSymbols {
         ResultSymbols::current().unwrap_or_else(|| {
             let own: Vec<Symbol> = self.own_names().collect();
-            ResultSymbols::beside(&own, self.force.contains(Symbol::new("t")))
+            ResultSymbols::avoiding(&own, self.force.contains(Symbol::new("t")))
         })
     }
 
@@ -695,7 +695,8 @@ impl Oscillator {
             return Ok(Some(degree));
         }
         let mut names = NamedConstants::new(self);
-        let polynomial = self.force.to_polynomial(&mut |constant| names.of(constant, &own))?;
+        let polynomial =
+            self.force.to_polynomial(&mut |constant| names.symbol_of(constant, &own))?;
         let range = polynomial.and_then(|polynomial| polynomial.exponent_range(self.coordinate));
         Ok(range.filter(|range| range.0 >= 0).and_then(|range| u32::try_from(range.1).ok()))
     }
@@ -801,7 +802,7 @@ impl Oscillator {
         let mut linear = Polynomial::zero();
         let mut terms = Vec::new();
         for (power, part) in parts.iter().enumerate().skip(first) {
-            let mut name = |constant: &Expr| names.of(constant, &[position, velocity]);
+            let mut name = |constant: &Expr| names.symbol_of(constant, &[position, velocity]);
             let Some(polynomial) = part.to_polynomial(&mut name)? else {
                 return Err(OscillatorError::NotPolynomial(part.clone().into()));
             };
@@ -886,7 +887,7 @@ impl NamedConstants {
     }
 
     /// The symbol of `constant`, unless one of `variables` occurs in it.
-    fn of(&mut self, constant: &Expr, variables: &[Symbol]) -> Option<Symbol> {
+    fn symbol_of(&mut self, constant: &Expr, variables: &[Symbol]) -> Option<Symbol> {
         if variables.iter().any(|&variable| constant.contains(variable))
             || constant.contains(Symbol::new("t"))
         {

@@ -365,7 +365,7 @@ impl Solution {
     pub fn letters(&self) -> ResultSymbols {
         ResultSymbols::current().unwrap_or_else(|| {
             let own: Vec<Symbol> = self.names_of_equation().collect();
-            ResultSymbols::beside(&own, self.equation.left.contains(Symbol::new("t")))
+            ResultSymbols::avoiding(&own, self.equation.left.contains(Symbol::new("t")))
         })
     }
 

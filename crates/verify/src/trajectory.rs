@@ -173,7 +173,7 @@ impl TrajectoryRequest {
                 states: vec![coordinate, velocity],
                 right: vec![Expr::from(velocity), -&oscillator.force],
             },
-            energy::of(oscillator),
+            energy::energy_of_equation(oscillator),
         )
     }
 
@@ -545,8 +545,8 @@ impl TrajectorySegment {
         self.path.end()
     }
 
-    fn at(&self, time: f64) -> Option<Vec<f64>> {
-        let states = self.path.at(time)?;
+    fn states_at(&self, time: f64) -> Option<Vec<f64>> {
+        let states = self.path.states_at(time)?;
         Some(match &self.layout {
             None => states,
             Some(layout) => layout.states(time, &states),
@@ -636,7 +636,7 @@ impl Trajectory {
     /// The states and the work so far; nothing outside of the motion.
     fn all_at(&self, time: f64) -> Option<Vec<f64>> {
         let place = self.pieces.partition_point(|piece| piece.end() < time);
-        self.pieces.get(place)?.at(time)
+        self.pieces.get(place)?.states_at(time)
     }
 
     /// One coordinate or velocity at a time.
@@ -644,7 +644,7 @@ impl Trajectory {
         let place = self.pieces.partition_point(|piece| piece.end() < time);
         let piece = self.pieces.get(place)?;
         match piece.is_held() {
-            true => piece.at(time)?.get(state).copied(),
+            true => piece.states_at(time)?.get(state).copied(),
             false => piece.path.state_at(time, state),
         }
     }
@@ -662,7 +662,7 @@ impl Trajectory {
                 continue;
             }
             for time in own {
-                let Some(states) = piece.at(*time) else {
+                let Some(states) = piece.states_at(*time) else {
                     continue;
                 };
                 kept.push(*time);
@@ -704,7 +704,7 @@ impl Trajectory {
     }
 
     /// Coordinates, then velocities; nothing outside of the motion.
-    pub fn at(&self, time: f64) -> Option<Vec<f64>> {
+    pub fn states_at(&self, time: f64) -> Option<Vec<f64>> {
         let mut state = self.all_at(time)?;
         state.truncate(self.course.rates.states.len());
         Some(state)
@@ -718,7 +718,7 @@ impl Trajectory {
         let mut apart = vec![(0.0_f64, 0.0_f64); count];
         for index in 0..=ACCOUNTS {
             let time = end * f64::from(index) / f64::from(ACCOUNTS);
-            let (Some(one), Some(two)) = (self.at(time), other.at(time)) else {
+            let (Some(one), Some(two)) = (self.states_at(time), other.states_at(time)) else {
                 continue;
             };
             for (entry, (one, two)) in apart.iter_mut().zip(one.iter().zip(&two)) {

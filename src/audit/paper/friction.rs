@@ -70,7 +70,7 @@ pub struct PrintedDigits {
 }
 
 impl PrintedDigits {
-    fn of(printed: &'static str, number: f64) -> Self {
+    fn new(printed: &'static str, number: f64) -> Self {
         let [rounded, cut] = has_digits(printed, number);
         Self { printed, rounded, cut }
     }
@@ -112,7 +112,7 @@ pub struct PiReading {
 }
 
 impl PiReading {
-    fn of(name: &'static str, value: f64) -> Self {
+    fn new(name: &'static str, value: f64) -> Self {
         let entries: Vec<PrintedDigits> =
             SPEEDS.iter().flat_map(|(speed, printed)| entries(*speed, printed, value)).collect();
         let count = |wanted: fn(&PrintedDigits) -> bool| {
@@ -140,8 +140,8 @@ impl PiReading {
 
 fn entries(speed: f64, printed: &PrintedSpeed, pi: f64) -> [PrintedDigits; 2] {
     [
-        PrintedDigits::of(printed.value, arctangent(speed, pi)),
-        PrintedDigits::of(printed.error, arctangent_error(speed, pi)),
+        PrintedDigits::new(printed.value, arctangent(speed, pi)),
+        PrintedDigits::new(printed.error, arctangent_error(speed, pi)),
     ]
 }
 
@@ -168,8 +168,9 @@ impl FrictionTable {
     /// assert_eq!((table.best().name, table.best().either), ("3.14", table.entries()));
     /// # Ok::<(), friction::FrictionError>(())
     /// ```
-    pub fn of(study: &FrictionStudy) -> Self {
-        let readings: Vec<PiReading> = TRIED.map(|name| PiReading::of(name, value_of(name))).into();
+    pub fn from_study(study: &FrictionStudy) -> Self {
+        let readings: Vec<PiReading> =
+            TRIED.map(|name| PiReading::new(name, value_of(name))).into();
         // Of equals the first, which is the shortest.
         let best = (0..readings.len())
             .rev()
@@ -177,7 +178,7 @@ impl FrictionTable {
         let best = best.unwrap_or_default();
         let pi = readings[best].value;
         let own = SPEEDS.iter().map(|(speed, printed)| TableRow {
-            laws: SpeedRow::at(*speed),
+            laws: SpeedRow::new(*speed),
             printed: Some(entries(*speed, printed, pi)),
         });
         let others = study.rows.iter().map(|laws| TableRow { laws: *laws, printed: None });
@@ -228,13 +229,13 @@ mod tests {
         assert_eq!(has_digits("-0.99414", -0.994138), [true, false]);
         assert_eq!(has_digits("0.00000", -0.0), [true, true]);
         assert_eq!(has_digits("0.5", 0.61), [false, false]);
-        assert_eq!(PrintedDigits::of("-0.5", -0.54).treatment(), "either");
+        assert_eq!(PrintedDigits::new("-0.5", -0.54).treatment(), "either");
     }
 
     #[test]
     fn the_range_of_pi_is_where_every_entry_comes_out() {
         let [least, greatest] = pi_range().unwrap();
-        let all = |pi: f64| PiReading::of("", pi).either == 2 * SPEEDS.len();
+        let all = |pi: f64| PiReading::new("", pi).either == 2 * SPEEDS.len();
         let width = greatest - least;
         assert!(width > 0.0 && width < 1e-6, "{width}");
         for part in [0.01, 0.5, 0.99] {
@@ -252,13 +253,13 @@ mod tests {
     #[test]
     fn a_short_pi_overshoots() {
         let short = value_of("3.14");
-        let reading = PiReading::of("3.14", short);
+        let reading = PiReading::new("3.14", short);
         let speed = reading.exceeds_from().unwrap();
         assert!((arctangent(speed, short) - 1.0).abs() < 1e-14);
         assert!(
             arctangent(1e9, short) > 1.0005
                 && (reading.limit() - arctangent(1e12, short)).abs() < 1e-12
         );
-        assert_eq!(PiReading::of("pi", PI).exceeds_from(), None);
+        assert_eq!(PiReading::new("pi", PI).exceeds_from(), None);
     }
 }

@@ -43,11 +43,11 @@ pub(super) fn of_solution(
     if solution.slow().is_some() {
         return Err(NoCode::Slow);
     }
-    let names = ProgramNames::of(solution);
+    let names = ProgramNames::new(solution);
     let mut header = header(solution, verification, tolerance);
     let mut remarks: Vec<String> = Vec::new();
     let formula = formula(solution);
-    let is_exact = MethodEntry::of(solution.method).motion == MotionEvaluation::Exact;
+    let is_exact = MethodEntry::for_method(solution.method).motion == MotionEvaluation::Exact;
     let mut routines = Vec::new();
     match (&formula, verification) {
         (Ok(law), _) => {
@@ -150,7 +150,7 @@ struct ProgramNames {
 }
 
 impl ProgramNames {
-    fn of(solution: &Solution) -> Self {
+    fn new(solution: &Solution) -> Self {
         let taken = solution.names();
         Self {
             amplitude: solution.amplitude.symbol(),
@@ -690,7 +690,7 @@ fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
     if solution.validity.contains(&Note::Exact(ExactBy::Linear)) {
         return None;
     }
-    if MethodEntry::of(solution.method).motion == MotionEvaluation::Exact {
+    if MethodEntry::for_method(solution.method).motion == MotionEvaluation::Exact {
         return Some(
             "The program does not look whether the motion is periodic: where it is not, its numbers mean nothing."
                 .to_owned(),

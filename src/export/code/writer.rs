@@ -149,7 +149,7 @@ impl CodeFragment {
     }
 
     /// With its sign.
-    fn whole(&self) -> String {
+    fn with_sign(&self) -> String {
         match self.negative {
             true => format!("-{}", self.text),
             false => self.text.clone(),
@@ -157,15 +157,19 @@ impl CodeFragment {
     }
 
     /// As an operand that must hold together this tightly.
-    fn at(&self, level: Precedence) -> String {
+    fn as_operand(&self, level: Precedence) -> String {
         match self.level < level || self.negative {
-            true => format!("({})", self.whole()),
+            true => format!("({})", self.with_sign()),
             false => self.text.clone(),
         }
     }
 
     fn as_base(&self) -> Base {
-        Base { inside: self.whole(), operand: self.at(Precedence::Atom), literal: self.literal }
+        Base {
+            inside: self.with_sign(),
+            operand: self.as_operand(Precedence::Atom),
+            literal: self.literal,
+        }
     }
 
     fn is_one(&self) -> bool {
@@ -214,7 +218,7 @@ impl Writer<'_> {
 
     /// A value between two texts, in as many lines as it needs.
     fn lines(&self, before: &str, value: &Value, after: &str) -> Result<Vec<String>, NoCode> {
-        let whole = self.value(value)?.whole();
+        let whole = self.value(value)?.with_sign();
         if before.len() + whole.len() + after.len() <= WIDTH {
             return Ok(vec![format!("{before}{whole}{after}")]);
         }
@@ -232,7 +236,7 @@ impl Writer<'_> {
                         (_, true) => "- ",
                     };
                     let level = if index == 0 { Precedence::Sum } else { Precedence::Product };
-                    parts.push(format!("{sign}{}", unsigned.at(level)));
+                    parts.push(format!("{sign}{}", unsigned.as_operand(level)));
                 }
                 parts
             }
@@ -317,7 +321,7 @@ impl Writer<'_> {
                 (Some(number), [written, _]) => self.power(base, written, number)?,
                 (None, [base, exponent]) => {
                     let text =
-                        (self.syntax.power)(&base.as_base(), Exponent::Real(&exponent.whole()));
+                        (self.syntax.power)(&base.as_base(), Exponent::Real(&exponent.with_sign()));
                     CodeFragment::new(text, Precedence::Power)
                 }
                 _ => CodeFragment::new(String::new(), Precedence::Atom),
@@ -328,7 +332,7 @@ impl Writer<'_> {
 
     fn call(&self, name: &str, arguments: &[CodeFragment]) -> CodeFragment {
         let written = |arguments: &[CodeFragment]| {
-            let written: Vec<String> = arguments.iter().map(CodeFragment::whole).collect();
+            let written: Vec<String> = arguments.iter().map(CodeFragment::with_sign).collect();
             written.join(", ")
         };
         let text = match (name.strip_prefix('.'), arguments) {
@@ -337,7 +341,7 @@ impl Writer<'_> {
                 format!("f64::{method}({})", written(arguments))
             }
             (Some(method), [first, rest @ ..]) => {
-                format!("{}.{method}({})", first.at(Precedence::Atom), written(rest))
+                format!("{}.{method}({})", first.as_operand(Precedence::Atom), written(rest))
             }
             _ => format!("{name}({})", written(arguments)),
         };
@@ -387,7 +391,7 @@ impl Writer<'_> {
                 (false, true) => " - ",
                 (false, false) => " + ",
             });
-            text.push_str(&unsigned.at(level));
+            text.push_str(&unsigned.as_operand(level));
         }
         match text.is_empty() {
             true => CodeFragment::literal(format!("0{}", self.syntax.point), Precedence::Atom),
@@ -410,7 +414,7 @@ impl Writer<'_> {
                 let text = self.joined(
                     1,
                     (&numerator.text, numerator.literal),
-                    (&divisor.at(Precedence::Power), divisor.literal),
+                    (&divisor.as_operand(Precedence::Power), divisor.literal),
                 );
                 CodeFragment {
                     literal: numerator.literal && divisor.literal,
@@ -435,14 +439,16 @@ impl Writer<'_> {
         };
         if rest.is_empty() {
             return match first.level {
-                Precedence::Sum => CodeFragment::new(first.at(Precedence::Power), Precedence::Atom),
+                Precedence::Sum => {
+                    CodeFragment::new(first.as_operand(Precedence::Power), Precedence::Atom)
+                }
                 _ => first.clone(),
             };
         }
         let (mut text, mut literal, mut last) =
-            (first.at(Precedence::Power), first.literal, first.literal);
+            (first.as_operand(Precedence::Power), first.literal, first.literal);
         for factor in rest {
-            let next = factor.at(Precedence::Power);
+            let next = factor.as_operand(Precedence::Power);
             text = self.joined(0, (&text, last), (&next, factor.literal));
             literal &= factor.literal;
             last = factor.literal;

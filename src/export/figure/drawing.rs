@@ -91,8 +91,8 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
     }
     for guide in &panel.guides {
         let (at, label, list) = match *guide {
-            GuideLine::X(at, label) => (panel.x_scale.place(at), label, &mut xs),
-            GuideLine::Y(at, label) => (panel.y_scale.place(at), label, &mut ys),
+            GuideLine::X(at, label) => (panel.x_scale.position(at), label, &mut xs),
+            GuideLine::Y(at, label) => (panel.y_scale.position(at), label, &mut ys),
         };
         if !at.is_finite() {
             return Err(FigureError::OffAxes(within(format!("guide \"{label}\""))));
@@ -105,8 +105,12 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
     let across = |y: f64| vec![(x_range.0, y / y_unit), (x_range.1, y / y_unit)];
     let upright = |x: f64| vec![(x / x_unit, y_range.0), (x / x_unit, y_range.1)];
     let guides = panel.guides.iter().map(|guide| match *guide {
-        GuideLine::X(at, label) => plot(label, upright(panel.x_scale.place(at)), CurveStyle::GUIDE),
-        GuideLine::Y(at, label) => plot(label, across(panel.y_scale.place(at)), CurveStyle::GUIDE),
+        GuideLine::X(at, label) => {
+            plot(label, upright(panel.x_scale.position(at)), CurveStyle::GUIDE)
+        }
+        GuideLine::Y(at, label) => {
+            plot(label, across(panel.y_scale.position(at)), CurveStyle::GUIDE)
+        }
     });
     let scaled = |points: Vec<(f64, f64)>| {
         points.into_iter().map(|(x, y)| (x / x_unit, y / y_unit)).collect()
@@ -120,7 +124,7 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
 impl Scale {
     /// Where a value lies on an axis. A logarithmic axis is drawn as a linear one of exponents,
     /// because the library's own ends at 1e-10.
-    fn place(self, value: f64) -> f64 {
+    fn position(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
             Self::Logarithmic => value.log10(),
@@ -134,7 +138,7 @@ fn placed(
     panel: &Panel,
 ) -> Result<Vec<(f64, f64)>, FigureError> {
     let within = |thing: String| format!("{thing} in panel \"{}\"", panel.title);
-    let place = |&(x, y): &(f64, f64)| (panel.x_scale.place(x), panel.y_scale.place(y));
+    let place = |&(x, y): &(f64, f64)| (panel.x_scale.position(x), panel.y_scale.position(y));
     let off = |point: &&(f64, f64)| {
         let (x, y) = place(point);
         !point.0.is_finite() || !point.1.is_finite() || x.is_nan() || y.is_nan()

@@ -158,7 +158,7 @@ pub struct RestTime {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn friction(study: &FrictionStudy) -> FrictionDocument {
-    let (table, near_rest) = (FrictionTable::of(study), &study.near_rest);
+    let (table, near_rest) = (FrictionTable::from_study(study), &study.near_rest);
     let speeds = table.rows.iter().map(|row| {
         let [value, error] =
             row.printed.map_or([None, None], |entries| entries.map(|entry| Some(printed(entry))));

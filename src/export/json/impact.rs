@@ -513,15 +513,15 @@ pub fn impact(impact: &Impact, tolerance: f64) -> ImpactDocument {
     };
     let phases = |reading| {
         let column = impact.column(reading).into_iter();
-        column.flat_map(|column| &column.phases.phases).map(Phase::of).collect()
+        column.flat_map(|column| &column.phases.phases).map(Phase::from_phase).collect()
     };
     let [paper, energy, derived] = READINGS.map(judged);
-    let contact_laws = impact.contact_laws.iter().map(ContactLawRow::of);
+    let contact_laws = impact.contact_laws.iter().map(ContactLawRow::from_row);
     let first = paper.as_ref().or(derived.as_ref()).map(|column| column.verdict.clone());
     ImpactDocument {
         schema: DocumentKind::Impact.schema().to_owned(),
         equation: impact.equation.clone(),
-        parameters: Parameters::of(
+        parameters: Parameters::new(
             setup,
             [impact.equilibrium, impact.turning_point],
             impact.free_swing.as_ref().map(|law| law.order),
@@ -619,7 +619,7 @@ fn si(impact: &Impact, si: &SiImpact, tolerance: f64) -> Si {
 impl Parameters {
     /// The numbers of a setup whose swing has this equilibrium and turns at this point and whose
     /// contact has this damping, and the order of `law`.
-    pub(super) fn of(
+    pub(super) fn new(
         setup: &Setup,
         [equilibrium, turning_point]: [f64; 2],
         order: Option<u32>,
@@ -670,7 +670,7 @@ fn law_names() -> Vec<&'static str> {
 }
 
 impl ContactLawRow {
-    fn of(row: &ContactRow) -> Self {
+    fn from_row(row: &ContactRow) -> Self {
         let judged = |of: &dyn Fn(&ContactMotion, &ContactErrors) -> [f64; 2]| {
             let (motion, errors) = row.outcome.as_ref().ok()?;
             let [value, error] = of(motion, errors);
@@ -744,9 +744,9 @@ impl PhaseName {
 }
 
 impl Phase {
-    fn of(phase: &impact::MotionPhase) -> Self {
+    fn from_phase(phase: &impact::MotionPhase) -> Self {
         let state = |time: f64| {
-            let (x, velocity) = phase.at(time);
+            let (x, velocity) = phase.phase_point_at(time);
             State { x, velocity }
         };
         Self {

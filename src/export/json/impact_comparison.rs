@@ -109,7 +109,7 @@ pub fn impact_comparison(table: &ImpactComparison, tolerance: f64) -> ImpactComp
     ImpactComparisonDocument {
         schema: DocumentKind::ImpactComparison.schema().to_owned(),
         equation: table.equation.clone(),
-        parameters: Parameters::of(
+        parameters: Parameters::new(
             &table.setup,
             [table.equilibrium, table.turning_point],
             None,

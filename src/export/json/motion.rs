@@ -70,7 +70,7 @@ fn states(course: &TrajectoryRequest, state: &[f64]) -> Map<f64> {
 }
 
 impl MotionSample {
-    fn of(course: &TrajectoryRequest, t: f64, state: &[f64]) -> Self {
+    fn new(course: &TrajectoryRequest, t: f64, state: &[f64]) -> Self {
         Self { t, state: states(course, state) }
     }
 }
@@ -126,8 +126,8 @@ pub struct EnergyAccount {
 pub fn motion(report: &TrajectoryReport) -> MotionDocument {
     let motion = report.motion;
     let course = &motion.course;
-    let sample = |t: f64| Some(MotionSample::of(course, t, &motion.at(t)?));
-    let start = MotionSample::of(course, 0.0, &course.start);
+    let sample = |t: f64| Some(MotionSample::new(course, t, &motion.states_at(t)?));
+    let start = MotionSample::new(course, 0.0, &course.start);
     MotionDocument {
         schema: DocumentKind::Motion.schema().to_owned(),
         coordinates: texts(&course.coordinates),
@@ -168,7 +168,7 @@ fn section_document(
         PoincareSection::Every(period) => [Some(period.to_string()), None],
         PoincareSection::Rising(expression) => [None, Some(expression.to_string())],
     };
-    let state = |crossing: &Crossing| MotionSample::of(course, crossing.time, &crossing.state);
+    let state = |crossing: &Crossing| MotionSample::new(course, crossing.time, &crossing.state);
     SectionDocument {
         every,
         rising,
@@ -230,7 +230,7 @@ pub fn motion_sweep(sweep: &MotionSweep) -> MotionSweepDocument {
     };
     let motions = sweep.motions.iter().map(|motion| SweptMotionDocument {
         values: named(sweep.names.iter().zip(motion.values.iter().copied())),
-        final_state: MotionSample::of(course, motion.end, &motion.state),
+        final_state: MotionSample::new(course, motion.end, &motion.state),
         extremes: named(course.coordinates.iter().zip(motion.extremes.iter().copied())),
         section: course
             .section

@@ -58,7 +58,7 @@ pub struct Term {
 
 impl Constant {
     /// An exact constant expression, `3/2` or `pi/3`, beside its decimal value.
-    pub fn of(value: &Expr) -> Self {
+    pub fn from_expr(value: &Expr) -> Self {
         let decimal = value.as_number().map(to_f64).or_else(|| value.evaluate(&[].into()).ok());
         Self { exact: value.to_string(), value: finite(decimal) }
     }
@@ -74,7 +74,7 @@ impl Constant {
 
 impl Polynomial {
     /// A polynomial of a solution, lowest order in its small parameters first.
-    pub fn of(polynomial: &exact::Polynomial, solution: &Solution) -> Self {
+    pub fn from_polynomial(polynomial: &exact::Polynomial, solution: &Solution) -> Self {
         Self::of_sum(&solution.ordered(polynomial))
     }
 
@@ -138,7 +138,7 @@ pub(super) fn named<N: ToString, T>(entries: impl IntoIterator<Item = (N, T)>) -
 
 /// Exact values under their names.
 pub(super) fn constants(values: &Values) -> Map<Constant> {
-    named(values.iter().map(|(name, value)| (name, Constant::of(value))))
+    named(values.iter().map(|(name, value)| (name, Constant::from_expr(value))))
 }
 
 /// The meaning of each symbol.
@@ -155,9 +155,9 @@ pub(super) struct DocumentNames {
 
 impl DocumentNames {
     /// Those beside the names of an equation, driven or not.
-    pub fn beside(own: impl IntoIterator<Item = Symbol>, driven: bool) -> Self {
+    pub fn avoiding(own: impl IntoIterator<Item = Symbol>, driven: bool) -> Self {
         let own: Vec<Symbol> = own.into_iter().collect();
-        let letters = ResultSymbols::beside(&own, driven);
+        let letters = ResultSymbols::avoiding(&own, driven);
         let clash = |name: &Symbol| letters.unusual().any(|(usual, _)| usual.name() == name.name());
         let apart = |name: Symbol| if clash(&name) { name.apart() } else { name };
         Self { own: own.into_iter().map(apart).collect(), letters }

@@ -405,9 +405,9 @@ pub struct Sensitivity {
 pub fn optimization(study: &Study) -> OptimizationDocument {
     OptimizationDocument {
         schema: DocumentKind::Optimization.schema().to_owned(),
-        asked: Asked::of(&study.question),
+        asked: Asked::from_problem(&study.question),
         complete: study.complete,
-        runs: study.runs.iter().map(Run::of).collect(),
+        runs: study.runs.iter().map(Run::from_run).collect(),
         searches: searches(study),
         median_curve: match study.question.objectives.len() {
             1 => study.median_curve().into_iter().map(|value| finite(Some(value))).collect(),
@@ -503,7 +503,7 @@ fn decision(decision: &optimize::Decision) -> Decision {
 
 impl Asked {
     /// What a question asks.
-    pub fn of(question: &OptimizationProblem) -> Self {
+    pub fn from_problem(question: &OptimizationProblem) -> Self {
         Self {
             objectives: question
                 .objectives
@@ -523,7 +523,7 @@ impl Asked {
             materials: question
                 .materials
                 .iter()
-                .map(|material| SearchMaterial::of(material, question.case.speed_unit))
+                .map(|material| SearchMaterial::from_material(material, question.case.speed_unit))
                 .collect(),
             limits: question
                 .limits
@@ -545,13 +545,13 @@ impl Asked {
                 displacement: of.displacement,
                 speed: of.speed,
             }),
-            held_fixed: SearchHeldFixed::of(question),
+            held_fixed: SearchHeldFixed::from_problem(question),
             defaults: question.defaults.iter().map(|key| key.name().to_owned()).collect(),
             duration: question.settings.duration,
             rest_fraction: REST_FRACTION,
             step_tolerance: question.settings.relative_tolerance,
             step_limit: question.settings.maximum_steps,
-            genetic: Genetic::of(question),
+            genetic: Genetic::from_problem(question),
             runs: question.runs,
             seed: question.seed,
         }
@@ -559,7 +559,7 @@ impl Asked {
 }
 
 impl ContactForm {
-    fn of(damping: ContactDamping, at_speed: Option<f64>, unit: SpeedUnit) -> Self {
+    fn new(damping: ContactDamping, at_speed: Option<f64>, unit: SpeedUnit) -> Self {
         Self {
             form: damping.form().name().to_owned(),
             value: damping.value(),
@@ -570,19 +570,19 @@ impl ContactForm {
 }
 
 impl SearchMaterial {
-    fn of(material: &impact::Material, unit: SpeedUnit) -> Self {
+    fn from_material(material: &impact::Material, unit: SpeedUnit) -> Self {
         let damping = material.damping;
         Self {
             name: material.name.clone(),
             modulus: material.modulus.value(),
             yield_limit: material.yield_limit,
-            damping: damping.map(|damping| ContactForm::of(damping, material.at_speed, unit)),
+            damping: damping.map(|damping| ContactForm::new(damping, material.at_speed, unit)),
         }
     }
 }
 
 impl SearchHeldFixed {
-    fn of(question: &OptimizationProblem) -> Self {
+    fn from_problem(question: &OptimizationProblem) -> Self {
         let case = &question.case;
         let fixed = |parameter: Parameter| {
             let mut variables = question.variables.iter();
@@ -597,7 +597,7 @@ impl SearchHeldFixed {
             barrier: Barrier { left: case.left, right: case.right },
             contact: question
                 .holds_contact_damping()
-                .then(|| ContactForm::of(case.contact_damping, case.at_speed, case.speed_unit)),
+                .then(|| ContactForm::new(case.contact_damping, case.at_speed, case.speed_unit)),
             zeta: case.get(Parameter::Zeta),
             viscous: case.viscous,
             alpha: case.get(Parameter::Alpha),
@@ -616,7 +616,7 @@ impl SearchHeldFixed {
 }
 
 impl Genetic {
-    fn of(question: &OptimizationProblem) -> Self {
+    fn from_problem(question: &OptimizationProblem) -> Self {
         let options = &question.genetic;
         let (coding, bits) = match options.coding {
             Coding::Real => ("real", None),
@@ -665,7 +665,7 @@ impl Genetic {
 }
 
 impl Run {
-    fn of(run: &SearchRun) -> Self {
+    fn from_run(run: &SearchRun) -> Self {
         Self {
             number: run.number,
             found: run.found.clone(),
@@ -705,7 +705,7 @@ struct Head {
 /// # Errors
 /// What the writer says.
 pub fn record_head(question: &OptimizationProblem) -> Result<String, JsonError> {
-    let head = Head { schema: RECORD.to_owned(), asked: asked(question)? };
+    let head = Head { schema: RECORD.to_owned(), asked: request_value(question)? };
     line(&head)
 }
 
@@ -714,7 +714,7 @@ pub fn record_head(question: &OptimizationProblem) -> Result<String, JsonError> 
 /// # Errors
 /// What the writer says.
 pub fn record_line(run: &SearchRun) -> Result<String, JsonError> {
-    line(&Run::of(run))
+    line(&Run::from_run(run))
 }
 
 fn unwritable(error: serde_json::Error) -> JsonError {
@@ -732,8 +732,8 @@ fn line(of: &impl Serialize) -> Result<String, JsonError> {
     Ok(text + "\n")
 }
 
-fn asked(question: &OptimizationProblem) -> Result<Value, JsonError> {
-    serde_json::to_value(Asked::of(question)).map_err(unwritable)
+fn request_value(question: &OptimizationProblem) -> Result<Value, JsonError> {
+    serde_json::to_value(Asked::from_problem(question)).map_err(unwritable)
 }
 
 /// The runs of a record of the same search, and how many bytes of it are whole lines.
@@ -764,7 +764,7 @@ pub fn read_record(
     if head.schema != RECORD {
         return Err(no_record());
     }
-    if let Some(key) = difference(&head.asked, &asked(question)?) {
+    if let Some(key) = difference(&head.asked, &request_value(question)?) {
         return Err(JsonError(format!(
             "it is the record of another search: `{key}` differs; only `runs` may"
         )));

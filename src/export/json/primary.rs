@@ -171,7 +171,7 @@ pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
     let case = &motion.case;
     let (own, model) = (&case.primary, &case.model);
     let sample = |t: f64| {
-        let state = motion.at(t)?;
+        let state = motion.state_at(t)?;
         Some(PrimarySample {
             t,
             x: state.x,

@@ -422,7 +422,7 @@ pub fn simulation(report: &Report) -> SimulationDocument {
     let book = motion.energy();
     let rest = motion.rest();
     let sample = |&t: &f64| {
-        let (x, velocity) = motion.path.at(t).unzip();
+        let (x, velocity) = motion.path.phase_point_at(t).unzip();
         Sample { t, x, velocity }
     };
     SimulationDocument {

@@ -143,7 +143,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    fn of(estimate: &singularity::Estimate) -> Self {
+    fn from_estimate(estimate: &singularity::Estimate) -> Self {
         Self {
             exact: estimate.value.to_string(),
             value: exact::to_f64(&estimate.value),
@@ -160,18 +160,18 @@ impl Estimate {
 }
 
 impl Convergence {
-    fn of(convergence: &solution::Convergence) -> Self {
+    fn from_convergence(convergence: &solution::Convergence) -> Self {
         let nearest = &convergence.nearest;
-        let [real, imaginary] = nearest.place.each_ref().map(Estimate::of);
+        let [real, imaginary] = nearest.place.each_ref().map(Estimate::from_estimate);
         let powers = convergence.variable.factors().iter();
         Self {
             variable: named(powers.map(|(name, power)| (name, *power))),
             highest: convergence.highest,
-            radius: Estimate::of(&nearest.radius),
-            angle: Estimate::of(&nearest.angle),
+            radius: Estimate::from_estimate(&nearest.radius),
+            angle: Estimate::from_estimate(&nearest.angle),
             real,
             imaginary,
-            exponent: nearest.exponent.as_ref().map(Estimate::of),
+            exponent: nearest.exponent.as_ref().map(Estimate::from_estimate),
         }
     }
 
@@ -403,7 +403,8 @@ pub fn solution(
     verification: Option<&verify::Verification>,
 ) -> SolutionDocument {
     let _letters = solution.letters().in_force();
-    let optional = |law: Option<&exact::Polynomial>| law.map(|law| Polynomial::of(law, solution));
+    let optional =
+        |law: Option<&exact::Polynomial>| law.map(|law| Polynomial::from_polynomial(law, solution));
     SolutionDocument {
         schema: DocumentKind::Solution.schema().to_owned(),
         equation: solution.equation.to_string(),
@@ -414,7 +415,7 @@ pub fn solution(
         amplitude: solution.amplitude.name().to_owned(),
         parameters: texts(&solution.parameters),
         definitions: meanings(&solution.definitions),
-        equilibrium: Constant::of(&solution.equilibrium),
+        equilibrium: Constant::from_expr(&solution.equilibrium),
         frequency: optional(solution.law.frequency()),
         frequency_squared: optional(solution.law.frequency_squared()),
         relation: optional(solution.law.relation()),
@@ -431,7 +432,7 @@ pub fn solution(
         response: solution.response.as_ref().map(|response| self::response(response, solution)),
         numerical: solution.numerical,
         validity: texts(&solution.validity),
-        convergence: solution.convergence.as_ref().map(Convergence::of),
+        convergence: solution.convergence.as_ref().map(Convergence::from_convergence),
         derivation: None,
         verification: verification.map(judged),
     }
@@ -442,8 +443,8 @@ fn displacement(motion: &FourierSeries<Polynomials>, solution: &Solution) -> Dis
     let harmonic =
         |(harmonic, cosine, sine): (usize, exact::Polynomial, exact::Polynomial)| Harmonic {
             harmonic,
-            cos: Polynomial::of(&cosine, solution),
-            sin: Polynomial::of(&sine, solution),
+            cos: Polynomial::from_polynomial(&cosine, solution),
+            sin: Polynomial::from_polynomial(&sine, solution),
         };
     Displacement {
         variable: solution.phase().to_string(),
@@ -454,7 +455,7 @@ fn displacement(motion: &FourierSeries<Polynomials>, solution: &Solution) -> Dis
 /// The cycle of the solution and, to leading order, all of its equation.
 fn limit_cycle(cycle: &solution::LimitCycle, solution: &Solution) -> LimitCycle {
     LimitCycle {
-        amplitude: Polynomial::of(&cycle.amplitude, solution),
+        amplitude: Polynomial::from_polynomial(&cycle.amplitude, solution),
         number: cycle.number,
         cycles: cycle.cycles.iter().map(self::cycle).collect(),
         small_with: texts(&cycle.small_with),
@@ -464,7 +465,7 @@ fn limit_cycle(cycle: &solution::LimitCycle, solution: &Solution) -> LimitCycle 
 /// An amplitude that stays, with its stability.
 fn cycle(leading: &LeadingCycle) -> Cycle {
     Cycle {
-        amplitude: Constant::of(&leading.amplitude),
+        amplitude: Constant::from_expr(&leading.amplitude),
         attracts_where_positive: text(leading.attracts_where.as_ref()),
         stability: leading.stability(),
     }
@@ -502,7 +503,7 @@ fn modulation(modulation: &solution::Modulation, solution: &Solution) -> Modulat
 
 /// The steady motions of a driven equation in symbols.
 fn response(response: &solution::Response, solution: &Solution) -> Response {
-    let polynomial = |value: &exact::Polynomial| Polynomial::of(value, solution);
+    let polynomial = |value: &exact::Polynomial| Polynomial::from_polynomial(value, solution);
     Response {
         motion: response.motion.to_string(),
         relation: response.relation.as_ref().map(polynomial),
@@ -574,7 +575,7 @@ impl SolutionDocument {
         let time = Symbol::new("t");
         let own = self.parameters.iter().map(|name| Symbol::new(name));
         let driven = equation.left.contains(time) || equation.right.contains(time);
-        let names = &DocumentNames::beside(own.chain([equation.coordinate]), driven);
+        let names = &DocumentNames::avoiding(own.chain([equation.coordinate]), driven);
         let definition = |(name, meaning): (&String, &String)| {
             Ok(Definition { symbol: names.symbol(name), meaning: names.expression(meaning, name)? })
         };
@@ -587,7 +588,7 @@ impl SolutionDocument {
             },
             method,
             order: self.order,
-            degrees: match self.degrees.as_deref().map(Degrees::of) {
+            degrees: match self.degrees.as_deref().map(Degrees::from_list) {
                 Some(None) => return unexpected("degrees", "those of an approximant"),
                 degrees => degrees.flatten(),
             },

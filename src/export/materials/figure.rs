@@ -133,7 +133,7 @@ fn of_materials<'a>(study: &'a MaterialStudy, points: &'a [Points]) -> Vec<Curve
 /// The displacement in this window of time, the time in seconds.
 fn swing(motion: &Simulation, [from, to]: [f64; 2], second: f64) -> Points {
     let times = (0..=POINTS).map(|index| from + (to - from) * (index as f64 / POINTS as f64));
-    times.filter_map(|t| Some((t * second, motion.path.at(t)?.0))).collect()
+    times.filter_map(|t| Some((t * second, motion.path.phase_point_at(t)?.0))).collect()
 }
 
 /// The amplitude at the turning points of the envelope, in percent of the first, the time in

@@ -46,8 +46,8 @@ fn axis(objective: Objective) -> &'static str {
 
 fn search(study: &Study) -> Result<String, FigureError> {
     let objective = study.objective();
-    let convergence = SearchConvergence::of(study);
-    let designs = Designs::of(study);
+    let convergence = SearchConvergence::from_study(study);
+    let designs = Designs::from_study(study);
     let curves = convergence.curves(study);
     let mut panels = Vec::new();
     if !curves.is_empty() {
@@ -79,7 +79,7 @@ struct SearchConvergence {
 }
 
 impl SearchConvergence {
-    fn of(study: &Study) -> Self {
+    fn from_study(study: &Study) -> Self {
         let population = study.question.genetic.population as f64;
         let (crossed, mutated) = study.question.genetic.children();
         let born = (crossed + mutated) as f64;
@@ -127,7 +127,7 @@ struct Designs {
 }
 
 impl Designs {
-    fn of(study: &Study) -> Self {
+    fn from_study(study: &Study) -> Self {
         let variables = &study.question.variables;
         // Every variable once, two by two; the last one alone beside the first.
         let pairs = (0..variables.len()).step_by(2);

@@ -60,7 +60,10 @@ pub(super) fn formula(piece: &PathSegment) -> String {
 }
 
 /// A rest time beside that of the chain.
-pub(super) fn beside(chain: Result<f64, NoRest>, integrated: Result<f64, NoRest>) -> String {
+pub(super) fn rest_time_comparison(
+    chain: Result<f64, NoRest>,
+    integrated: Result<f64, NoRest>,
+) -> String {
     match (chain, integrated) {
         (Ok(chain), Ok(truth)) => {
             format!("{}, by which the chain errs {}", decimal(truth), percent(chain / truth - 1.0))

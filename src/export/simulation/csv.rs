@@ -42,7 +42,7 @@ pub fn simulation(report: &Report) -> String {
         }
     } else {
         for &t in report.samples {
-            if let Some((x, velocity)) = motion.path.at(t) {
+            if let Some((x, velocity)) = motion.path.phase_point_at(t) {
                 line(t, x, velocity);
             }
         }

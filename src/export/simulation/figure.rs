@@ -29,7 +29,7 @@ fn points(motion: &Simulation) -> Vec<(f64, f64, f64)> {
     times.dedup();
     times
         .into_iter()
-        .filter_map(|t| motion.path.at(t).map(|(x, velocity)| (t, x, velocity)))
+        .filter_map(|t| motion.path.phase_point_at(t).map(|(x, velocity)| (t, x, velocity)))
         .collect()
 }
 
@@ -59,8 +59,8 @@ pub fn simulation(report: &Report) -> Result<String, FigureError> {
         Integrator::Chain => "integration",
         Integrator::Taylor | Integrator::RungeKutta => "Runge-Kutta",
     };
-    let own = DrawnMotion::of(own_name, motion);
-    let judge = report.judge.map(|judge| DrawnMotion::of(judge_name, judge));
+    let own = DrawnMotion::new(own_name, motion);
+    let judge = report.judge.map(|judge| DrawnMotion::new(judge_name, judge));
     let style = match judge {
         Some(_) => CurveStyle::FORMULA,
         None => CurveStyle::DIFFERENCE,
@@ -119,7 +119,7 @@ struct DrawnMotion {
 }
 
 impl DrawnMotion {
-    fn of(name: &'static str, motion: &Simulation) -> Self {
+    fn new(name: &'static str, motion: &Simulation) -> Self {
         let points = points(motion);
         Self {
             name,

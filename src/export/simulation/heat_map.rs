@@ -35,7 +35,7 @@ struct Ruler {
 }
 
 impl Ruler {
-    fn of(axis: &Axis) -> Self {
+    fn from_axis(axis: &Axis) -> Self {
         /// Steps between the exponents that are written.
         const STEPS: [f64; 4] = [1.0, 0.5, 0.2, 0.1];
         let ends = axis.ends();
@@ -94,7 +94,7 @@ pub(super) fn heat_map(
     quantity: &SweepQuantity,
     caption: &str,
 ) -> Result<String, FigureError> {
-    let (down_ruler, across_ruler) = (Ruler::of(down), Ruler::of(across));
+    let (down_ruler, across_ruler) = (Ruler::from_axis(down), Ruler::from_axis(across));
     let (x, y) = (across_ruler.range(across.values().len()), down_ruler.range(down.values().len()));
     let map = Heatmap::new()
         .with_data(rising(grid, down_ruler.rises(), across_ruler.rises()))

@@ -51,7 +51,7 @@ pub fn simulation(report: &Report) -> String {
     if !report.samples.is_empty() {
         let _ = writeln!(text, "\nStates asked for\n  {:>12}  {:>16}  {:>16}", "t", "x", "x'");
         for &t in report.samples {
-            let state = match motion.path.at(t) {
+            let state = match motion.path.phase_point_at(t) {
                 Some((x, velocity)) => {
                     format!("{:>16}  {:>16}", significant(x, 10), significant(velocity, 10))
                 }
@@ -336,7 +336,11 @@ fn rest(text: &mut String, report: &Report) {
         Err(reason) => writeln!(text, "  rest time      none: {reason}"),
     };
     if let (Integrator::Chain, Some(judge)) = (report.motion.integrator, report.judge) {
-        let _ = writeln!(text, "  integrated     {}", chain::beside(rest.time, judge.rest().time));
+        let _ = writeln!(
+            text,
+            "  integrated     {}",
+            chain::rest_time_comparison(rest.time, judge.rest().time)
+        );
     }
     if let Some(last) = rest.last_crossing {
         let _ = writeln!(text, "  last crossing  {}", decimal(last));

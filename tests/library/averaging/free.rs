@@ -300,7 +300,7 @@ fn dry_friction_takes_its_work_from_turn_to_turn() {
     course.tolerance = 1e-12;
     course.begin("x".into(), 1.5).expect("a state");
     let motion = course.follow().expect("a motion");
-    let state = |t: f64| motion.at(t).expect("a state");
+    let state = |t: f64| motion.states_at(t).expect("a state");
     let (mut turns, mut before) = (vec![1.5], 0.01);
     for k in 1..6000 {
         let t = f64::from(k) * 0.01;

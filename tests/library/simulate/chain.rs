@@ -380,7 +380,7 @@ proptest! {
                 prop_assert!(impact.exit_time.is_none_or(|exit| exit >= impact.entry_time));
             }
             for index in 0..100 {
-                let at = motion.path.at(motion.end_time * f64::from(index) / 100.0);
+                let at = motion.path.phase_point_at(motion.end_time * f64::from(index) / 100.0);
                 prop_assert!(at.is_none_or(|(x, velocity)| x.is_finite() && velocity.is_finite()), "{at:?}");
             }
         }

@@ -95,7 +95,7 @@ fn a_run_ends_on_time_next_to_a_release() {
                 let motion = taylor(&model, REST, 1e-11, duration);
                 assert_eq!(motion.end_time, duration, "{gamma} {mu} {before}");
                 assert_eq!(motion.impacts.last().expect("a contact").exit_time, None);
-                let (x, velocity) = long.path.at(duration).expect("a place");
+                let (x, velocity) = long.path.phase_point_at(duration).expect("a place");
                 assert!((motion.end_x - x).abs() < 1e-10, "{} and {x}", motion.end_x);
                 assert!(
                     (motion.end_velocity - velocity).abs() < 1e-7,

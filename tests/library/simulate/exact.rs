@@ -81,7 +81,7 @@ fn the_conservative_motion_is_that_of_elliptic_functions_and_quadrature() {
         let mut compared = 0;
         for index in 0..=500 {
             let t = 0.1 * f64::from(index);
-            let (x, v) = motion.path.at(t).expect("within the run");
+            let (x, v) = motion.path.phase_point_at(t).expect("within the run");
             if let Some((exact_x, exact_v)) = exact_state(1.5, barrier, gamma, t) {
                 assert!(
                     (x - exact_x).abs() < 1e-9 && (v - exact_v).abs() < 1e-9,

@@ -48,5 +48,7 @@ fn a_run_that_breaks_off_keeps_what_it_has() {
         simulate(&Model::default(), REST, Integrator::Taylor, &options).expect("it begins");
     let SimulationStop::Steps { t } = motion.stop else { panic!("{}", motion.stop) };
     assert!(t > 1.0 && t == motion.end_time && !motion.impacts.is_empty());
-    assert!(motion.path.at(1.0).is_some() && motion.path.at(t + 1e-9).is_none());
+    assert!(
+        motion.path.phase_point_at(1.0).is_some() && motion.path.phase_point_at(t + 1e-9).is_none()
+    );
 }

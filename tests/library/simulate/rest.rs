@@ -42,7 +42,7 @@ fn how_long_a_run_is_does_not_change_when_its_motion_rests() {
 fn rest_by_samples(model: &Model, place: f64, level: f64, duration: f64) -> f64 {
     const STEP: f64 = 1e-3;
     let motion = run(model, REST, 1e-11, duration, Integrator::RungeKutta);
-    let at = |k: usize| motion.path.at(STEP * k as f64).map_or(0.0, |(x, _)| x - place);
+    let at = |k: usize| motion.path.phase_point_at(STEP * k as f64).map_or(0.0, |(x, _)| x - place);
     let crests = (1..(duration / STEP) as usize - 1).filter_map(|k| {
         let [before, here, after] = [at(k - 1), at(k), at(k + 1)];
         (here < before && here <= after).then(|| {
@@ -99,7 +99,7 @@ fn the_rest_time_does_not_depend_on_where_in_the_first_swing_the_motion_is_taken
     let whole = taylor(&model, REST, 1e-11, 900.0);
     let rest = whole.rest();
     for t in [0.5, 1.3, 1.8] {
-        let (x, velocity) = whole.path.at(t).expect("on the way");
+        let (x, velocity) = whole.path.phase_point_at(t).expect("on the way");
         let later = taylor(&model, Start { x, velocity }, 1e-11, 900.0).rest();
         assert!((later.amplitude - rest.amplitude).abs() < 1e-10, "{later:?}");
         let (later, whole) = (later.time.expect("it rests"), rest.time.expect("it rests"));

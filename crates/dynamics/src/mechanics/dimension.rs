@@ -138,7 +138,7 @@ impl Dimension {
     }
 
     /// From whole exponents of kilogram, metre and second.
-    pub fn of(exponents: [i64; 3]) -> Self {
+    pub fn from_exponents(exponents: [i64; 3]) -> Self {
         Self(exponents.map(|exponent| Rational::from_integer(exponent.into())))
     }
 
@@ -213,7 +213,7 @@ impl FromStr for Dimension {
             else {
                 return Err(UnitError::Unknown { name: name(), unit: symbol.name().to_owned() });
             };
-            units.insert(symbol, Self::of(*exponents));
+            units.insert(symbol, Self::from_exponents(*exponents));
         }
         let no_product = UnitError::NoProduct { name: name(), unit: text.to_owned() };
         let (number, _) = expression.factors();
@@ -318,9 +318,9 @@ impl Mechanism {
     /// The units of parameters and coordinates with those that follow: of velocities, accelerations
     /// and time.
     pub fn all_units(&self, units: &BTreeMap<Symbol, Dimension>) -> BTreeMap<Symbol, Dimension> {
-        let per_second = Dimension::of([0, 0, -1]);
+        let per_second = Dimension::from_exponents([0, 0, -1]);
         let mut all = units.clone();
-        all.insert(Symbol::new("t"), Dimension::of([0, 0, 1]));
+        all.insert(Symbol::new("t"), Dimension::from_exponents([0, 0, 1]));
         for coordinate in &self.coordinates {
             let Some(own) = units.get(coordinate) else {
                 continue;
@@ -359,8 +359,8 @@ impl Mechanism {
             return Err(UnitError::Unused(*unused));
         }
         let all = self.all_units(units);
-        let energy = Dimension::of([1, 2, -2]);
-        let power = Dimension::of([1, 2, -3]);
+        let energy = Dimension::from_exponents([1, 2, -2]);
+        let power = Dimension::from_exponents([1, 2, -3]);
         check(&self.kinetic, &energy, &all, "kinetic energy")?;
         check(&self.potential, &energy, &all, "potential energy")?;
         check(&self.dissipation, &power, &all, "dissipation")?;

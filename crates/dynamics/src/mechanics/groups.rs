@@ -78,7 +78,7 @@ impl Groups {
     /// assert_eq!(groups.groups[0].definition.to_string(), "c/(2*sqrt(g)*L^(3/2)*m)");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn of(
+    pub fn from_mechanism(
         mechanism: &Mechanism,
         equations: &EquationsOfMotion,
         units: &BTreeMap<Symbol, Dimension>,
@@ -101,7 +101,8 @@ impl Groups {
         let dimension_of = |name: Symbol| known.get(&name).cloned().unwrap_or_default();
         let inertia = combined(&equations.mass.concat())?;
         let stiffness = combined(std::slice::from_ref(&mechanism.potential))?;
-        let mut basis = Basis::of(&preferred(&inertia, &stiffness, &parameters), dimension_of);
+        let mut basis =
+            Basis::independent_among(&preferred(&inertia, &stiffness, &parameters), dimension_of);
         let mut sizes = Vec::new();
         for coordinate in &equations.coordinates {
             let unit = dimension_of(*coordinate);
@@ -113,7 +114,7 @@ impl Groups {
                 sizes.push((*coordinate, size));
             }
         }
-        let time = basis.express(&Dimension::of([0, 0, 1]))?;
+        let time = basis.express(&Dimension::from_exponents([0, 0, 1]))?;
         let time = time.ok_or_else(|| MechanicsError::NoTime(names(&parameters)))?;
         let mut lengths = Vec::new();
         for coordinate in &equations.coordinates {
@@ -227,7 +228,7 @@ struct Basis {
 
 impl Basis {
     /// The first parameters that are independent.
-    fn of(ordered: &[Symbol], dimension_of: impl Fn(Symbol) -> Dimension) -> Self {
+    fn independent_among(ordered: &[Symbol], dimension_of: impl Fn(Symbol) -> Dimension) -> Self {
         let mut basis = Self { members: Vec::new() };
         for name in ordered {
             let dimension = dimension_of(*name);
@@ -426,7 +427,10 @@ impl Scaling<'_> {
                 [Expr::number(number.abs())].into_iter().chain(before.into_iter().cloned()),
             );
             if open(&product) {
-                return Some((product, GroupRole::of(&Expr::product(rest.into_iter().cloned()))));
+                return Some((
+                    product,
+                    GroupRole::from_factor(&Expr::product(rest.into_iter().cloned())),
+                ));
             }
         }
         // What stands inside of something else, such as the place of a barrier, one by one.
@@ -490,7 +494,7 @@ enum GroupRole {
 }
 
 impl GroupRole {
-    fn of(before: &Expr) -> Self {
+    fn from_factor(before: &Expr) -> Self {
         let has = |function: Function| before.contains_function(function);
         let velocity = before.symbols().into_iter().any(|name| name.primes() == 1);
         let time = before.symbols().into_iter().any(|name| name.name() == "t");

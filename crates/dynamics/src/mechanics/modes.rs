@@ -92,7 +92,7 @@ impl Modes {
     /// assert_eq!(Modes::at(&pendulum, upright)?.square()?.map(|square| square.to_string()), Some("-g/L".to_owned()));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn at(equations: &EquationsOfMotion, rest: &Rest) -> Result<Self, MechanicsError> {
+    pub fn about_rest(equations: &EquationsOfMotion, rest: &Rest) -> Result<Self, MechanicsError> {
         Jacobians::new(equations)?.modes_at(equations, rest)
     }
 

@@ -98,6 +98,7 @@ pub fn study(question: MechanismQuestion) -> Result<MechanismStudy, MechanicsErr
         let drive = equations.drive_at(&rest).map_err(MechanicsError::from)?;
         rests.push(RestStudy { rest, drive, modes, numbers });
     }
-    let groups = question.units.as_ref().map(|units| Groups::of(mechanism, &equations, units));
+    let groups =
+        question.units.as_ref().map(|units| Groups::from_mechanism(mechanism, &equations, units));
     Ok(MechanismStudy { equations, rests, groups, question })
 }

@@ -45,7 +45,7 @@ pub(super) struct ScaledTrajectory {
 
 impl ScaledTrajectory {
     /// All states at a time within the path.
-    pub(super) fn at(&self, time: f64) -> Option<Vec<f64>> {
+    pub(super) fn states_at(&self, time: f64) -> Option<Vec<f64>> {
         let scaled = self.units.count(time).min(self.trajectory.end().t);
         let point = self.trajectory.state_at(scaled)?;
         Some(self.states(&point).collect())

@@ -36,7 +36,7 @@ pub(super) struct TaylorStep {
 }
 
 /// All states at a time since the start, before the end of the last step; `None` before the first.
-pub(super) fn at(steps: &[TaylorStep], time: f64) -> Option<Vec<f64>> {
+pub(super) fn states_at(steps: &[TaylorStep], time: f64) -> Option<Vec<f64>> {
     let after = steps.partition_point(|step| step.start <= time);
     let step = steps.get(after.checked_sub(1)?)?;
     let polynomials = step.coefficients.chunks(step.order + 1);
@@ -807,7 +807,7 @@ impl Allowance {
         };
         // The root test; from there shorter until the last terms are small enough.
         let mut h = longest;
-        let of_longest = powers.of(longest);
+        let of_longest = powers.powers(longest);
         for k in Self::first(order).max(lead + 1)..=order {
             let (size, power) = (series[k].abs(), of_longest[k - lead]);
             // A root is drawn only where it may come out shorter.
@@ -818,16 +818,16 @@ impl Allowance {
             }
         }
         let in_vain = match h.is_finite() {
-            true => self.trials_in_vain(series, lead, powers.of(h)).min(TRIALS),
+            true => self.trials_in_vain(series, lead, powers.powers(h)).min(TRIALS),
             false => 0,
         };
         let first_trial = (0..in_vain).fold(h, |h, _| h * SHORTER);
         // Where powers underflow the trials say something else.
-        let is_known = powers.of(first_trial)[order] >= f64::MIN_POSITIVE;
+        let is_known = powers.powers(first_trial)[order] >= f64::MIN_POSITIVE;
         let (mut h, trials) =
             if is_known { (first_trial, in_vain..TRIALS) } else { (h, 0..TRIALS) };
         for _ in trials {
-            if h.is_infinite() || self.is_within(series, lead, powers.of(h)) {
+            if h.is_infinite() || self.is_within(series, lead, powers.powers(h)) {
                 break;
             }
             h *= SHORTER;
@@ -875,21 +875,21 @@ impl Allowance {
 /// place.
 #[derive(Clone, Debug)]
 struct PowerTable {
-    of: f64,
+    base: f64,
     table: Vec<f64>,
 }
 
 impl PowerTable {
     /// Room for this order and those below it.
     fn new(order: usize) -> Self {
-        Self { of: f64::NAN, table: vec![0.0; order + 1] }
+        Self { base: f64::NAN, table: vec![0.0; order + 1] }
     }
 
     /// `h^0, h^1, ...`
-    fn of(&mut self, h: f64) -> &[f64] {
-        if h != self.of {
+    fn powers(&mut self, h: f64) -> &[f64] {
+        if h != self.base {
             powers(h, &mut self.table);
-            self.of = h;
+            self.base = h;
         }
         &self.table
     }

@@ -251,7 +251,7 @@ static TABLE: [FunctionDefinition; 26] = [
         name: "sinh",
         parity: Parity::Odd,
         value: Unary(f64::sinh),
-        exact: |u, _| Ok(at(u, 0, Expr::zero)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::zero)),
         derivative: |u, _, _| call(Cosh, u),
     },
     FunctionDefinition {
@@ -259,7 +259,7 @@ static TABLE: [FunctionDefinition; 26] = [
         name: "cosh",
         parity: Parity::Even,
         value: Unary(f64::cosh),
-        exact: |u, _| Ok(at(u, 0, Expr::one)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::one)),
         derivative: |u, _, _| call(Sinh, u),
     },
     FunctionDefinition {
@@ -267,7 +267,7 @@ static TABLE: [FunctionDefinition; 26] = [
         name: "tanh",
         parity: Parity::Odd,
         value: Unary(f64::tanh),
-        exact: |u, _| Ok(at(u, 0, Expr::zero)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::zero)),
         derivative: |u, _, _| call(Cosh, u)?.integer_power(-2),
     },
     FunctionDefinition {
@@ -277,7 +277,9 @@ static TABLE: [FunctionDefinition; 26] = [
         value: Unary(f64::asin),
         exact: |u, _| match u.as_number() {
             Some(number) if beyond_one(number) => Err(NoValue),
-            _ => Ok(at(u, 0, Expr::zero).or_else(|| at(u, 1, || turn(1, 2)))),
+            _ => {
+                Ok(value_if_equal(u, 0, Expr::zero).or_else(|| value_if_equal(u, 1, || turn(1, 2))))
+            }
         },
         derivative: |u, _, _| {
             Expr::divide(&Expr::one(), &(Expr::one() - u.integer_power(2)?).sqrt()?)
@@ -290,9 +292,9 @@ static TABLE: [FunctionDefinition; 26] = [
         value: Unary(f64::acos),
         exact: |u, _| match u.as_number() {
             Some(number) if beyond_one(number) => Err(NoValue),
-            _ => Ok(at(u, 1, Expr::zero)
-                .or_else(|| at(u, 0, || turn(1, 2)))
-                .or_else(|| at(u, -1, Expr::pi))),
+            _ => Ok(value_if_equal(u, 1, Expr::zero)
+                .or_else(|| value_if_equal(u, 0, || turn(1, 2)))
+                .or_else(|| value_if_equal(u, -1, Expr::pi))),
         },
         derivative: |u, _, _| {
             Expr::divide(&Expr::from(-1), &(Expr::one() - u.integer_power(2)?).sqrt()?)
@@ -303,7 +305,9 @@ static TABLE: [FunctionDefinition; 26] = [
         name: "atan",
         parity: Parity::Odd,
         value: Unary(f64::atan),
-        exact: |u, _| Ok(at(u, 0, Expr::zero).or_else(|| at(u, 1, || turn(1, 4)))),
+        exact: |u, _| {
+            Ok(value_if_equal(u, 0, Expr::zero).or_else(|| value_if_equal(u, 1, || turn(1, 4))))
+        },
         derivative: |u, _, _| Expr::divide(&Expr::one(), &(Expr::one() + u.integer_power(2)?)),
     },
     FunctionDefinition {
@@ -311,7 +315,7 @@ static TABLE: [FunctionDefinition; 26] = [
         name: "asinh",
         parity: Parity::Odd,
         value: Unary(f64::asinh),
-        exact: |u, _| Ok(at(u, 0, Expr::zero)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::zero)),
         derivative: |u, _, _| {
             Expr::divide(&Expr::one(), &(Expr::one() + u.integer_power(2)?).sqrt()?)
         },
@@ -321,7 +325,7 @@ static TABLE: [FunctionDefinition; 26] = [
         name: "exp",
         parity: Parity::None,
         value: Unary(f64::exp),
-        exact: |u, _| Ok(at(u, 0, Expr::one)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::one)),
         derivative: |u, _, _| call(Exp, u),
     },
     FunctionDefinition {
@@ -331,7 +335,7 @@ static TABLE: [FunctionDefinition; 26] = [
         value: Unary(f64::ln),
         exact: |u, _| match u.as_number() {
             Some(number) if !number.is_positive() => Err(NoValue),
-            _ => Ok(at(u, 1, Expr::zero)),
+            _ => Ok(value_if_equal(u, 1, Expr::zero)),
         },
         derivative: |u, _, _| Expr::divide(&Expr::one(), u),
     },
@@ -388,7 +392,7 @@ static TABLE: [FunctionDefinition; 26] = [
         name: "J0",
         parity: Parity::Even,
         value: Unary(cephes64::j0),
-        exact: |u, _| Ok(at(u, 0, Expr::one)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::one)),
         derivative: |u, _, _| Ok(-call(BesselJ1, u)?),
     },
     FunctionDefinition {
@@ -396,7 +400,7 @@ static TABLE: [FunctionDefinition; 26] = [
         name: "J1",
         parity: Parity::Odd,
         value: Unary(cephes64::j1),
-        exact: |u, _| Ok(at(u, 0, Expr::zero)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::zero)),
         derivative: |u, _, _| Ok(call(BesselJ0, u)? - Expr::divide(&call(BesselJ1, u)?, u)?),
     },
     FunctionDefinition {
@@ -404,7 +408,7 @@ static TABLE: [FunctionDefinition; 26] = [
         name: "I0",
         parity: Parity::Even,
         value: Unary(cephes64::i0),
-        exact: |u, _| Ok(at(u, 0, Expr::one)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::one)),
         derivative: |u, _, _| call(BesselI1, u),
     },
     FunctionDefinition {
@@ -412,7 +416,7 @@ static TABLE: [FunctionDefinition; 26] = [
         name: "I1",
         parity: Parity::Odd,
         value: Unary(cephes64::i1),
-        exact: |u, _| Ok(at(u, 0, Expr::zero)),
+        exact: |u, _| Ok(value_if_equal(u, 0, Expr::zero)),
         derivative: |u, _, _| Ok(call(BesselI0, u)? - Expr::divide(&call(BesselI1, u)?, u)?),
     },
     FunctionDefinition {
@@ -436,7 +440,7 @@ static TABLE: [FunctionDefinition; 26] = [
         value: Unary(elliptic_k),
         exact: |u, _| match u.as_number() {
             Some(number) if *number >= Rational::one() => Err(NoValue),
-            _ => Ok(at(u, 0, || turn(1, 2))),
+            _ => Ok(value_if_equal(u, 0, || turn(1, 2))),
         },
         derivative: |u, _, _| {
             Err(ExprError::Undefined(print::call_in_message(EllipticK, std::slice::from_ref(u))))
@@ -473,7 +477,7 @@ static TABLE: [FunctionDefinition; 26] = [
         value: Binary(|u, m| jacobi(u, m)[2]),
         exact: |u, m| match m.as_number() {
             Some(number) if *number > Rational::one() => Err(NoValue),
-            _ => Ok(at(u, 0, Expr::one).or_else(|| at(m, 0, Expr::one))),
+            _ => Ok(value_if_equal(u, 0, Expr::one).or_else(|| value_if_equal(m, 0, Expr::one))),
         },
         derivative: |u, m, index| match index {
             0 => Ok(-(m * &(elliptic(JacobiSn, u, m)? * elliptic(JacobiCn, u, m)?))),
@@ -501,7 +505,7 @@ fn limit_of_jacobi(
     match m.as_number() {
         Some(number) if *number > Rational::one() => Err(NoValue),
         Some(number) if number.is_zero() => call(circular, u).map(Some).map_err(|_| NoValue),
-        _ => Ok(at(u, 0, at_zero)),
+        _ => Ok(value_if_equal(u, 0, at_zero)),
     }
 }
 
@@ -543,7 +547,7 @@ fn call(function: Function, argument: &Expr) -> Result<Expr, ExprError> {
 }
 
 /// The value, if the argument is exactly this number.
-fn at(argument: &Expr, point: i64, value: impl FnOnce() -> Expr) -> Option<Expr> {
+fn value_if_equal(argument: &Expr, point: i64, value: impl FnOnce() -> Expr) -> Option<Expr> {
     let number = argument.as_number()?;
     (number.is_integer() && *number.numer() == point.into()).then(value)
 }

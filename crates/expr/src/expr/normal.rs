@@ -18,7 +18,7 @@ pub(super) fn sum(terms: impl IntoIterator<Item = Expr>) -> Expr {
         for term in expr.terms() {
             match term.node() {
                 Node::Number(value) => constant = number::add(&constant, value),
-                _ => parts.push(LikeTerm::of(term)),
+                _ => parts.push(LikeTerm::from_term(term)),
             }
         }
     }
@@ -64,7 +64,7 @@ struct LikeTerm {
 }
 
 impl LikeTerm {
-    fn of(term: &Expr) -> Self {
+    fn from_term(term: &Expr) -> Self {
         let (rest, coefficient) = match term.node() {
             Node::Product(coefficient, factors) if !coefficient.is_one() => {
                 (scaled(Rational::one(), factors), coefficient.clone())

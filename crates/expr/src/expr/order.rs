@@ -16,7 +16,7 @@ use crate::symbol::Symbol;
 
 /// Puts terms that are no sums and pairwise unlike into printing order.
 pub(super) fn sort_terms(terms: &mut [Expr]) {
-    terms.sort_by_cached_key(TermKey::of);
+    terms.sort_by_cached_key(TermKey::from_term);
 }
 
 /// The order of factors; the bases differ.
@@ -77,7 +77,7 @@ struct TermKey {
 }
 
 impl TermKey {
-    fn of(term: &Expr) -> Self {
+    fn from_term(term: &Expr) -> Self {
         let mut key =
             Self { kind: 1, degree: 0.0, monomial: Vec::new(), factors: term.factors().1.to_vec() };
         for factor in &key.factors {

@@ -86,7 +86,7 @@ impl Drop for InForce {
 impl ResultSymbols {
     /// The letters of an answer to an equation that has these names: those that it leaves free. A
     /// `driven` equation has its `Omega` for the drive.
-    pub fn beside(names: &[Symbol], driven: bool) -> Self {
+    pub fn avoiding(names: &[Symbol], driven: bool) -> Self {
         let clash = |own: &Symbol| {
             [AMPLITUDE, FIRST_HARMONIC, FREQUENCY].iter().any(|usual| usual.name() == own.name())
         };
@@ -182,10 +182,10 @@ mod tests {
         let names = |letters: ResultSymbols| {
             [letters.amplitude, letters.first_harmonic, letters.frequency].map(Symbol::name)
         };
-        assert_eq!(names(ResultSymbols::beside(&["x".into()], false)), ["A", "a", "omega"]);
+        assert_eq!(names(ResultSymbols::avoiding(&["x".into()], false)), ["A", "a", "omega"]);
         let all = ["A", "C", "a", "omega"].map(Symbol::new);
-        assert_eq!(names(ResultSymbols::beside(&all, false)), ["X", "r", "Omega"]);
-        assert_eq!(names(ResultSymbols::beside(&all, true)), ["X", "r", "nu"]);
+        assert_eq!(names(ResultSymbols::avoiding(&all, false)), ["X", "r", "Omega"]);
+        assert_eq!(names(ResultSymbols::avoiding(&all, true)), ["X", "r", "nu"]);
     }
 
     #[test]
@@ -193,11 +193,11 @@ mod tests {
         let (answer, equation) = (Symbol::new("a"), Symbol::new("a").apart());
         assert_eq!(equation.derivative().to_string(), "a'");
         assert_eq!(equation.derivative().coordinate(), equation);
-        let letters = ResultSymbols::beside(&[equation], false);
+        let letters = ResultSymbols::avoiding(&[equation], false);
         {
             let _letters = letters.in_force();
             assert_eq!(format!("{answer} {} {equation}", answer.derivative()), "r r' a");
-            let _others = ResultSymbols::beside(&["omega".into()], false).in_force();
+            let _others = ResultSymbols::avoiding(&["omega".into()], false).in_force();
             assert_eq!(answer.to_string(), "r");
         }
         assert_eq!(answer.to_string(), "a");

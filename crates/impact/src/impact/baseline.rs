@@ -53,7 +53,7 @@ pub struct Geometry {
 impl Geometry {
     /// By the actions of a swing of this amplitude, rad, about the bottom between the barriers of
     /// the model; nothing where the formula says nothing.
-    fn of(model: &Model, amplitude: f64) -> Option<Self> {
+    fn from_actions(model: &Model, amplitude: f64) -> Option<Self> {
         let caged = model.is_caged(0.0, REST_FRACTION * amplitude);
         if model.zeta == 0.0 || model.alpha != 0.0 || amplitude >= PI || caged {
             return None;
@@ -112,7 +112,7 @@ pub fn baseline(motion: &Simulation) -> Result<Option<Baseline>, SimulationError
         // The formula counts amplitudes from the bottom.
         geometry: Some(motion.rest())
             .filter(|rest| rest.place == 0.0)
-            .and_then(|rest| Geometry::of(&model, rest.amplitude)),
+            .and_then(|rest| Geometry::from_actions(&model, rest.amplitude)),
         no_barrier: rest(Model { left: None, right: None, ..model })?,
         lossless_barrier: match model.mu == 0.0 {
             true => motion.rest().time,

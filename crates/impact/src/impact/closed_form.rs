@@ -284,7 +284,7 @@ impl Impact {
 
     /// Where the true motion turns after the impact, in the unit of x.
     pub fn place_of_turn(&self) -> f64 {
-        self.equilibrium + self.setup.side.sign() * self.truth.at(self.truth.period).0
+        self.equilibrium + self.setup.side.sign() * self.truth.phase_point_at(self.truth.period).0
     }
 
     /// Runge-Kutta and then every column, with so many points a phase.
@@ -310,7 +310,7 @@ impl Impact {
         };
         let truth = &self.truth;
         let true_path = path([truth.touch.t, truth.exit.t, truth.period], &|t| {
-            let (z, v) = truth.at(t);
+            let (z, v) = truth.phase_point_at(t);
             (self.equilibrium + sign * z, sign * v)
         });
         std::iter::once(true_path).chain(self.columns.iter().map(closed_form)).collect()
@@ -364,7 +364,7 @@ impl Impact {
     /// The verdict on each column: every quantity within the tolerance, and the deviation in every
     /// phase.
     pub fn verdicts(&self, tolerance: f64) -> Vec<Verdict> {
-        let passes = |index| Verdict::of(self.shortcomings(index, tolerance).is_empty());
+        let passes = |index| Verdict::from_passed(self.shortcomings(index, tolerance).is_empty());
         (0..self.columns.len()).map(passes).collect()
     }
 

@@ -103,7 +103,7 @@ impl ImpactRow {
 
     /// Whether every number and every phase is within the tolerance.
     pub fn verdict(&self, tolerance: f64) -> Verdict {
-        Verdict::of(self.worst() <= tolerance)
+        Verdict::from_passed(self.worst() <= tolerance)
     }
 }
 

@@ -79,14 +79,15 @@ impl Flight {
             AmplitudeConvention::FirstHarmonic => {
                 // Of the size of the distance: the other harmonics are smaller than the first.
                 let short = |amplitude| {
-                    motion_at(amplitude).map_or(f64::NAN, |motion| motion.at(0.0) - from)
+                    motion_at(amplitude)
+                        .map_or(f64::NAN, |motion| motion.displacement_at(0.0) - from)
                 };
                 find_root(short, 0.25 * distance, 2.0 * distance)
                     .map_err(|_| ImpactError::NoAmplitude)?
             }
         };
         let motion = motion_at(amplitude)?;
-        let start = motion.at(0.0);
+        let start = motion.displacement_at(0.0);
         // An answer that is no number fails as well.
         let starts_there = (start - from).abs() <= 1e-6 * distance.abs();
         match starts_there {
@@ -130,8 +131,8 @@ impl Flight {
         let half = PI / self.motion.frequency();
         let place = self.sign * barrier;
         let never = |_| ImpactError::NeverReaches {
-            from: self.sign * self.motion.at(0.0),
-            to: self.sign * self.motion.at(half),
+            from: self.sign * self.motion.displacement_at(0.0),
+            to: self.sign * self.motion.displacement_at(half),
         };
         let displacement = self.motion.displacement();
         let number = |series: FourierSeries<Doubles>| series.mean().0;
@@ -142,7 +143,7 @@ impl Flight {
             1 if displacement.is_even() && cosine.abs() <= 1.0 => {
                 cosine.acos() / self.motion.frequency()
             }
-            _ => find_root(|t| self.motion.at(t) - place, 0.0, half).map_err(never)?,
+            _ => find_root(|t| self.motion.displacement_at(t) - place, 0.0, half).map_err(never)?,
         };
         Ok((time, self.motion.velocity(time).abs()))
     }
@@ -217,7 +218,7 @@ impl DerivedContact {
     fn sine_series(&self) -> SineSeries {
         match self {
             Self::Elastic(contact) => contact.sine_series(SERIES),
-            Self::Damped(contact) => SineSeries::of(
+            Self::Damped(contact) => SineSeries::from_motion(
                 |time| contact.position(time),
                 contact.duration,
                 0.0,
@@ -251,7 +252,7 @@ pub(super) fn phases_of(
     let exit = touch + duration;
     let end = exit + way_back;
     let depth = contact.sine_series();
-    let velocity_jump = depth.at(0.0).1 - speed;
+    let velocity_jump = depth.phase_point_at(0.0).1 - speed;
     let pressed = Form::Contact { barrier, inward: -flight.sign, depth };
     let phase =
         |name, [start, end, clock]: [f64; 3], form| MotionPhase { name, start, end, clock, form };

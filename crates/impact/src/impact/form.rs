@@ -172,7 +172,7 @@ impl Form {
     }
 
     /// Displacement and velocity at the time s on the clock of the phase.
-    pub fn at(&self, elapsed: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, elapsed: f64) -> (f64, f64) {
         match self {
             &Self::Cosine { amplitude, frequency, phase } => {
                 let (sine, cosine) = (frequency * elapsed + phase).sin_cos();
@@ -200,7 +200,7 @@ impl Form {
                 (x, v)
             }
             Self::Contact { barrier, inward, depth } => {
-                let (depth, rate) = depth.at(elapsed);
+                let (depth, rate) = depth.phase_point_at(elapsed);
                 (barrier + inward * depth, inward * rate)
             }
         }

@@ -269,15 +269,15 @@ impl ThreePhases {
     /// Displacement at this time; the motion repeats with its period, but one that has lost energy
     /// goes on as its return.
     pub fn position_at(&self, time: f64) -> f64 {
-        self.at(time).0
+        self.phase_point_at(time).0
     }
 
     /// Velocity at this time, as for [`ThreePhases::position_at`].
     pub fn velocity_at(&self, time: f64) -> f64 {
-        self.at(time).1
+        self.phase_point_at(time).1
     }
 
-    fn at(&self, time: f64) -> (f64, f64) {
+    fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let repeats = self.exit_speed == self.speed;
         let time = if (0.0..=self.period).contains(&time) || !repeats {
             time
@@ -292,7 +292,7 @@ impl ThreePhases {
         } else {
             back
         };
-        phase.at(time)
+        phase.phase_point_at(time)
     }
 }
 
@@ -309,8 +309,8 @@ impl MotionPhase {
     }
 
     /// Displacement and velocity at this time since the release.
-    pub fn at(&self, time: f64) -> (f64, f64) {
-        self.form.at(time - self.clock)
+    pub fn phase_point_at(&self, time: f64) -> (f64, f64) {
+        self.form.phase_point_at(time - self.clock)
     }
 
     /// The formula as people write it, six significant digits (nine for the centre of the contact,
@@ -443,15 +443,15 @@ mod tests {
                     .unwrap();
             let [approach, contact, back] = &motion.phases;
             for (left, right) in [(approach, contact), (contact, back)] {
-                let before = left.form.at(left.end - left.start);
-                let after = right.form.at(0.0);
+                let before = left.form.phase_point_at(left.end - left.start);
+                let after = right.form.phase_point_at(0.0);
                 near(before.0, barrier, 1e-14);
                 near(after.0, barrier, 1e-14);
                 near(before.1, after.1, 2e-12);
             }
-            near(back.form.at(0.0).1, -motion.speed, 1e-14);
-            near(back.form.at(back.end - back.start).0, -1.5, 1e-14);
-            near(back.form.at(back.end - back.start).1, 0.0, 1e-14);
+            near(back.form.phase_point_at(0.0).1, -motion.speed, 1e-14);
+            near(back.form.phase_point_at(back.end - back.start).0, -1.5, 1e-14);
+            near(back.form.phase_point_at(back.end - back.start).1, 0.0, 1e-14);
             near(motion.period, 2.0 * approach.end + motion.duration, 1e-14);
         }
     }
@@ -481,7 +481,7 @@ mod tests {
             near(path.end().v, -motion.speed, 1e-10);
             near(path.occurrences()[0].state.x - barrier, motion.penetration, 1e-11);
             for state in path.samples(50) {
-                let (x, v) = contact.form.at(state.t - contact.start);
+                let (x, v) = contact.form.phase_point_at(state.t - contact.start);
                 near(x, state.x, 1e-11);
                 near(v, state.v, 1e-8);
             }
@@ -539,7 +539,7 @@ mod tests {
         let middle = 0.5 * (contact.end - contact.start);
         let (centre, cosine, frequency, sine) = (numbers[0], numbers[1], numbers[2], numbers[3]);
         let x = centre + cosine * (frequency * middle).cos() + sine * (frequency * middle).sin();
-        near(x, contact.form.at(middle).0, 2e-8);
+        near(x, contact.form.phase_point_at(middle).0, 2e-8);
     }
 
     #[test]
@@ -614,14 +614,14 @@ mod tests {
             prop_assert!(motion.penetration > 0.0 && motion.duration > 0.0);
             for phase in &motion.phases {
                 let elapsed = time * (phase.end - phase.start);
-                let (x, v) = phase.form.at(elapsed);
+                let (x, v) = phase.form.phase_point_at(elapsed);
                 let (stiffness, centre) = match phase.form {
                     Form::Cosine { frequency, .. } => (frequency * frequency, 0.0),
                     Form::Oscillation { frequency, centre, .. } => (frequency * frequency, centre),
                     Form::Harmonics { .. } | Form::Contact { .. } => panic!("one wave a phase"),
                 };
                 let energy = |x: f64, v: f64| v * v + stiffness * (x - centre).powi(2);
-                let (x0, v0) = phase.form.at(0.0);
+                let (x0, v0) = phase.form.phase_point_at(0.0);
                 prop_assert!((energy(x, v) / energy(x0, v0) - 1.0).abs() < 1e-9);
             }
         }

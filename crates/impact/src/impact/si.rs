@@ -111,7 +111,7 @@ impl Impact {
     /// The greatest force of the true contact, its damping included, per unit of mass.
     fn greatest_force(&self) -> f64 {
         let contact = &self.truth.contact;
-        let force = |t: f64| match contact.at(t) {
+        let force = |t: f64| match contact.phase_point_at(t) {
             Some((depth, speed)) => {
                 hertz::force(self.setup.stiffness * (1.0 + self.damping * speed), depth)
             }

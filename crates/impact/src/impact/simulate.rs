@@ -80,7 +80,7 @@ pub fn simulate(
 ) -> Result<Simulation, SimulationError> {
     check(model, start, settings)?;
     match integrator {
-        Integrator::Taylor => Ok(taylor::alone(*model, start, *settings)),
+        Integrator::Taylor => Ok(taylor::simulate_one(*model, start, *settings)),
         Integrator::RungeKutta => Ok(judge::follow(model, start, settings)?),
         Integrator::Chain => Ok(chain(model, start, settings)?),
     }
@@ -117,7 +117,7 @@ pub fn known_until(motion: &Simulation) -> Option<f64> {
     let until = motion.end_time.min(other.end_time);
     let places = (0..=LOOKS).filter_map(|look| {
         let time = until * look as f64 / LOOKS as f64;
-        Some((time, motion.path.at(time)?.0, other.path.at(time)?.0))
+        Some((time, motion.path.phase_point_at(time)?.0, other.path.phase_point_at(time)?.0))
     });
     let places: Vec<(f64, f64, f64)> = places.collect();
     let size = places.iter().fold(0.0_f64, |size, (_, x, _)| size.max(x.abs()));

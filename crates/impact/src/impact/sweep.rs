@@ -27,7 +27,7 @@ pub use axis::{Axis, AxisError, Spacing};
 use super::model::{Model, Start};
 use super::simulate::{SimulationError, simulate, simulate_many};
 use super::simulation::{ContactRecord, Integrator, NoRest, Settings, Simulation, SimulationStop};
-use crate::parallel::each;
+use crate::parallel::par_map;
 
 /// The most motions of one sweep.
 pub const MOST_MOTIONS: usize = 1_000_000;
@@ -133,7 +133,7 @@ impl Summary {
     }
 
     /// What there is to say of a motion.
-    pub fn of(motion: &Simulation) -> Self {
+    pub fn from_motion(motion: &Simulation) -> Self {
         let largest =
             |value: fn(&ContactRecord) -> f64| motion.impacts.iter().map(value).fold(0.0, f64::max);
         Self {
@@ -188,7 +188,7 @@ pub fn sweep(
     };
     let chunks: Vec<_> = motions.chunks(CHUNK).enumerate().collect();
     let mut summaries = Vec::with_capacity(motions.len());
-    for part in each(&chunks, run) {
+    for part in par_map(&chunks, run) {
         summaries.extend(part?);
     }
     Ok(summaries)
@@ -202,11 +202,11 @@ fn summaries(
 ) -> Result<Vec<Summary>, (usize, SimulationError)> {
     if integrator == Integrator::Taylor {
         let runs = simulate_many(motions, settings)?;
-        return Ok(runs.iter().map(Summary::of).collect());
+        return Ok(runs.iter().map(Summary::from_motion).collect());
     }
     let one = |(number, (model, start)): (usize, &(Model, Start))| {
         let run = simulate(model, *start, integrator, settings).map_err(|error| (number, error))?;
-        Ok(Summary::of(&run))
+        Ok(Summary::from_motion(&run))
     };
     motions.iter().enumerate().map(one).collect()
 }

@@ -171,9 +171,9 @@ impl Trial<'_> {
     /// at the best.
     fn climb(&self, method: Method) -> (Option<Derived>, Vec<Attempt>) {
         let setup = self.setup;
-        let takes = |choice| MethodEntry::of(method).takes(choice);
+        let takes = |choice| MethodEntry::for_method(method).takes(choice);
         let same = |n| match method.counts() {
-            Counts::Degrees(count) => Degrees::of(&vec![n; count]),
+            Counts::Degrees(count) => Degrees::from_list(&vec![n; count]),
             _ => None,
         };
         let rungs: Vec<Rung> = match (setup.order, setup.degrees) {
@@ -271,7 +271,9 @@ impl Trial<'_> {
     fn contact(&self, speed: f64) -> Result<DerivedContact, ContactError> {
         let touch = self.touch(speed);
         match self.setup.loss {
-            None => Ok(DerivedContact::Elastic(Box::new(touch.by(self.setup.contact_law)?))),
+            None => {
+                Ok(DerivedContact::Elastic(Box::new(touch.contact_by(self.setup.contact_law)?)))
+            }
             Some(_) => {
                 let exponent = touch.exponent.ok_or(ContactError::NoPowerLaw)?;
                 let stiffness = touch.stiffness * (touch.elastic_force)(1.0);

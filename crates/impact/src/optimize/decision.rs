@@ -135,7 +135,7 @@ const STEPS: i32 = 40;
 
 impl Decision {
     /// The sensitivities of this design, the best of its box, judged by integration.
-    pub(super) fn of(
+    pub(super) fn new(
         question: &OptimizationProblem,
         space: &Space,
         design: &EvaluatedDesign,

@@ -238,7 +238,8 @@ impl OptimizationProblem {
         }
         self.genetic.check()?;
         let middle: Vec<f64> = space.bounds().iter().map(|_| 0.5).collect();
-        self.follow(&space.at(&middle), Route::Chain, false).map_err(OptimizeError::Motion)?;
+        self.follow(&space.point_at(&middle), Route::Chain, false)
+            .map_err(OptimizeError::Motion)?;
         Ok(space)
     }
 

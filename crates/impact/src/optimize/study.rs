@@ -14,7 +14,7 @@ use crate::genetic::{
     differential_evolution, generator, non_dominated, random_search, search, search_front,
 };
 use crate::impact::hertz;
-use crate::parallel::each;
+use crate::parallel::par_map;
 
 /// A design that a run found, as the search has it: by closed forms, by integration where there are
 /// none.
@@ -87,7 +87,7 @@ pub struct FiveNumberSummary {
 
 impl FiveNumberSummary {
     /// Of these values; nothing where there is none. Quartiles lie between values in proportion.
-    pub fn of(values: &[f64]) -> Option<Self> {
+    pub fn from_values(values: &[f64]) -> Option<Self> {
         let mut values = values.to_vec();
         values.sort_by(f64::total_cmp);
         let last = values.len().checked_sub(1)?;
@@ -125,7 +125,7 @@ impl BaselineSearch {
     pub fn spread(&self) -> Option<FiveNumberSummary> {
         let found: Vec<f64> =
             self.values.iter().copied().filter(|value| value.is_finite()).collect();
-        FiveNumberSummary::of(&found)
+        FiveNumberSummary::from_values(&found)
     }
 }
 
@@ -290,7 +290,7 @@ pub fn optimize(
         }
         Some(run)
     };
-    let new = each(&missing, one);
+    let new = par_map(&missing, one);
     let mut runs: Vec<SearchRun> =
         known.into_iter().filter(|run| run.number < question.runs).collect();
     runs.extend(new.into_iter().flatten());
@@ -309,7 +309,7 @@ pub fn optimize(
     }
     let (mut rivals, mut decision) = (vec![], None);
     if question.objectives.len() == 1 {
-        decision = finalists.first().map(|best| Decision::of(&question, &space, &best.design));
+        decision = finalists.first().map(|best| Decision::new(&question, &space, &best.design));
         if complete {
             rivals = self::rivals(&question, &space, &runs, watch);
         }
@@ -363,7 +363,7 @@ fn nothing(
     }
     // Whether anything rests at all, constraints aside.
     let mut random = generator(question.seed, u64::MAX);
-    let middle = space.at(&vec![0.5; space.bounds().len()]);
+    let middle = space.point_at(&vec![0.5; space.bounds().len()]);
     let mut reason = None;
     let rests = (0..question.genetic.population.max(100)).any(|number| {
         let point = if number == 0 { middle.clone() } else { space.draw(&mut random) };
@@ -389,7 +389,7 @@ fn nothing(
     let evaluate = |point: &[f64]| {
         let evaluation = question.worth(point, f64::INFINITY, &mut 0);
         let has_values = evaluation.objectives.iter().all(|value| value.is_finite());
-        Evaluation::of(match has_values {
+        Evaluation::unconstrained(match has_values {
             true => evaluation.violation(tolerance),
             false => f64::INFINITY,
         })
@@ -454,7 +454,7 @@ fn finalists(question: &OptimizationProblem, runs: &[SearchRun]) -> Vec<Finalist
             design,
         })
     };
-    let judged = each(&found, judge);
+    let judged = par_map(&found, judge);
     let mut finalists: Vec<Finalist> = judged.into_iter().flatten().collect();
     if question.objectives.len() > 1 {
         // By integration a design may break a constraint, or be worse than another in everything.
@@ -535,7 +535,7 @@ fn rivals(
     let total: usize = runs.iter().map(|run| run.evaluations).sum();
     let evaluations = (total as f64 / runs.len() as f64).round() as usize;
     let compete = |name: &'static str, work: &(dyn Fn(usize) -> GeneticRun + Sync)| {
-        let runs = each(runs, |run| {
+        let runs = par_map(runs, |run| {
             // Asked to stop, it is not used.
             let run = (!(watch.stop)()).then(|| work(run.number));
             (watch.progress)(generations);
@@ -546,7 +546,7 @@ fn rivals(
         let length = runs.iter().map(|run| run.curve.len()).min().unwrap_or(0);
         let median = |index: usize| {
             let values: Vec<f64> = runs.iter().map(|run| run.curve[index]).collect();
-            FiveNumberSummary::of(&values).map_or(f64::INFINITY, |spread| spread.median)
+            FiveNumberSummary::from_values(&values).map_or(f64::INFINITY, |spread| spread.median)
         };
         let value = |run: &GeneticRun| {
             run.best.as_ref().map_or(f64::INFINITY, |best| best.evaluation.value())
@@ -602,7 +602,7 @@ impl Study {
 
     /// How they are spread.
     pub fn spread(&self) -> Option<FiveNumberSummary> {
-        FiveNumberSummary::of(&self.values())
+        FiveNumberSummary::from_values(&self.values())
     }
 
     /// All designs that the genetic algorithm followed, and those that were integrated for want of
@@ -619,7 +619,7 @@ impl Study {
         let at = |index: usize| {
             let last = |run: &SearchRun| run.curve.get(index).or(run.curve.last()).copied();
             let values: Vec<f64> = self.runs.iter().filter_map(last).collect();
-            FiveNumberSummary::of(&values).map(|spread| spread.median)
+            FiveNumberSummary::from_values(&values).map(|spread| spread.median)
         };
         (0..length).filter_map(at).collect()
     }
@@ -643,7 +643,7 @@ mod tests {
 
     #[test]
     fn quartiles_lie_between_the_values() {
-        let spread = FiveNumberSummary::of(&[4.0, 1.0, 2.0, 3.0, 8.0]).unwrap();
+        let spread = FiveNumberSummary::from_values(&[4.0, 1.0, 2.0, 3.0, 8.0]).unwrap();
         let numbers = [
             spread.best,
             spread.lower_quartile,
@@ -653,9 +653,9 @@ mod tests {
         ];
         assert_eq!(numbers, [1.0, 2.0, 3.0, 4.0, 8.0]);
         assert_eq!(
-            FiveNumberSummary::of(&[1.0, 2.0]).map(|spread| spread.lower_quartile),
+            FiveNumberSummary::from_values(&[1.0, 2.0]).map(|spread| spread.lower_quartile),
             Some(1.25)
         );
-        assert_eq!(FiveNumberSummary::of(&[]), None);
+        assert_eq!(FiveNumberSummary::from_values(&[]), None);
     }
 }

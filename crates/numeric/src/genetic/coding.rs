@@ -51,7 +51,7 @@ impl Coding {
                     .chunks(bits.max(1) as usize)
                     .map(|genes| number(genes) / largest)
                     .collect();
-                space.at(&parts)
+                space.point_at(&parts)
             }
         }
     }

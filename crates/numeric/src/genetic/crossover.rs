@@ -87,7 +87,7 @@ mod tests {
         ) {
             let space = box_of(parts.len());
             let (worse, better): (Vec<f64>, Vec<f64>) = parts.iter().copied().unzip();
-            let (worse, better) = (space.at(&worse), space.at(&better));
+            let (worse, better) = (space.point_at(&worse), space.point_at(&better));
             let child = heuristic(&worse, &better, ratio, &space);
             prop_assert!(space.contains(&child));
             let widest = (0..parts.len()).max_by(|one, other| {

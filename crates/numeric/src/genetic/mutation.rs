@@ -128,7 +128,7 @@ mod tests {
             parts in prop::collection::vec(0.0..=1.0_f64, 1..8), quarterings in 0..10, seed in any::<u64>()
         ) {
             let space = Space::new(parts.iter().map(|_| [-2.0, 3.0]).collect()).unwrap();
-            let parent = space.at(&parts);
+            let parent = space.point_at(&parts);
             let step = 0.25_f64.powi(quarterings);
             let child = adaptive_feasible(&parent, step, &space, &mut generator(seed, 0));
             prop_assert!(space.contains(&child));

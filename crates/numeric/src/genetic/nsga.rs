@@ -171,7 +171,7 @@ mod tests {
         #[test]
         fn children_stay_in_the_box_and_between_equal_parents(part in 0.0..=1.0_f64, other in 0.0..=1.0_f64, seed in any::<u64>()) {
             let space = Space::new(vec![[-3.0, 5.0]; 3]).unwrap();
-            let (one, other) = (space.at(&[part; 3]), space.at(&[other; 3]));
+            let (one, other) = (space.point_at(&[part; 3]), space.point_at(&[other; 3]));
             let mut generator = generator(seed, 0);
             prop_assert!(space.contains(&simulated_binary(&one, &other, &space, &mut generator)));
             let same = simulated_binary(&one, &one, &space, &mut generator);

@@ -427,7 +427,7 @@ mod tests {
 
     fn rastrigin(point: &[f64]) -> Evaluation {
         let term = |x: &f64| x * x - 10.0 * (std::f64::consts::TAU * x).cos() + 10.0;
-        Evaluation::of(point.iter().map(term).sum())
+        Evaluation::unconstrained(point.iter().map(term).sum())
     }
 
     fn run(

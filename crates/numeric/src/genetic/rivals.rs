@@ -148,7 +148,9 @@ mod tests {
     #[test]
     fn both_use_their_budget_and_one_of_them_finds_the_valley() {
         let space = Space::new(vec![[-5.0, 5.0]; 4]).unwrap();
-        let bowl = |point: &[f64]| Evaluation::of(point.iter().map(|x| (x - 1.0).powi(2)).sum());
+        let bowl = |point: &[f64]| {
+            Evaluation::unconstrained(point.iter().map(|x| (x - 1.0).powi(2)).sum())
+        };
         let drawn = random_search(&space, bowl, (4000, 100), 1e-3, &mut generator(1, 0));
         assert_eq!((drawn.evaluations, drawn.curve.len()), (4000, 40));
         let evolved = differential_evolution(&space, bowl, (4000, 100), 1e-3, 1);
@@ -166,7 +168,7 @@ mod tests {
             equalities: vec![],
             inequalities: vec![0.5 - point[0]],
         };
-        let never = |_: &[f64]| Evaluation::of(f64::INFINITY);
+        let never = |_: &[f64]| Evaluation::unconstrained(f64::INFINITY);
         for best in [
             random_search(&space, beyond, (500, 100), 1e-3, &mut generator(1, 0)).best,
             differential_evolution(&space, beyond, (500, 100), 1e-3, 1).best,

@@ -57,7 +57,7 @@ impl Space {
     }
 
     /// The point at these parts of the ranges, 0 the lower and 1 the upper bound, never outside.
-    pub fn at(&self, parts: &[f64]) -> Vec<f64> {
+    pub fn point_at(&self, parts: &[f64]) -> Vec<f64> {
         let place = |(part, [lower, upper]): (&f64, &[f64; 2])| {
             (lower + part * (upper - lower)).clamp(*lower, *upper)
         };
@@ -67,7 +67,7 @@ impl Space {
     /// A point drawn evenly from the box.
     pub fn draw(&self, generator: &mut impl Rng) -> Vec<f64> {
         let parts: Vec<f64> = self.0.iter().map(|_| generator.random()).collect();
-        self.at(&parts)
+        self.point_at(&parts)
     }
 }
 
@@ -84,7 +84,7 @@ pub struct Evaluation {
 
 impl Evaluation {
     /// One value without constraints.
-    pub fn of(value: f64) -> Self {
+    pub fn unconstrained(value: f64) -> Self {
         Self { objectives: vec![value], ..Self::default() }
     }
 

@@ -109,8 +109,8 @@ impl Swing {
     }
 
     /// Position and velocity at a time from zero to the period.
-    pub fn at(&self, t: f64) -> Option<(f64, f64)> {
-        let (x, v) = self.path.at((t / self.time).min(self.path.end().t))?;
+    pub fn phase_point_at(&self, t: f64) -> Option<(f64, f64)> {
+        let (x, v) = self.path.phase_point_at((t / self.time).min(self.path.end().t))?;
         Some((self.equilibrium + self.length * x, self.length / self.time * v))
     }
 

@@ -58,8 +58,8 @@ impl<const N: usize, Path> PeriodicOrbit<N, Path> {
 
 impl PeriodicOrbit {
     /// Position and velocity at a time between zero and the period.
-    pub fn at(&self, t: f64) -> (f64, f64) {
-        self.path.at(t).unwrap_or((f64::NAN, f64::NAN))
+    pub fn phase_point_at(&self, t: f64) -> (f64, f64) {
+        self.path.phase_point_at(t).unwrap_or((f64::NAN, f64::NAN))
     }
 
     /// The amplitude of a harmonic of the period, `sqrt(c^2 + s^2)` of its cosine and sine.
@@ -67,7 +67,7 @@ impl PeriodicOrbit {
         const SAMPLES: usize = 4096;
         let sample = |k: usize| {
             let part = k as f64 / SAMPLES as f64;
-            let x = self.at(part * self.period).0;
+            let x = self.phase_point_at(part * self.period).0;
             let angle = TAU * f64::from(number) * part;
             (x * angle.cos(), x * angle.sin())
         };

@@ -115,13 +115,13 @@ impl NumericalLimitCycle {
     }
 
     /// Displacement and velocity; `t = 0` is the turning point, and times repeat with the period.
-    pub fn at(&self, t: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, t: f64) -> (f64, f64) {
         let place = (t / self.period()).rem_euclid(1.0) * self.path.end().t;
         let (place, sign) = match self.attracts {
             true => (place, 1.0),
             false => (self.path.end().t - place, -1.0),
         };
-        let (x, v) = self.path.at(place).unwrap_or((f64::NAN, f64::NAN));
+        let (x, v) = self.path.phase_point_at(place).unwrap_or((f64::NAN, f64::NAN));
         let x = self.equilibrium + self.amplitude * x;
         (x, sign * self.amplitude * self.frequency * v)
     }
@@ -446,11 +446,16 @@ mod tests {
             assert_eq!(cycle.attracts(), mu > 0.0);
             // Turning points: 2 + alpha mu^(-4/3)/3 + ...
             let turning = 2.0 + 2.338_107 * next / 3.0;
-            assert!((cycle.at(0.0).0 - turning).abs() < next, "{}", cycle.at(0.0).0);
+            assert!(
+                (cycle.phase_point_at(0.0).0 - turning).abs() < next,
+                "{}",
+                cycle.phase_point_at(0.0).0
+            );
             // Half a period later the mirror image.
             for k in 0..50 {
                 let t = period * f64::from(k) / 50.0;
-                let (there, opposite) = (cycle.at(t).0, cycle.at(t + 0.5 * period).0);
+                let (there, opposite) =
+                    (cycle.phase_point_at(t).0, cycle.phase_point_at(t + 0.5 * period).0);
                 assert!((there + opposite).abs() < 1e-5, "{mu} {t}: {there} {opposite}");
             }
         }
@@ -494,7 +499,7 @@ mod tests {
             assert!((implicit.period() / explicit.period() - 1.0).abs() < 1e-8);
             for k in 0..200 {
                 let t = 0.005 * f64::from(k) * explicit.period();
-                let ((x, v), (y, w)) = (implicit.at(t), explicit.at(t));
+                let ((x, v), (y, w)) = (implicit.phase_point_at(t), explicit.phase_point_at(t));
                 assert!(
                     (x - y).abs() < 1e-6 && (v - w).abs() < 1e-4 * mu,
                     "{mu} {t}: {x} {y} {v} {w}"
@@ -510,7 +515,7 @@ mod tests {
             let cycle = van_der_pol(mu);
             let place = |k: i32| cycle.period() * f64::from(k) / 20_000.0;
             let work = |weight: &dyn Fn(f64) -> f64| {
-                let powers = (0..20_000).map(|k| cycle.at(place(k)));
+                let powers = (0..20_000).map(|k| cycle.phase_point_at(place(k)));
                 powers.map(|(x, v)| weight(x) * v * v).sum::<f64>()
             };
             let (net, whole) = (work(&|x| 1.0 - x * x), work(&|x| (1.0 - x * x).abs()));
@@ -526,7 +531,7 @@ mod tests {
             assert!((forward.period() / backward.period() - 1.0).abs() < 1e-10);
             for k in 0..20 {
                 let t = 0.05 * f64::from(k) * forward.period();
-                let ((x, v), (y, w)) = (forward.at(t), backward.at(-t));
+                let ((x, v), (y, w)) = (forward.phase_point_at(t), backward.phase_point_at(-t));
                 assert!(
                     (x - y).abs() < 1e-7 && (v + w).abs() < 1e-6 * mu,
                     "mu = {mu}, t = {t}: {x} {y} {v} {w}"
@@ -551,7 +556,10 @@ mod tests {
             };
             let cycle = nearest_limit_cycle(&equation, None).expect("a limit cycle");
             assert!((cycle.period() * rate / plain.period() - 1.0).abs() < 1e-10);
-            assert!((cycle.at(0.0).0 / length / plain.at(0.0).0 - 1.0).abs() < 1e-10);
+            assert!(
+                (cycle.phase_point_at(0.0).0 / length / plain.phase_point_at(0.0).0 - 1.0).abs()
+                    < 1e-10
+            );
         }
     }
 
@@ -565,9 +573,9 @@ mod tests {
             for (guess, amplitude) in [(0.5, inner), (1.5, inner), (1.9, outer), (4.0, outer)] {
                 let cycle = found(&acceleration, guess);
                 assert!(
-                    (cycle.at(0.0).0 / amplitude - 1.0).abs() < 1e-4,
+                    (cycle.phase_point_at(0.0).0 / amplitude - 1.0).abs() < 1e-4,
                     "{guess}: {}",
-                    cycle.at(0.0).0
+                    cycle.phase_point_at(0.0).0
                 );
                 assert_eq!(cycle.attracts(), (amplitude == outer) == (eps > 0.0));
             }

@@ -132,7 +132,7 @@ impl CentredForce {
     }
 
     /// The force at the distance `y` from the equilibrium.
-    pub fn at(&self, y: f64) -> f64 {
+    pub fn value(&self, y: f64) -> f64 {
         let near = self.near.as_ref().and_then(|near| near.value(y));
         near.unwrap_or_else(|| self.call(&self.of.value, y))
     }
@@ -172,7 +172,7 @@ impl CentredForce {
         ends.sort_by(f64::total_cmp);
         let (mut sum, mut error) = (0.0, 0.0);
         for pair in ends.windows(2) {
-            let piece = match integrate_smooth(|y| self.at(y), pair[0], pair[1], TOLERANCE) {
+            let piece = match integrate_smooth(|y| self.value(y), pair[0], pair[1], TOLERANCE) {
                 Ok(piece) => piece,
                 Err(QuadratureError::NotConverged { value, error_estimate, .. })
                     if error_estimate < 1e-9 * value.abs() =>
@@ -286,8 +286,8 @@ impl CentredForce {
         let (from, to) = (from.min(to), from.max(to));
         let size = from.abs().max(to.abs());
         let defined = |y: f64| {
-            self.at(y).is_finite()
-                || [-1e-9, 1e-9].iter().all(|d| self.at(y + d * size).is_finite())
+            self.value(y).is_finite()
+                || [-1e-9, 1e-9].iter().all(|d| self.value(y + d * size).is_finite())
         };
         let sample = |k: usize| {
             let half = 0.5 - 0.5 * (std::f64::consts::PI * (k as f64 + 0.5) / SAMPLES as f64).cos();
@@ -332,7 +332,7 @@ impl CentredForce {
     pub fn overflow(&self, y: f64) -> Option<String> {
         let mut there = self.of.numbers.clone();
         there.insert(self.of.coordinate, self.equilibrium() + y);
-        match self.at(y).is_finite() {
+        match self.value(y).is_finite() {
             true => None,
             false => self.of.force.overflow(&there),
         }
@@ -440,7 +440,7 @@ mod tests {
                 let amplitude = 10.0_f64.powi(-power);
                 let found = force(text, equilibrium, amplitude);
                 for y in [amplitude, -0.37 * amplitude, 0.01 * amplitude] {
-                    let error = found.at(y) / truth(y) - 1.0;
+                    let error = found.value(y) / truth(y) - 1.0;
                     // A hundredth of the amplitude may lose what does not count beside the whole.
                     assert!(
                         error.abs() < 3e-14 * amplitude / y.abs() * 10.0,
@@ -458,18 +458,18 @@ mod tests {
         let cosine = |y: f64| 2.0 * (0.5 * y).sin().powi(2) / y;
         for amplitude in [2.0, 0.5, 1e-3, 1e-9] {
             let found = force("(1 - cos(x))/x", "0", amplitude);
-            assert_eq!(found.at(0.0), 0.0);
+            assert_eq!(found.value(0.0), 0.0);
             assert!((found.slope(0.0) - 0.5).abs() < 1e-15);
             for y in [amplitude, -0.37 * amplitude, 1e-3 * amplitude, 1e-7 * amplitude] {
-                let error = (found.at(y) - cosine(y)).abs() / cosine(amplitude);
+                let error = (found.value(y) - cosine(y)).abs() / cosine(amplitude);
                 assert!(error < 1e-13, "{y}: {error:e}");
             }
             let other = force("(exp(x) - 1)/x - 1", "0", amplitude);
-            assert_eq!(other.at(0.0), 0.0);
+            assert_eq!(other.value(0.0), 0.0);
             assert!((other.slope(1e-12 * amplitude) - 0.5).abs() < 1e-11);
         }
         // A pole is not filled in.
-        assert!(!force("x - 1/x^3", "0", 0.5).at(0.0).is_finite());
+        assert!(!force("x - 1/x^3", "0", 0.5).value(0.0).is_finite());
     }
 
     #[test]

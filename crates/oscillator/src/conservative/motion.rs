@@ -29,7 +29,7 @@ impl CentredForce {
         start: f64,
         run: impl FnOnce(&energy::PiecewiseForce, f64) -> Result<T, PeriodError>,
     ) -> Result<T, PeriodError> {
-        let (value, cuts) = (|y| self.at(y), |from, to| self.cuts(from, to));
+        let (value, cuts) = (|y| self.value(y), |from, to| self.cuts(from, to));
         let force = energy::PiecewiseForce::with_cuts(&value, &cuts);
         let no_value = |distance: f64| match self.overflow(distance) {
             Some(term) => PeriodError::Overflow { place: distance, term },

@@ -42,7 +42,7 @@ const MOST: usize = 24;
 pub fn pushes_away(force: &CentredForce, unit: f64) -> bool {
     let unit = unit.abs();
     let distances = (-DECADES..-2).map(|k| unit * 10.0_f64.powi(k));
-    let felt = distances.map(|distance| [force.at(distance), -force.at(-distance)]);
+    let felt = distances.map(|distance| [force.value(distance), -force.value(-distance)]);
     let first =
         felt.into_iter().find(|sides| sides.iter().all(|side| side.is_finite() && *side != 0.0));
     first.is_some_and(|sides| sides.iter().all(|side| *side < 0.0))
@@ -140,7 +140,7 @@ struct Side {
 impl Side {
     fn new(force: &CentredForce, unit: f64) -> Option<Self> {
         let equilibrium = force.equilibrium();
-        let value = |distance: f64| force.at(distance);
+        let value = |distance: f64| force.value(distance);
         let ends_at = |place: f64| WellBoundary { place, separatrix: false };
         let first = unit * 10.0_f64.powi(-DECADES);
         let farthest = unit * 10.0_f64.powi(DECADES);

@@ -54,7 +54,7 @@ impl Power {
     }
 
     /// The whole number that it is a power by, where it is one of the variable itself.
-    pub(crate) fn whole(&self) -> Option<usize> {
+    pub(crate) fn integer_exponent(&self) -> Option<usize> {
         let number = self.exponent.as_number()?;
         let whole = number.is_integer() && self.odd == number.numer().is_odd();
         let count = number.to_integer().to_usize()?;
@@ -65,7 +65,7 @@ impl Power {
     pub(crate) fn in_terms_of(&self, variable: Symbol) -> Option<Expr> {
         let size = Expr::function(Function::Absolute, vec![Expr::from(variable)]).ok()?;
         let power = Expr::power(&size, &self.exponent).ok()?;
-        if let Some(count) = self.whole() {
+        if let Some(count) = self.integer_exponent() {
             return Expr::from(variable).integer_power(count as i64).ok();
         }
         match self.odd {

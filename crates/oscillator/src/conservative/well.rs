@@ -275,7 +275,7 @@ fn rise_between(force: &CentredForce, from: f64, to: f64) -> Option<f64> {
     }
     let mut sum = 0.0;
     for pair in knots.windows(2) {
-        sum += match integrate_smooth(|y| force.at(y), pair[0], pair[1], 1e-10) {
+        sum += match integrate_smooth(|y| force.value(y), pair[0], pair[1], 1e-10) {
             Ok((value, _)) => value,
             Err(QuadratureError::NotConverged { value, error_estimate, .. })
                 if error_estimate < 1e-6 * value.abs() =>
@@ -351,7 +351,7 @@ fn towards_the_end(force: &CentredForce, from: f64, to: f64) -> Option<f64> {
     }
     let integrand = |s: f64| match s.powi(6) {
         distance if distance < CLOSEST => 0.0,
-        distance => 6.0 * s.powi(5) * force.at(to + (from - to) * distance),
+        distance => 6.0 * s.powi(5) * force.value(to + (from - to) * distance),
     };
     let work = match integrate_smooth(integrand, 0.0, 1.0, 1e-10) {
         Ok((value, _)) => value,
@@ -369,7 +369,7 @@ fn towards_the_end(force: &CentredForce, from: f64, to: f64) -> Option<f64> {
 /// levels off.
 fn rim(force: &CentredForce, side: f64, unit: f64) -> Option<Wall> {
     let equilibrium = force.equilibrium();
-    let pull = |distance: f64| side * force.at(side * distance);
+    let pull = |distance: f64| side * force.value(side * distance);
     let mut strongest = 0.0_f64;
     let (mut distance, mut step) = (unit / STEPS, unit / STEPS);
     let mut window = distance;

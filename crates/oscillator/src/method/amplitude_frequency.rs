@@ -77,5 +77,5 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
 /// `f(c A)/(c A)`, `c = sqrt(3)/2`, in numbers, which have no error but rounding.
 pub(super) fn by_definition(force: &CentredForce, amplitude: f64) -> Option<(f64, f64)> {
     let place = 0.75_f64.sqrt() * amplitude;
-    Some((force.at(place) / place, 0.0))
+    Some((force.value(place) / place, 0.0))
 }

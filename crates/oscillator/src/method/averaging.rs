@@ -84,7 +84,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
         let choice = super::table::Choice::Resonance;
         return refuse(Reason::NoSuchChoice(choice));
     }
-    if let Some(restoring) = PurePower::of(&parts, oscillator.coordinate) {
+    if let Some(restoring) = PurePower::from_parts(&parts, oscillator.coordinate) {
         return pure_power::solve(oscillator, &parts, &restoring, options);
     }
     let order = match options.order.unwrap_or(1) {
@@ -97,7 +97,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     if convention == AmplitudeConvention::Initial && !conserves {
         return refuse(Reason::SlowAmplitude);
     }
-    let small = SmallTerms::of(oscillator, options)?;
+    let small = SmallTerms::from_oscillator(oscillator, options)?;
     let mut averaged = match small.expand(order) {
         Ok(mut force) => {
             force.write_with_frequency(&oscillator.names());
@@ -147,12 +147,12 @@ struct DerivationLetters {
 }
 
 impl DerivationLetters {
-    fn beside(taken: &[Symbol]) -> Self {
+    fn avoiding(taken: &[Symbol]) -> Self {
         Self { taken: taken.to_vec(), phase: fresh("psi", taken) }
     }
 
     /// `g1`, `u1`, `A2`, `B2`.
-    fn of(&self, letter: &str, order: u32) -> Symbol {
+    fn symbol(&self, letter: &str, order: u32) -> Symbol {
         Symbol::new(&format!("{}{order}", fresh_stem(letter, &self.taken)))
     }
 }
@@ -244,7 +244,7 @@ impl Averaged {
             limit_cycle: None,
             modulation: Some(Modulation {
                 amplitude: a,
-                phase: DerivationLetters::beside(&taken).phase,
+                phase: DerivationLetters::avoiding(&taken).phase,
                 amplitude_rate,
                 phase_rate,
                 small_with,
@@ -296,12 +296,12 @@ fn of_polynomial(
     taken.extend(definitions.iter().map(|definition| definition.symbol));
     let a = AmplitudeConvention::FirstHarmonic.symbol();
 
-    let letters = DerivationLetters::beside(&oscillator.names());
+    let letters = DerivationLetters::avoiding(&oscillator.names());
     let slow = FirstOrderAverage::new(force, &omega0, a);
     let mut derivation = vec![
         DerivationLine::equation(oscillator.coordinate, slow.position.clone()).because("along"),
         DerivationLine::equation(oscillator.velocity(), slow.velocity.clone()),
-        DerivationLine::equation(letters.of("g", 1), slow.force[0].clone())
+        DerivationLine::equation(letters.symbol("g", 1), slow.force[0].clone())
             .because("the small terms are"),
     ];
     let twice = Expr::from(2) * Expr::from(&omega0);
@@ -324,14 +324,14 @@ fn of_polynomial(
         let [second_amplitude, second_phase] = slow.second(force);
         release = slow.release()?;
         derivation.push(
-            DerivationLine::equation(letters.of("u", 1), correction.clone())
-                .because(format!("what {} leaves over", letters.of("g", 1))),
+            DerivationLine::equation(letters.symbol("u", 1), correction.clone())
+                .because(format!("what {} leaves over", letters.symbol("g", 1))),
         );
         derivation.push(
-            DerivationLine::equation(letters.of("A", 2), &second_amplitude)
+            DerivationLine::equation(letters.symbol("A", 2), &second_amplitude)
                 .because("the same at second order"),
         );
-        derivation.push(DerivationLine::equation(letters.of("B", 2), &second_phase));
+        derivation.push(DerivationLine::equation(letters.symbol("B", 2), &second_phase));
         amplitude_rate = amplitude_rate + second_amplitude;
         phase_rate = phase_rate + second_phase;
     }
@@ -530,7 +530,7 @@ struct Projected {
 impl Projected {
     /// # Errors
     /// Nothing restores, or a term whose projection has no closed form.
-    fn of(oscillator: &Oscillator, small: &SmallTerms, amplitude: &Expr) -> Result<Self, Refusal> {
+    fn new(oscillator: &Oscillator, small: &SmallTerms, amplitude: &Expr) -> Result<Self, Refusal> {
         let linear = small.linear_part()?;
         let (omega0, root) = linear.linear_frequency(&oscillator.names());
         let mut definitions: Vec<Definition> = root.iter().cloned().collect();
@@ -582,7 +582,7 @@ impl Projected {
                 Expr::from(oscillator.velocity()),
                 -(amplitude * &self.omega0 * theta.sin()?),
             ),
-            DerivationLine::equation(letters.of("g", 1), self.terms.clone())
+            DerivationLine::equation(letters.symbol("g", 1), self.terms.clone())
                 .because("the small terms are"),
         ])
     }
@@ -604,8 +604,8 @@ fn with_frequency(term: &Expr, linear: &Expr, omega0: &Expr) -> Result<Option<Ex
 fn by_projections(oscillator: &Oscillator, small: &SmallTerms) -> Result<Averaged, Refusal> {
     let a = AmplitudeConvention::FirstHarmonic.symbol();
     let amplitude = Expr::from(a);
-    let found = Projected::of(oscillator, small, &amplitude)?;
-    let letters = DerivationLetters::beside(&oscillator.names());
+    let found = Projected::new(oscillator, small, &amplitude)?;
+    let letters = DerivationLetters::avoiding(&oscillator.names());
     let mut derivation = found.along(oscillator, &amplitude, &letters)?;
     let Projected { omega0, root, definitions, sine, cosine, .. } = found;
     let twice = Expr::from(2) * &omega0;

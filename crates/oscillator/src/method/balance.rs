@@ -380,9 +380,9 @@ impl<'a> BalanceProblem<'a> {
         }
         for (theta, cut) in crossings {
             let step = 1e-9 * alpha;
-            let jump = self.force.at(cut + step) - self.force.at(cut - step);
+            let jump = self.force.value(cut + step) - self.force.value(cut - step);
             let speed = alpha * self.velocity(state, theta).abs();
-            let size = self.force.at(cut + step).abs().max(self.force.at(cut - step).abs());
+            let size = self.force.value(cut + step).abs().max(self.force.value(cut - step).abs());
             if jump.abs() > 1e-5 * size && speed > 0.0 {
                 angles.push(theta);
                 weights.push(0.0);
@@ -408,7 +408,7 @@ impl<'a> BalanceProblem<'a> {
             match nodes.jumps[i] {
                 Some(jump) => (forces[i], slopes[i]) = (0.0, jump / w),
                 None => {
-                    forces[i] = nodes.weights[i] * self.force.at(y) / unit;
+                    forces[i] = nodes.weights[i] * self.force.value(y) / unit;
                     slopes[i] = nodes.weights[i] * self.force.slope(y) / w;
                 }
             }
@@ -489,7 +489,7 @@ impl<'a> BalanceProblem<'a> {
         let position = amplitude.abs() * (&nodes.cosines * state.shape(self.count));
         let forces = DVector::from_fn(position.len(), |i, _| match nodes.jumps[i] {
             Some(_) => 0.0,
-            None => nodes.weights[i] * self.force.at(position[i]),
+            None => nodes.weights[i] * self.force.value(position[i]),
         });
         let parts = nodes.cosines.transpose() * forces * (2.0 / PI / amplitude);
         let w = parts[self.first];
@@ -687,7 +687,7 @@ impl<'a> BalanceProblem<'a> {
         let parts =
             (1..SAMPLES).flat_map(|k| [0.97_f64.powi(k), f64::from(k) / f64::from(SAMPLES)]);
         let mut places = parts.flat_map(|part| [part * low, part * high]).filter(|&x| x != 0.0);
-        places.all(|x| x * self.force.at(x) > 0.0)
+        places.all(|x| x * self.force.value(x) > 0.0)
     }
 
     /// Whether the true motion passes other equilibria on its way.
@@ -696,7 +696,7 @@ impl<'a> BalanceProblem<'a> {
         let Ok(end) = self.force.turning_point(self.amplitude) else {
             return false;
         };
-        let pushes_away = |x: f64| x * self.force.at(x) < 0.0;
+        let pushes_away = |x: f64| x * self.force.value(x) < 0.0;
         // Wells may be far smaller than the motion.
         let near = |k: i32| 0.97_f64.powi(k);
         let even = |k: i32| f64::from(k) / f64::from(SAMPLES);

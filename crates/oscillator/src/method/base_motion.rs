@@ -78,7 +78,7 @@ fn base_motions(oscillator: &Oscillator) -> Result<Vec<Expr>, Refusal> {
     let mut bases: Vec<Expr> = vec![];
     for sum in oscillator.force.unique_nodes().skip(1) {
         let moves =
-            |name: Symbol| Ok::<_, ExprError>(beside(sum, name, own)?.map(|moving| -&moving));
+            |name: Symbol| Ok::<_, ExprError>(moving_part(sum, name, own)?.map(|moving| -&moving));
         let base = match (moves(own[0])?, moves(own[1])?) {
             (Some(base), _) => Some(base),
             // A velocity that is no sum of waves leaves the bases that were found.
@@ -101,7 +101,7 @@ fn base_motions(oscillator: &Oscillator) -> Result<Vec<Expr>, Refusal> {
 
 /// The part of a sum that moves in time beside a coordinate or a velocity, over the factor of that;
 /// `None` where the sum is another one.
-fn beside(sum: &Expr, name: Symbol, own: [Symbol; 2]) -> Result<Option<Expr>, ExprError> {
+fn moving_part(sum: &Expr, name: Symbol, own: [Symbol; 2]) -> Result<Option<Expr>, ExprError> {
     let t = Symbol::new("t");
     let (moving, still): (Vec<&Expr>, Vec<&Expr>) =
         sum.terms().iter().partition(|term| term.contains(t));

@@ -106,7 +106,7 @@ impl Drive {
     ///
     /// # Errors
     /// A term that is no wave of it, by name.
-    pub(super) fn of(
+    pub(super) fn from_parts(
         parts: &Parts,
         oscillator: &Oscillator,
         method: Method,

@@ -161,7 +161,7 @@ impl Numerator for Polynomial<Integer> {
 /// expansion have small prime factors alone: found once, they take the place of a greatest common
 /// divisor for each coefficient.
 fn over<N: Numerator>(denominator: &Integer) -> impl Fn(&N) -> Polynomial + use<'_, N> {
-    let factored = Factored::of(denominator);
+    let factored = Factored::factorize(denominator);
     move |numerator| {
         numerator.polynomial(&|number| match &factored {
             Some(factored) => factored.fraction(number, denominator),

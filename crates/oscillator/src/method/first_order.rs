@@ -67,7 +67,7 @@ pub(super) fn solve(
         ));
     }
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
-        return Err(Reason::Convention.by(Refuser::FirstOrder));
+        return Err(Reason::Convention.refused_by(Refuser::FirstOrder));
     }
     let mut solution = unsolved(oscillator, options, Method::LindstedtPoincare, 1);
     solution.small_parameter = small;

@@ -35,7 +35,7 @@ pub(super) struct FrequencyResponse {
 
 impl FrequencyResponse {
     /// From `P` and `Q`, and the cosine and sine of each; the detuning stands in `Q`.
-    pub(super) fn of(
+    pub(super) fn from_rates(
         [rate, phase]: [&Polynomial; 2],
         [[rate_cos, rate_sin], [phase_cos, phase_sin]]: &[[Polynomial; 2]; 2],
         sigma: Symbol,

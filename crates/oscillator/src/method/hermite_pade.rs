@@ -95,7 +95,7 @@ fn of_degrees(
     }
     let order = p + q + r + 1;
     let resummed =
-        Resummed::of(oscillator, options, (METHOD, order))?.ok_or_else(|| refused(STOPPED))?;
+        Resummed::new(oscillator, options, (METHOD, order))?.ok_or_else(|| refused(STOPPED))?;
     let mut resummed = resummed;
     resummed.write_squares_by_their_roots();
     let series = &resummed.series;
@@ -108,8 +108,8 @@ fn of_degrees(
     let first = numbers[0].clone();
     numbers.iter_mut().for_each(|number| *number = &*number / &first);
     numbers.resize(order as usize + 1, Rational::zero());
-    let quadratic =
-        Quadratic::of(&numbers, [p, q, r].map(|degree| degree as usize)).map_err(refused)?;
+    let quadratic = Quadratic::from_series(&numbers, [p, q, r].map(|degree| degree as usize))
+        .map_err(refused)?;
     // A squared variable has one sign.
     let squared = variable.factors().iter().all(|(_, exponent)| exponent % 2 == 0);
     let sides: &[i64] = if squared { &[1] } else { &[1, -1] };
@@ -158,7 +158,7 @@ struct RootCourse {
 
 impl Quadratic {
     /// The approximant of a series that begins with one, or why there is none.
-    fn of(series: &[Rational], degrees: [usize; 3]) -> Result<Self, &'static str> {
+    fn from_series(series: &[Rational], degrees: [usize; 3]) -> Result<Self, &'static str> {
         let mut one = vec![Rational::zero(); series.len()];
         one[0] = Rational::one();
         let square: Vec<Rational> =
@@ -527,7 +527,7 @@ mod tests {
     }
 
     fn of(series: &[Rational], degrees: [usize; 3]) -> Quadratic {
-        Quadratic::of(series, degrees).unwrap_or_else(|reason| panic!("{reason}"))
+        Quadratic::from_series(series, degrees).unwrap_or_else(|reason| panic!("{reason}"))
     }
 
     /// The series of the root of `P + Q f + R f^2` that is one at zero, by Newton's method on its

@@ -69,7 +69,7 @@ fn with_stiffness(
     needed: bool,
 ) -> Result<Solution, Refusal> {
     const METHOD: Method = Method::HomotopyPerturbation;
-    let moving = VariableMass::of(oscillator)?.is_some();
+    let moving = VariableMass::from_oscillator(oscillator)?.is_some();
     if !moving {
         conservative_force(oscillator, options, METHOD)?;
     } else if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {

@@ -69,7 +69,7 @@ impl VariableMass {
     ///
     /// # Errors
     /// The force cannot be written out.
-    pub(super) fn of(oscillator: &Oscillator) -> Result<Option<Self>, Refusal> {
+    pub(super) fn from_oscillator(oscillator: &Oscillator) -> Result<Option<Self>, Refusal> {
         let parts = oscillator.parts()?;
         let velocity = oscillator.velocity();
         if parts.inertia.is_zero() || !parts.damping.is_zero() || !parts.forcing.is_zero() {
@@ -162,7 +162,7 @@ impl VariableMass {
 /// `M h`, whose integral is the potential energy, and `h`, of an equation whose inertia depends on
 /// the position; `None` for any other, and where `M` has no closed form.
 pub fn forces(oscillator: &Oscillator) -> Option<[Expr; 2]> {
-    let moving = VariableMass::of(oscillator).ok()??;
+    let moving = VariableMass::from_oscillator(oscillator).ok()??;
     Some([moving.weighted_force()?, moving.force])
 }
 
@@ -221,7 +221,7 @@ pub(super) fn solve(
     let Some(approach) = entry.inertia else {
         return Ok(None);
     };
-    let Some(moving) = VariableMass::of(oscillator)? else {
+    let Some(moving) = VariableMass::from_oscillator(oscillator)? else {
         return Ok(None);
     };
     if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
@@ -627,12 +627,12 @@ pub(super) fn at_numbers(
     centred.force = oscillator.force.substitute(oscillator.coordinate, &moved).ok()?;
     centred.residual = oscillator.residual.substitute(oscillator.coordinate, &moved).ok()?;
     let oscillator = &centred;
-    let moving = VariableMass::of(oscillator).ok()??;
+    let moving = VariableMass::from_oscillator(oscillator).ok()??;
     let amplitude = *numbers.get(&solution.amplitude.symbol())?;
     let mass = moving.mass_at(oscillator, numbers, amplitude)?;
     let force =
         CentredForce::new(&moving.force, oscillator.coordinate, &Expr::zero(), numbers, amplitude)?;
-    let approach = MethodEntry::of(solution.method).inertia.as_ref()?;
+    let approach = MethodEntry::for_method(solution.method).inertia.as_ref()?;
     (approach.numbers)(&EquationAtNumbers {
         moving: &moving,
         oscillator,
@@ -658,7 +658,7 @@ struct EquationAtNumbers<'a> {
 impl EquationAtNumbers<'_> {
     /// The slope of the potential.
     fn weighted(&self, x: f64) -> f64 {
-        (self.mass)(x) * self.force.at(x)
+        (self.mass)(x) * self.force.value(x)
     }
 
     fn one_term(&self, squared: f64) -> Option<AtNumbers> {
@@ -782,7 +782,7 @@ impl SampledResidual {
     }
 
     /// Residual and slopes at a state.
-    fn at(&self, state: [f64; 3]) -> Vec<f64> {
+    fn evaluate(&self, state: [f64; 3]) -> Vec<f64> {
         let mut arguments = self.arguments.clone();
         arguments[..3].copy_from_slice(&state);
         self.functions.iter().map(|function| function.call(&arguments)).collect()
@@ -790,7 +790,7 @@ impl SampledResidual {
 
     /// omega0^2 at rest.
     fn linear(&self) -> Option<f64> {
-        let at_rest = self.at([0.0; 3]);
+        let at_rest = self.evaluate([0.0; 3]);
         let squared = at_rest[1] / at_rest[3];
         (squared > 0.0 && squared.is_finite()).then_some(squared)
     }
@@ -817,7 +817,7 @@ impl SampledResidual {
                     slope -= coefficient * k * sine;
                     bend -= coefficient * k * k * cosine;
                 }
-                let values = self.at([x, omega * slope, squared * bend]);
+                let values = self.evaluate([x, omega * slope, squared * bend]);
                 let by_frequency = values[2] * slope / (2.0 * omega) + values[3] * bend;
                 for (row, wave) in waves.iter().enumerate() {
                     residual[row] += values[0] * wave.1;

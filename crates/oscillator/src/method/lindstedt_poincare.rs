@@ -57,7 +57,9 @@ use crate::symbol::{Symbol, fresh};
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let parts = oscillator.parts()?;
     if !parts.forcing.is_zero() {
-        return Err(Reason::Forcing.by(Refuser::Expansion).about(first_term(&parts.forcing)));
+        return Err(Reason::Forcing
+            .refused_by(Refuser::Expansion)
+            .about(first_term(&parts.forcing)));
     }
     let mut perturbation = match perturbation(oscillator, &parts, options) {
         Err(
@@ -72,7 +74,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     perturbation.force.write_with_frequency(&oscillator.names());
     let force = &perturbation.force;
     let LinearPart { frequency: linear_frequency, root, mut definitions, taken } =
-        LinearPart::of(force, oscillator);
+        LinearPart::new(force, oscillator);
 
     let units = FrequencyUnits::new(force, linear_frequency.clone());
     let excited = self_excitation(&perturbation, &units, &parts, options.cycle, &taken)?;
@@ -175,7 +177,7 @@ pub(super) struct LinearPart {
 }
 
 impl LinearPart {
-    pub(super) fn of(force: &PerturbedForce, oscillator: &Oscillator) -> Self {
+    pub(super) fn new(force: &PerturbedForce, oscillator: &Oscillator) -> Self {
         let mut taken = oscillator.names();
         let (frequency, root) = force.linear_frequency(&taken);
         let constants = constants_beside(force, &frequency);

@@ -272,7 +272,7 @@ fn solve_by(
     oscillator: &Oscillator,
     options: &Options,
 ) -> Result<Solution, Refusal> {
-    let entry = MethodEntry::of(method);
+    let entry = MethodEntry::for_method(method);
     refuse_what_it_does_not_take(entry, options)?;
     // Every method works about x = 0: the equation is seen from its equilibrium, and the answer
     // moved back.

@@ -47,7 +47,7 @@ impl Motion {
     }
 
     /// The displacement at the time `t`; the motion starts at a turning point at `t = 0`.
-    pub fn at(&self, t: f64) -> f64 {
+    pub fn displacement_at(&self, t: f64) -> f64 {
         self.displacement.evaluate(self.frequency * t)
     }
 
@@ -144,7 +144,7 @@ impl Solution {
     ///
     /// # Errors
     /// [`NoMotion`].
-    pub fn at(&self, t: f64, values: &Values) -> Result<f64, NoMotion> {
-        Ok(self.motion_at(values)?.at(t))
+    pub fn displacement_at(&self, t: f64, values: &Values) -> Result<f64, NoMotion> {
+        Ok(self.motion_at(values)?.displacement_at(t))
     }
 }

@@ -230,7 +230,7 @@ pub fn evaluate(
     if rounding > NO_DIGITS && squared != 0.0 {
         return Err(NoNumbers::Cancels { rounding });
     }
-    let motion = match MethodEntry::of(solution.method).motion {
+    let motion = match MethodEntry::for_method(solution.method).motion {
         MotionEvaluation::Exact if squared > 0.0 => {
             exact_motion(oscillator, solution, &numbers, known).ok().map(|found| found.1)
         }
@@ -355,7 +355,8 @@ fn solved_as_series(first: f64, beside: &[(i32, i32, f64)], order: u32) -> f64 {
 /// The symbol of homotopy analysis that is to be chosen, where there is one.
 fn open_hbar(solution: &Solution, numbers: &BTreeMap<Symbol, f64>) -> Option<Symbol> {
     let hbar = homotopy_analysis::convergence_control(solution);
-    let open = MethodEntry::of(solution.method).takes(Choice::Hbar) && !numbers.contains_key(&hbar);
+    let open = MethodEntry::for_method(solution.method).takes(Choice::Hbar)
+        && !numbers.contains_key(&hbar);
     (open && contains(solution, hbar)).then_some(hbar)
 }
 
@@ -365,7 +366,7 @@ fn balanced(
     motion: &FourierSeries<Doubles>,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Vec<(Symbol, f64)> {
-    if MethodEntry::of(solution.method).motion != MotionEvaluation::Balance {
+    if MethodEntry::for_method(solution.method).motion != MotionEvaluation::Balance {
         return vec![];
     }
     let equilibrium = solution.equilibrium.evaluate(numbers).unwrap_or(0.0);
@@ -386,7 +387,7 @@ fn contains(solution: &Solution, symbol: Symbol) -> bool {
 fn by_size(solution: &Solution) -> bool {
     solution.law.relation().is_none()
         && solution.amplitude == AmplitudeConvention::Initial
-        && !MethodEntry::of(solution.method).signed
+        && !MethodEntry::for_method(solution.method).signed
         || is_first_order(solution)
 }
 
@@ -410,7 +411,7 @@ fn is_first_order(solution: &Solution) -> bool {
 
 /// Whether the law is that of the true motion.
 fn is_exact(solution: &Solution) -> bool {
-    MethodEntry::of(solution.method).motion == MotionEvaluation::Exact
+    MethodEntry::for_method(solution.method).motion == MotionEvaluation::Exact
 }
 
 /// Whether the law is that of a motion `A cos(theta)`.
@@ -585,7 +586,7 @@ fn by_definition(
     } else {
         known.force(oscillator, solution, numbers)?
     };
-    let definition = MethodEntry::of(solution.method).definition?;
+    let definition = MethodEntry::for_method(solution.method).definition?;
     definition(&force, size).filter(|law| law.0.is_finite())
 }
 
@@ -603,7 +604,7 @@ pub fn error_of_integral(
     }
     let amplitude = numbers.get(&solution.amplitude.symbol())?.abs();
     let force = NumbersCache::default().force(oscillator, solution, numbers)?;
-    let (value, change) = one_term::coefficient_by_quadrature(&|y| force.at(y), amplitude, 1);
+    let (value, change) = one_term::coefficient_by_quadrature(&|y| force.value(y), amplitude, 1);
     Some((change / value).abs().max(1e-15))
 }
 
@@ -778,7 +779,7 @@ fn lost_projections(
     numbers: &BTreeMap<Symbol, f64>,
     squared: f64,
 ) -> Option<Vec<(usize, f64)>> {
-    if MethodEntry::of(solution.method).motion != MotionEvaluation::Iterate
+    if MethodEntry::for_method(solution.method).motion != MotionEvaluation::Iterate
         || solution.law.relation().is_some()
     {
         return None;
@@ -832,7 +833,7 @@ fn solve(
     };
     let (equilibrium, amplitude, force) = given().ok_or(NoNumbers::NoValue)?;
     let shift = FourierSeries::constant(Doubles, equilibrium);
-    if MethodEntry::of(solution.method).motion == MotionEvaluation::Balance {
+    if MethodEntry::for_method(solution.method).motion == MotionEvaluation::Balance {
         let odd = solution.balanced_harmonics().iter().all(|entry| entry.0 % 2 == 1);
         let harmonics = harmonic_balance::harmonics(solution.order, odd);
         let degree = oscillator.polynomial_degree().ok().flatten();
@@ -945,7 +946,7 @@ fn best_hbar(
         let acceleration = motion.derivative().derivative();
         let defect = |(cosine, sine): &(f64, f64)| {
             let distance = motion.evaluate_at(*cosine, *sine) - force.equilibrium();
-            squared * acceleration.evaluate_at(*cosine, *sine) + force.at(distance)
+            squared * acceleration.evaluate_at(*cosine, *sine) + force.value(distance)
         };
         let sum: f64 = circle.iter().map(|point| defect(point).powi(2)).sum();
         if sum.is_finite() { sum } else { f64::INFINITY }

@@ -285,13 +285,13 @@ pub(crate) fn coefficient(force: &CentredForce, amplitude: f64, k: usize) -> (f6
     const TOLERANCE: f64 = 1e-14;
     let cuts = force.cuts(-amplitude.abs(), amplitude.abs());
     if cuts.is_empty() {
-        return coefficient_by_quadrature(&|y| force.at(y), amplitude, k);
+        return coefficient_by_quadrature(&|y| force.value(y), amplitude, k);
     }
     let mut angles: Vec<f64> =
         cuts.iter().map(|cut| (cut / amplitude).clamp(-1.0, 1.0).acos()).collect();
     angles.extend([0.0, PI]);
     angles.sort_by(f64::total_cmp);
-    let integrand = |theta: f64| force.at(amplitude * theta.cos()) * (k as f64 * theta).cos();
+    let integrand = |theta: f64| force.value(amplitude * theta.cos()) * (k as f64 * theta).cos();
     let sum = match integrate_piecewise(integrand, &angles, TOLERANCE) {
         Ok(found) => found,
         Err(QuadratureError::NotConverged { value, error_estimate, .. }) => (value, error_estimate),

@@ -68,7 +68,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     }
     let order = numerator_degree + denominator_degree;
     let resummed =
-        Resummed::of(oscillator, options, (METHOD, order))?.ok_or_else(|| refused(STOPPED))?;
+        Resummed::new(oscillator, options, (METHOD, order))?.ok_or_else(|| refused(STOPPED))?;
     let series = &resummed.series;
     let quotient = quotient(series, (numerator_degree, denominator_degree)).map_err(refused)?;
     let below = series.with_powers(&quotient.below);

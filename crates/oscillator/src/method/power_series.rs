@@ -27,7 +27,7 @@ pub struct PowerSeries {
 
 impl PowerSeries {
     /// In the squared amplitude where the series has even powers alone.
-    pub fn of(solution: &Solution, in_amplitude: bool) -> Self {
+    pub fn from_solution(solution: &Solution, in_amplitude: bool) -> Self {
         let small = solution.small_parameter;
         let law = solution.law.frequency_squared().cloned();
         let law = law.unwrap_or_else(Polynomial::zero);
@@ -117,7 +117,7 @@ impl Resummed {
     ///
     /// # Errors
     /// As for the method of Lindstedt and Poincare.
-    pub fn of(
+    pub fn new(
         oscillator: &Oscillator,
         options: &Options,
         (method, order): (Method, u32),
@@ -145,16 +145,16 @@ impl Resummed {
         // Quadratic approximants of an even series are not unique in the parameter itself.
         let even = method == Method::HermitePade
             && !in_amplitude
-            && PowerSeries::of(&solution, true).step == 2;
+            && PowerSeries::from_solution(&solution, true).step == 2;
         if of_cycle || even {
             let Some(further) = series_to(2 * order, long)? else {
                 return Ok(None);
             };
-            if PowerSeries::of(&further, true).step == 2 {
+            if PowerSeries::from_solution(&further, true).step == 2 {
                 solution = further;
             }
         }
-        let series = PowerSeries::of(&solution, in_amplitude || of_cycle || even);
+        let series = PowerSeries::from_solution(&solution, in_amplitude || of_cycle || even);
         if long {
             let Some(first) = series_to(u32::try_from(series.step).unwrap_or(1), false)? else {
                 return Ok(None);

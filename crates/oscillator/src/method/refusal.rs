@@ -173,11 +173,11 @@ const IN_NUMBERS: &str = "in numbers any equation can be followed: `lindstedt si
 impl Reason {
     /// The refusal of a method.
     pub fn to(self, method: Method) -> Refusal {
-        self.by(Refuser::Method(method))
+        self.refused_by(Refuser::Method(method))
     }
 
     /// The refusal of a method or a part of one.
-    pub fn by(self, refuser: Refuser) -> Refusal {
+    pub fn refused_by(self, refuser: Refuser) -> Refusal {
         Refusal { refuser: Some(refuser), ..self.into() }
     }
 }
@@ -229,7 +229,7 @@ impl Refusal {
         let written_out = term.expand();
         let feeds = written_out
             .is_ok_and(|written| written.terms().len() == 1 && written.has_leading_minus());
-        Reason::Damping { feeds }.by(refuser).about(term)
+        Reason::Damping { feeds }.refused_by(refuser).about(term)
     }
 
     /// The message without the name of the method at its head, for lists that name it already.

@@ -100,7 +100,7 @@ fn ratio_at(
     let centred = crate::equilibrium::centred(oscillator, None).ok()?;
     let oscillator = &centred.oscillator;
     let parts = oscillator.parts().ok().filter(|parts| !parts.forcing.is_zero())?;
-    let drive = Drive::of(&parts, oscillator, method).ok()?;
+    let drive = Drive::from_parts(&parts, oscillator, method).ok()?;
     let mut numbers = at.numbers();
     if let Some(definition) = &centred.definition {
         numbers.insert(definition.symbol, definition.meaning.evaluate(&numbers).ok()?);

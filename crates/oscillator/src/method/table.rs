@@ -260,7 +260,7 @@ pub const METHODS: [MethodEntry; Method::ALL.len()] = [
 
 impl MethodEntry {
     /// The row of a method.
-    pub fn of(method: Method) -> &'static Self {
+    pub fn for_method(method: Method) -> &'static Self {
         // The order is that of `Method::ALL`, which is that of the variants; a test holds it.
         &METHODS[method as usize]
     }
@@ -312,7 +312,7 @@ mod tests {
     #[test]
     fn every_method_has_its_row() {
         for method in Method::ALL {
-            assert_eq!(MethodEntry::of(method).method, method);
+            assert_eq!(MethodEntry::for_method(method).method, method);
         }
         assert_eq!(that_take(Choice::Hbar), "homotopy-analysis");
         assert_eq!(

@@ -60,7 +60,7 @@ fn closed(
     phase_rate: &Expr,
     [start, begins]: [&Expr; 2],
 ) -> Option<Transient> {
-    let law = PowerLaw::of(rate, a)?;
+    let law = PowerLaw::from_rate(rate, a)?;
     let (amplitude, ends) = law.solved(start)?;
     let phase = law.phase(phase_rate, a, &amplitude, start);
     Some(Transient {
@@ -92,7 +92,7 @@ fn tidy(expression: &Expr) -> Option<Expr> {
 /// found by numbers where only a factor and a scale of the amplitude are letters.
 pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
     let balance = || {
-        let law = PowerLaw::of(rate, a)?;
+        let law = PowerLaw::from_rate(rate, a)?;
         let [(p, c), (q, d)] = law.0.as_slice() else {
             return None;
         };
@@ -114,7 +114,7 @@ pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
         let letters = factors.iter().filter(|factor| !factor.symbols().is_empty()).cloned();
         Some(LeadingCycle { amplitude, attracts_where: Some(sign * Expr::product(letters)) })
     };
-    match PowerLaw::of(rate, a) {
+    match PowerLaw::from_rate(rate, a) {
         Some(_) => balance().into_iter().collect(),
         None => steady_by_numbers(a, rate).unwrap_or_default(),
     }
@@ -179,7 +179,7 @@ struct PowerLaw(Vec<(Expr, Expr)>);
 
 impl PowerLaw {
     /// `None` where the amplitude stands elsewhere.
-    fn of(rate: &Expr, a: Symbol) -> Option<Self> {
+    fn from_rate(rate: &Expr, a: Symbol) -> Option<Self> {
         let mut law: Vec<(Expr, Expr)> = Vec::new();
         for term in rate.expand().ok()?.terms() {
             let (number, factors) = term.factors();
@@ -219,7 +219,7 @@ impl PowerLaw {
 
     /// `psi(t)`.
     fn phase(&self, rate: &Expr, a: Symbol, amplitude: &Expr, start: &Expr) -> Option<Expr> {
-        let parts = Self::of(rate, a)?;
+        let parts = Self::from_rate(rate, a)?;
         let mut sum = Vec::new();
         for (k, coefficient) in &parts.0 {
             let integral = self.integral(k, amplitude, start)?;

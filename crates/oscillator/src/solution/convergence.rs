@@ -44,7 +44,7 @@ impl Convergence {
     }
 
     /// The singularity, or the pair: `mu^2 = 3.42 e^(+-1.79i)`.
-    fn place(&self) -> String {
+    fn singularity_in_words(&self) -> String {
         let Singularity { radius, angle, .. } = &self.nearest;
         let (variable, radius) = (self.variable_in_words(), radius.to_string());
         match self.nearest.sign() {
@@ -89,7 +89,7 @@ impl fmt::Display for Convergence {
             "the series converges for |{name}| < {}: by {} coefficients the nearest singularity is at {}{}; error about {}",
             size,
             self.highest,
-            self.place(),
+            self.singularity_in_words(),
             self.kind(),
             significant(self.nearest.radius.error, 1)
         )

@@ -22,7 +22,7 @@ pub enum Degrees {
 
 impl Degrees {
     /// The degrees in a list; `None` for a list that no approximant has.
-    pub fn of(list: &[u32]) -> Option<Self> {
+    pub fn from_list(list: &[u32]) -> Option<Self> {
         match *list {
             [numerator, denominator] => Some(Self::Quotient(numerator, denominator)),
             [p, q, r] => Some(Self::Quadratic(p, q, r)),

@@ -38,7 +38,7 @@ pub enum HarmonicParity {
 
 impl HarmonicParity {
     /// The harmonic at a place.
-    pub fn at(self, index: usize) -> usize {
+    pub fn harmonic(self, index: usize) -> usize {
         match self {
             Self::All => index,
             Self::Even => 2 * index,
@@ -168,7 +168,7 @@ impl ShortSeries {
     fn times_harmonics(&self, wave: Wave, factor: impl Fn(i128) -> i128) -> Option<Self> {
         let mut numerators = Vec::with_capacity(self.numerators.len());
         for (index, numerator) in self.numerators.iter().enumerate() {
-            let harmonic = u32::try_from(self.harmonics.at(index)).ok()?;
+            let harmonic = u32::try_from(self.harmonics.harmonic(index)).ok()?;
             numerators.push(numerator.checked_mul(factor(harmonic.into()))?);
         }
         Self::new(wave, self.harmonics, self.denominator, numerators)
@@ -177,7 +177,7 @@ impl ShortSeries {
     /// The solution of `u'' + u = self` without first harmonic: every number over `1 - k^2`.
     pub fn without_resonance_over_divisors(&self) -> Option<Self> {
         let divisor = |index: usize| {
-            let harmonic = i128::from(u32::try_from(self.harmonics.at(index)).ok()?);
+            let harmonic = i128::from(u32::try_from(self.harmonics.harmonic(index)).ok()?);
             Some(harmonic * harmonic - 1)
         };
         // What is left of each divisor when it has taken from its numerator what it can.
@@ -391,7 +391,7 @@ mod tests {
     fn long(series: &ShortSeries) -> FourierSeries<Integers> {
         let mut coefficients = vec![];
         for (index, numerator) in series.numerators.iter().enumerate() {
-            coefficients.resize(series.harmonics.at(index), Integer::from(0));
+            coefficients.resize(series.harmonics.harmonic(index), Integer::from(0));
             coefficients.push(Integer::from(*numerator));
         }
         let (cosine, sine) = match series.wave {

@@ -34,7 +34,7 @@ use super::hermite_pade::{Field, HermitePade};
 use crate::decimal::plain_decimal;
 use crate::exact::big_float::BigFloat;
 use crate::exact::{Rational, Scaled, to_f64};
-use crate::parallel::each;
+use crate::parallel::par_map;
 
 /// A number that was estimated.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,14 +85,14 @@ pub fn nearest(coefficients: &[Rational]) -> Option<Singularity> {
     if is_entire(coefficients) || last_power(coefficients).is_some() {
         return None;
     }
-    let growth = Growth::of(coefficients)?;
+    let growth = Growth::from_coefficients(coefficients)?;
     let bits = BITS_AT_LEAST + BITS_EACH * coefficients.len();
     let scaled: Vec<BigFloat> = (0..)
         .zip(coefficients)
         .map(|(k, value)| BigFloat::of_fraction(value, bits).shifted(growth.unit * k))
         .collect();
     let find = |kind: &ApproximantKind| followed(*kind, &scaled, &growth);
-    let found = each(&KINDS, find).into_iter().flatten().collect();
+    let found = par_map(&KINDS, find).into_iter().flatten().collect();
     singularity(found, &growth, bits)
 }
 
@@ -113,7 +113,7 @@ struct Growth {
 }
 
 impl Growth {
-    fn of(coefficients: &[Rational]) -> Option<Self> {
+    fn from_coefficients(coefficients: &[Rational]) -> Option<Self> {
         /// The last coefficients, of which the largest counts.
         const LAST: usize = 12;
         let highest = coefficients.len().checked_sub(1)?;
@@ -250,7 +250,7 @@ struct Complex {
 }
 
 impl Complex {
-    fn of(value: Complex64, bits: usize) -> Self {
+    fn from_complex64(value: Complex64, bits: usize) -> Self {
         Self { re: BigFloat::of_f64(value.re, bits), im: BigFloat::of_f64(value.im, bits) }
     }
 
@@ -501,7 +501,7 @@ fn followed(
     let follow = |start: Complex64| -> Option<PersistentZero> {
         /// Of so many approximants one may lack the zero.
         const LACKING: usize = 6;
-        let mut near = Complex::of(start, coefficients[0].bits());
+        let mut near = Complex::from_complex64(start, coefficients[0].bits());
         let mut missed = 0;
         for below in starts {
             match at(below).and_then(|own| own.zero_near(&near)) {
@@ -617,7 +617,7 @@ impl Approximant {
 
 /// A polynomial, its slope and half of its second derivative.
 fn derivatives(polynomial: &[BigFloat], place: &Complex) -> [Complex; 3] {
-    let zero = Complex::of(Complex64::default(), place.re.bits());
+    let zero = Complex::from_complex64(Complex64::default(), place.re.bits());
     let mut found = [zero.clone(), zero.clone(), zero];
     for coefficient in polynomial.iter().rev() {
         found[2] = &(&found[2] * place) + &found[1];

@@ -380,7 +380,7 @@ impl<const L: usize> WithSimd for TapeExpansion<'_, L> {
             inverse = 1.0 / (order + 1) as f64;
             for (variable, rate) in self.rates.iter().enumerate() {
                 let rate = series[rate * length + order];
-                series[variable * length + order + 1] = each(|lane| inverse * rate[lane]);
+                series[variable * length + order + 1] = per_lane(|lane| inverse * rate[lane]);
                 if let Some(slope) = program.slopes[variable] {
                     series[slope * length + order + 1] = rate;
                 }
@@ -390,7 +390,7 @@ impl<const L: usize> WithSimd for TapeExpansion<'_, L> {
 }
 
 #[inline(always)]
-fn each<const L: usize>(value: impl Fn(usize) -> f64) -> [f64; L] {
+fn per_lane<const L: usize>(value: impl Fn(usize) -> f64) -> [f64; L] {
     let mut result = [0.0; L];
     for (lane, entry) in result.iter_mut().enumerate() {
         *entry = value(lane);
@@ -425,15 +425,15 @@ fn compute<const L: usize>(
         Operation::Divide(a, b, degree) => {
             let known = products(row(*b), row(place), 1..n.min(*degree) + 1, n);
             let (a, b) = (at(*a, n), at(*b, 0));
-            each(|lane| (a[lane] - known[lane]) / b[lane])
+            per_lane(|lane| (a[lane] - known[lane]) / b[lane])
         }
         Operation::Slope(a) => {
             let a = at(*a, n);
-            each(|lane| n as f64 * a[lane])
+            per_lane(|lane| n as f64 * a[lane])
         }
         Operation::Power { base, exponent, first } if n == 0 => {
             let base = at(*base, 0);
-            each(|lane| first(base[lane], *exponent))
+            per_lane(|lane| first(base[lane], *exponent))
         }
         Operation::Power { base, exponent, .. } => {
             let (base, own) = (row(*base), row(place));
@@ -449,35 +449,38 @@ fn compute<const L: usize>(
                 }
             }
             // What is zero altogether, as behind a closed corner, has zero for its roots.
-            each(|lane| match vanishes[lane] {
+            per_lane(|lane| match vanishes[lane] {
                 true => 0.0,
                 false => sum[lane] / (n as f64 * base[0][lane]),
             })
         }
         Operation::Integral { of, first, .. } | Operation::Quotient { of, first, .. } if n == 0 => {
             let of = at(*of, 0);
-            each(|lane| first(of[lane]))
+            per_lane(|lane| first(of[lane]))
         }
         Operation::Integral { slope, degree, rate, .. } => {
             let sum = products(row(*slope), row(*rate), 1..n.min(*degree) + 1, n);
-            each(|lane| inverse * sum[lane])
+            per_lane(|lane| inverse * sum[lane])
         }
         Operation::Quotient { slope, own, over, sign, .. } => {
             let known = products(row(*own), row(*over), 1..n, n);
             let (slope, over) = (at(*slope, n), at(*over, 0));
-            each(|lane| (sign * slope[lane] - known[lane]) * inverse / over[lane])
+            per_lane(|lane| (sign * slope[lane] - known[lane]) * inverse / over[lane])
         }
         Operation::Waves { of, slope, degree, sign, first } => {
             let [one, other] = match n {
                 0 => {
                     let of = at(*of, 0);
-                    first.map(|first| each(|lane| first(of[lane])))
+                    first.map(|first| per_lane(|lane| first(of[lane])))
                 }
                 _ => {
                     let orders = 1..n.min(*degree) + 1;
                     let others = [row(place + 1), row(place)];
                     let [one, other] = products_with(row(*slope), others, orders, n);
-                    [each(|lane| inverse * one[lane]), each(|lane| sign * inverse * other[lane])]
+                    [
+                        per_lane(|lane| inverse * one[lane]),
+                        per_lane(|lane| sign * inverse * other[lane]),
+                    ]
                 }
             };
             series[(place + 1) * length + n] = other;
@@ -487,7 +490,7 @@ fn compute<const L: usize>(
             let (argument, side) = (at(program.corners[*corner], 0), sides[*corner]);
             let [positive, negative] =
                 [positive, negative].map(|chosen| chosen.map_or([0.0; L], |chosen| at(chosen, n)));
-            each(|lane| match argument[lane].is_finite() {
+            per_lane(|lane| match argument[lane].is_finite() {
                 true if side[lane] > 0.0 => positive[lane],
                 true => negative[lane],
                 // Without a value it has no side.
@@ -525,7 +528,7 @@ fn products<const L: usize>(
             even[lane] += a[lane] * b[lane];
         }
     }
-    each(|lane| even[lane] + odd[lane])
+    per_lane(|lane| even[lane] + odd[lane])
 }
 
 /// As [`products`], of one series with two others.
@@ -558,5 +561,5 @@ fn products_with<const L: usize>(
             even[1][lane] += a[lane] * c[lane];
         }
     }
-    [each(|lane| even[0][lane] + odd[0][lane]), each(|lane| even[1][lane] + odd[1][lane])]
+    [per_lane(|lane| even[0][lane] + odd[0][lane]), per_lane(|lane| even[1][lane] + odd[1][lane])]
 }

@@ -107,7 +107,7 @@ fn known_to(
     let mut length = count.max(2);
     for _ in 0..ATTEMPTS {
         let expansion = TaylorExpansion { point, length, too_short: Cell::new(false) };
-        match expansion.of(expression) {
+        match expansion.expand(expression) {
             Ok(found) if found.pole > 0 && found.known > 0 => {
                 return Err(expansion.not_analytic(&pole_of(expression, point)));
             }
@@ -131,7 +131,7 @@ fn pole_of(expression: &Expr, point: &[(Symbol, Rational)]) -> Expr {
         if first.is_none()
             && matches!(expr.node(), Node::Power(..))
             && let Ok(found) =
-                (TaylorExpansion { point, length: 8, too_short: Cell::new(false) }).of(expr)
+                (TaylorExpansion { point, length: 8, too_short: Cell::new(false) }).expand(expr)
             && found.pole > 0
         {
             first = Some(expr.clone());
@@ -188,7 +188,7 @@ struct TaylorExpansion<'a> {
 }
 
 impl TaylorExpansion<'_> {
-    fn of(&self, expression: &Expr) -> Result<Laurent, TaylorError> {
+    fn expand(&self, expression: &Expr) -> Result<Laurent, TaylorError> {
         expression.fold(|node, children: &[Laurent]| self.node(node, children))
     }
 

@@ -426,13 +426,13 @@ mod tests {
     impl Work for Products {
         type Output = ();
 
-        fn by<A: Arithmetic>(self, arithmetic: A) {
+        fn run<A: Arithmetic>(self, arithmetic: A) {
             let grid = Grid::new(3 * self.count, self.half_wave);
             let moduli: Vec<Modulus> = primes_below(A::BITS, grid.circle() as u64)
                 .take(WIDTH)
                 .map(|prime| Modulus::new(prime, A::RADIX))
                 .collect();
-            let residues = &Residues { arithmetic, moduli: Moduli::of(&moduli) };
+            let residues = &Residues { arithmetic, moduli: Moduli::from_primes(&moduli) };
             let mut waves = Waves::new(residues, grid).expect("roots of unity");
             let values = |waves: &mut Waves, wave, coefficients: &[Lanes]| {
                 let mut values = vec![Lanes::default(); grid.size()];
@@ -490,7 +490,7 @@ mod tests {
     fn products_of_values_are_values_of_products() {
         for count in [2, 3, 8, 15, 40] {
             for half_wave in [true, false] {
-                Products { count, half_wave }.by(Portable);
+                Products { count, half_wave }.run(Portable);
                 by_widest(Products { count, half_wave });
             }
         }

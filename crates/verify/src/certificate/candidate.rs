@@ -217,7 +217,7 @@ fn certified_motion(
     with_formula: bool,
 ) -> Result<(Certificate, Certified), NotCertified> {
     let _letters = oscillator.letters().in_force();
-    let question = ProofTarget::of(oscillator, solution, at)?;
+    let question = ProofTarget::new(oscillator, solution, at)?;
     let judged = match with_formula {
         true => Some(judged(solution, at, BITS)?),
         false => None,
@@ -270,7 +270,11 @@ struct ProofTarget {
 }
 
 impl ProofTarget {
-    fn of(oscillator: &Oscillator, solution: &Solution, at: &Values) -> Result<Self, NotCertified> {
+    fn new(
+        oscillator: &Oscillator,
+        solution: &Solution,
+        at: &Values,
+    ) -> Result<Self, NotCertified> {
         let parts = oscillator.parts()?;
         for part in [parts.damping, parts.inertia, parts.forcing] {
             if !part.is_zero() {

@@ -38,7 +38,7 @@ pub struct Enclosure {
 }
 
 impl Enclosure {
-    pub(super) fn of(ball: &Ball) -> Self {
+    pub(super) fn from_ball(ball: &Ball) -> Self {
         Self { middle: WORKING.middle(ball), radius: ball.radius }
     }
 
@@ -226,7 +226,7 @@ pub(super) fn certified(certificate: &Certificate, proof: Proof) -> Result<Certi
     };
     Ok(Certified {
         proof,
-        frequency: Enclosure::of(&frequency),
+        frequency: Enclosure::from_ball(&frequency),
         exponent: None,
         amplitude: None,
         copies: 1,

@@ -101,7 +101,7 @@ pub fn validity(
     tolerance: f64,
     supervision: Supervision,
 ) -> Result<Validity, NotCertified> {
-    let mut family = Family::of(oscillator, solution, at, from)?;
+    let mut family = Family::new(oscillator, solution, at, from)?;
     let tolerance = not_above_typed(tolerance);
     let finer = (1..=4).take_while(|finer| tolerance < 0.01 / f64::from(1 << (finer - 1))).count();
     let finest = PLACES << finer;
@@ -166,7 +166,7 @@ struct Family<'a> {
 }
 
 impl<'a> Family<'a> {
-    fn of(
+    fn new(
         oscillator: &'a Oscillator,
         solution: &'a Solution,
         at: &Values,

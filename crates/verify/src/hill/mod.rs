@@ -320,7 +320,7 @@ pub fn transition_curves(
         None => coefficients,
         Some(name) => in_scaled_time(&coefficients, name)?,
     };
-    let hill = Hill::of(oscillator, [&damping, &stiffness], time_scale, options)?;
+    let hill = Hill::new(oscillator, [&damping, &stiffness], time_scale, options)?;
     let mut curves = Vec::new();
     for tongue in 0..=options.tongues {
         // Without the time no motion of the period 0 has a frequency.
@@ -421,7 +421,7 @@ fn as_typed(oscillator: &Oscillator, is_meant: &dyn Fn(&Expr) -> bool, term: &Ex
 }
 
 impl Hill {
-    fn of(
+    fn new(
         oscillator: &Oscillator,
         [damping, stiffness]: [&Expr; 2],
         time_scale: Option<Symbol>,

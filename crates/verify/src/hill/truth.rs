@@ -251,7 +251,7 @@ fn true_value(
                     slope.evaluate(&with(reference)).map_err(|_| TruthError::Coefficients)?;
                 let slope = by_letter / (f64::from(power) * reference.powi(power - 1));
                 let above = is_upper(curves, curve, numbers) == (slope > 0.0);
-                let coefficients = SampledCoefficients::of(curves, &with(reference))?;
+                let coefficients = SampledCoefficients::new(curves, &with(reference))?;
                 let mu = coefficients.eigenvalue(curve, above)?;
                 // A value below the rounding error is zero.
                 let rounding = ROUNDING * coefficients.frequency.powi(2);
@@ -275,7 +275,7 @@ fn true_value(
         return Ok(None);
     };
     let numbers = with(value);
-    let coefficients = SampledCoefficients::of(curves, &numbers)?;
+    let coefficients = SampledCoefficients::new(curves, &numbers)?;
     match coefficients.defect(curves, curve, &numbers) {
         Some(defect) if defect <= MULTIPLIER_TOLERANCE => Ok(Some(value)),
         _ => Err(TruthError::NotConfirmed(curve.name.clone())),
@@ -291,10 +291,10 @@ fn frequency_without_remainder(
     let upper = is_upper(curves, curve, &with(1.0));
     // mu grows with the frequency: the larger of two comes to zero first.
     let mu = |frequency: f64| {
-        SampledCoefficients::of(curves, &with(frequency))?.eigenvalue(curve, !upper)
+        SampledCoefficients::new(curves, &with(frequency))?.eigenvalue(curve, !upper)
     };
     // Without variation of the coefficients mu is n^2 Omega^2/4 less the mean stiffness.
-    let unit = SampledCoefficients::of(curves, &with(1.0))?;
+    let unit = SampledCoefficients::new(curves, &with(1.0))?;
     let count = curve.tongue as f64 * unit.frequency;
     let mean = unit.mean_stiffness();
     if !(mean > 0.0 && count > 0.0) {
@@ -336,7 +336,7 @@ struct SampledCoefficients {
 }
 
 impl SampledCoefficients {
-    fn of(curves: &TransitionCurves, numbers: &BTreeMap<Symbol, f64>) -> Result<Self, TruthError> {
+    fn new(curves: &TransitionCurves, numbers: &BTreeMap<Symbol, f64>) -> Result<Self, TruthError> {
         let value_of = |name: Symbol| numbers.get(&name).copied();
         let frequency = curves.frequency.polynomial().evaluate(value_of).unwrap_or(f64::NAN);
         if !(frequency > 0.0 && frequency.is_finite()) {
@@ -453,7 +453,7 @@ impl SampledCoefficients {
         let period = TAU / self.frequency;
         let column = |start: [f64; 2]| {
             let path = system.solve(0.0, &start, period, &[], &SystemOptions::default()).ok()?;
-            path.at(period)
+            path.states_at(period)
         };
         let (first, second) = (column([1.0, 0.0])?, column([0.0, 1.0])?);
         let trace = first.first()? + second.get(1)?;

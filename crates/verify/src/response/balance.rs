@@ -266,7 +266,7 @@ impl<'a> HarmonicBalance<'a> {
             return vec![];
         };
         let at = |phase: f64| {
-            let [position, velocity] = self.at(coefficients, parameter, phase);
+            let [position, velocity] = self.phase_point_at(coefficients, parameter, phase);
             [position, velocity, phase, parameter]
         };
         let omega_slope = driven.frequency_slope(parameter);
@@ -417,7 +417,12 @@ impl<'a> HarmonicBalance<'a> {
     }
 
     /// Position and velocity at a phase.
-    pub fn at(&self, coefficients: &DVector<f64>, parameter: f64, phase: f64) -> [f64; 2] {
+    pub fn phase_point_at(
+        &self,
+        coefficients: &DVector<f64>,
+        parameter: f64,
+        phase: f64,
+    ) -> [f64; 2] {
         let omega = self.frequency(coefficients, parameter);
         let mut point = [coefficients[0], 0.0];
         let (step_sine, step_cosine) = phase.sin_cos();

@@ -127,7 +127,7 @@ struct Weights {
 
 impl Weights {
     /// Of an unknown, of which there are `size`, or behind them of the parameter.
-    fn of(&self, index: usize, size: usize) -> f64 {
+    fn weight(&self, index: usize, size: usize) -> f64 {
         match self.frequency {
             Some((place, weight)) if place == index => weight,
             _ if index < size => self.coefficients,
@@ -137,7 +137,9 @@ impl Weights {
 
     fn dot(&self, one: &DVector<f64>, other: &DVector<f64>) -> f64 {
         let size = one.len() - 1;
-        (0..one.len()).map(|index| self.of(index, size).powi(2) * one[index] * other[index]).sum()
+        (0..one.len())
+            .map(|index| self.weight(index, size).powi(2) * one[index] * other[index])
+            .sum()
     }
 
     fn norm(&self, vector: &DVector<f64>) -> f64 {
@@ -145,7 +147,7 @@ impl Weights {
     }
 
     fn scaled(&self, vector: &DVector<f64>) -> DVector<f64> {
-        vector.map_with_location(|index, _, part| self.of(index, vector.len() - 1) * part)
+        vector.map_with_location(|index, _, part| self.weight(index, vector.len() - 1) * part)
     }
 
     /// A point with its tangent, which goes on in this direction.
@@ -178,7 +180,7 @@ impl Weights {
     /// The last row of the bordered equations: a product with it is one with this direction.
     fn row(&self, direction: &DVector<f64>) -> DVector<f64> {
         let size = direction.len() - 1;
-        DVector::from_fn(size + 1, |index, _| self.of(index, size).powi(2) * direction[index])
+        DVector::from_fn(size + 1, |index, _| self.weight(index, size).powi(2) * direction[index])
     }
 }
 
@@ -533,12 +535,13 @@ impl ContinuationSettings {
         };
         let weights = self.weights(balance, &at.coefficients);
         // In weighted variables, so that right angles are those of the steps.
-        let matrix = linear.jacobian.map_with_location(|_, j, slope| slope / weights.of(j, size));
+        let matrix =
+            linear.jacobian.map_with_location(|_, j, slope| slope / weights.weight(j, size));
         let square = matrix.transpose() * &matrix;
         let eigen = square.symmetric_eigen();
         let mut order: Vec<usize> = (0..=size).collect();
         order.sort_by(|one, other| eigen.eigenvalues[*one].total_cmp(&eigen.eigenvalues[*other]));
-        let scale = |index: usize| weights.of(index, size);
+        let scale = |index: usize| weights.weight(index, size);
         let tangent = DVector::from_fn(size + 1, |index, _| at.tangent[index] * scale(index));
         let tangent = &tangent / tangent.norm();
         let candidates = order.iter().take(2).map(|index| {

@@ -56,7 +56,7 @@ impl PreparedRequest<'_> {
             }
             let frequency = self.driven.frequency_at(node.parameter);
             multipliers_along(&self.driven, node.parameter, frequency, |phase| {
-                balance.at(&node.coefficients, node.parameter, phase)
+                balance.phase_point_at(&node.coefficients, node.parameter, phase)
             })
         };
         (floquet.or_else(along), truth)
@@ -269,7 +269,7 @@ impl PreparedRequest<'_> {
             (true, _) => return None,
         };
         let time = |sample: usize| from + (to - from) * sample as f64 / SAMPLES as f64;
-        let positions = (0..SAMPLES).filter_map(|sample| Some(motion.at(time(sample))?[0]));
+        let positions = (0..SAMPLES).filter_map(|sample| Some(motion.states_at(time(sample))?[0]));
         Some((std::f64::consts::TAU / (to - from), positions.collect()))
     }
 }

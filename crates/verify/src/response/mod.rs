@@ -376,7 +376,7 @@ impl ResponseDiagram {
         });
         let small = error.is_some_and(|error| error <= self.question.tolerance);
         let missed = self.elsewhere.iter().any(|elsewhere| elsewhere.periods == Some(1));
-        self.verdict = Verdict::of(small && 20 * unjudged <= all && !missed);
+        self.verdict = Verdict::from_passed(small && 20 * unjudged <= all && !missed);
         (self.error, self.unjudged) = (error, unjudged);
         self
     }

@@ -131,7 +131,7 @@ impl PreparedRequest<'_> {
         const SAMPLES: usize = 256;
         let positions = (0..SAMPLES).map(|sample| {
             let phase = std::f64::consts::TAU * sample as f64 / SAMPLES as f64;
-            balance.at(found, parameter, phase)[0]
+            balance.phase_point_at(found, parameter, phase)[0]
         });
         Seed {
             parameter,

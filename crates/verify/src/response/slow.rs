@@ -55,7 +55,7 @@ pub struct Spurious {
 }
 
 impl Spurious {
-    fn of(found: &[SteadyState]) -> Option<Self> {
+    fn from_states(found: &[SteadyState]) -> Option<Self> {
         let amplitudes = || found.iter().map(|state| state.amplitude);
         let lowest = amplitudes().min_by(f64::total_cmp)?;
         Some(Self { count: found.len(), amplitudes: [lowest, amplitudes().fold(lowest, f64::max)] })
@@ -104,7 +104,7 @@ impl ResponseDiagram {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[must_use]
-    pub fn beside(mut self, solution: Solution) -> Self {
+    pub fn with_slow_equations(mut self, solution: Solution) -> Self {
         let question = &self.question;
         let [low, high] = question.range;
         let value = |index: u32| low + (high - low) * f64::from(index) / f64::from(VALUES);
@@ -140,14 +140,14 @@ impl ResponseDiagram {
         self.slow = Some(SlowResponse {
             solution: Box::new(solution),
             states,
-            verdict: Verdict::of(
+            verdict: Verdict::from_passed(
                 MISSING * missing <= count
                     && error.is_some_and(|error| error <= question.tolerance),
             ),
             error,
             worst,
             missing,
-            spurious: Spurious::of(&spurious),
+            spurious: Spurious::from_states(&spurious),
             points: count,
         });
         self

@@ -164,7 +164,7 @@ impl<'a> PeriodMap<'a> {
     }
 
     /// The motion at this parameter near a start, its tangent toward larger parameters.
-    fn at(&self, start: [f64; 2], parameter: f64) -> Option<ShootingOrbit> {
+    fn shoot(&self, start: [f64; 2], parameter: f64) -> Option<ShootingOrbit> {
         self.corrected(&self.scaled(start, parameter), &Vector3::new(0.0, 0.0, 1.0))
     }
 
@@ -317,7 +317,7 @@ impl PreparedRequest<'_> {
                 half_of_peak_to_peak(&seed.positions).max(0.1 * size),
                 seed.parameter,
             );
-            let Some(shot) = map.at(start, seed.parameter) else {
+            let Some(shot) = map.shoot(start, seed.parameter) else {
                 continue;
             };
             let (start, _) = map.start(&shot.at);
@@ -489,7 +489,7 @@ impl PreparedRequest<'_> {
             let guess =
                 [0, 1].map(|index| starts[0][index] + part * (starts[1][index] - starts[0][index]));
             let map = PeriodMap::new(self, size, parameter);
-            let truth = || map.at(guess, parameter).map(|shot| map.start(&shot.at).0);
+            let truth = || map.shoot(guess, parameter).map(|shot| map.start(&shot.at).0);
             apart(guess) <= NEAR * size && truth().is_some_and(|truth| apart(truth) <= SAME * size)
         })
     }

@@ -19,7 +19,7 @@ use num_traits::Signed as _;
 
 /// `x'^2/2 + V(x)`, V of the terms that have a potential in closed form, and the power of every
 /// other term; nothing for an inertia that depends on the position, whose energy is another.
-pub(super) fn of(oscillator: &Oscillator) -> Option<EnergyWithPowers> {
+pub(super) fn energy_of_equation(oscillator: &Oscillator) -> Option<EnergyWithPowers> {
     let velocity = oscillator.velocity();
     let speed = Expr::from(velocity);
     let backwards = -&speed;

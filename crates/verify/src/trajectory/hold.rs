@@ -137,7 +137,7 @@ impl TrajectoryRequest {
                 },
             };
             let (end, reason) = (piece.end(), piece.path.reason());
-            let (last, recorded) = (piece.at(end), piece.recorded);
+            let (last, recorded) = (piece.states_at(end), piece.recorded);
             holds += usize::from(piece.is_held());
             pieces.push(piece);
             let Some(last) = last else { break reason };
@@ -477,7 +477,7 @@ fn tie(
         rates.on.iter().map(|index| (rates.share(*index), Expr::zero())).collect();
     let (mut matrix, mut right) = (Vec::new(), Vec::new());
     for index in &rates.on {
-        let rate = rates.of(equations, &regimes[*index].0.u)?;
+        let rate = rates.rate_of(equations, &regimes[*index].0.u)?;
         let mut row = Vec::new();
         for column in &rates.on {
             let entry = rate.differentiate(rates.share(*column))?.substitute_all(&none)?;
@@ -587,7 +587,7 @@ impl SurfaceRates {
     }
 
     /// The rate of an expression.
-    fn of(&self, equations: &StateEquations, u: &Expr) -> Result<Expr, ExprError> {
+    fn rate_of(&self, equations: &StateEquations, u: &Expr) -> Result<Expr, ExprError> {
         let mut parts = vec![u.differentiate(Symbol::new("t"))?];
         for (state, rate) in equations.states.iter().zip(&self.right) {
             parts.push(u.differentiate(*state)? * rate);
@@ -632,7 +632,7 @@ fn sliding(
     let none: BTreeMap<Symbol, Expr> =
         held.iter().map(|index| (share(*index), Expr::zero())).collect();
     for index in &rates.independent {
-        let rate = rates.of(equations, &regimes[*index].0.u)?;
+        let rate = rates.rate_of(equations, &regimes[*index].0.u)?;
         let row: Vec<Expr> = held
             .iter()
             .map(|column| rate.differentiate(share(*column)))

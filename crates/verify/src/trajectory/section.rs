@@ -153,7 +153,7 @@ impl Trajectory {
                 (1..=count as u32).map(|index| number * f64::from(index)).collect()
             }
         };
-        let crossing = |time: f64| Some(Crossing { time, state: self.at(time)? });
+        let crossing = |time: f64| Some(Crossing { time, state: self.states_at(time)? });
         let in_time = |time: &f64| *time >= course.after;
         Ok(OnSection {
             crossings: times.into_iter().filter(in_time).filter_map(crossing).collect(),
@@ -170,8 +170,9 @@ impl Trajectory {
         let Some(function) = self.compiled(expression) else {
             return vec![];
         };
-        let value =
-            |time: f64| Some(function(time, &self.at(time)?)).filter(|value| value.is_finite());
+        let value = |time: f64| {
+            Some(function(time, &self.states_at(time)?)).filter(|value| value.is_finite())
+        };
         let times = [0.0].into_iter().chain(turns).chain([self.end()]);
         let heights: Vec<(f64, f64)> =
             times.filter_map(|time| Some((time, value(time)?))).collect();

@@ -52,7 +52,7 @@ impl Trajectory {
         let time = |end: f64, index: u32| end * f64::from(index) / f64::from(ACCOUNTS);
         let sizes = |count: u32| {
             let mut sizes = vec![0.0_f64; self.course.rates.states.len()];
-            for state in (0..=count).filter_map(|index| self.at(time(self.end(), index))) {
+            for state in (0..=count).filter_map(|index| self.states_at(time(self.end(), index))) {
                 for (size, value) in sizes.iter_mut().zip(&state) {
                     *size = size.max(value.abs());
                 }
@@ -70,7 +70,7 @@ impl Trajectory {
         let sizes = sizes(ACCOUNTS);
         let (mut known, mut doubtful) = (0.0, false);
         for time in (0..=ACCOUNTS).map(|index| time(end, index)) {
-            let (one, other) = (self.at(time)?, displaced.at(time)?);
+            let (one, other) = (self.states_at(time)?, displaced.states_at(time)?);
             let apart = one.iter().zip(&other).map(|(one, other)| (one - other).abs());
             let is_lost = apart.zip(&sizes).any(|(apart, size)| apart > lost * size);
             // One moment alone may lie between two jumps of one force.

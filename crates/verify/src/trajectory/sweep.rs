@@ -6,7 +6,7 @@
 //! With a [`Section`](super::Section) once a period, the points of a bifurcation diagram.
 
 use super::{Crossing, TrajectoryError, TrajectoryRequest};
-use crate::parallel::{each, threads};
+use crate::parallel::{par_map, threads};
 use crate::symbol::Symbol;
 use crate::system::{Integrator, LANES, PathEnd};
 
@@ -89,7 +89,7 @@ pub fn sweep(
             swept.push(SweptMotion {
                 values: values.to_vec(),
                 end,
-                state: motion.at(end).unwrap_or_default(),
+                state: motion.states_at(end).unwrap_or_default(),
                 extremes: motion.extremes(),
                 crossings: motion.crossings().to_vec(),
                 touches: motion.touches().to_vec(),
@@ -99,6 +99,7 @@ pub fn sweep(
         Ok(swept)
     };
     let groups: Vec<_> = numbered.chunks(size).collect();
-    let motions: Result<Vec<Vec<SweptMotion>>, _> = each(&groups, together).into_iter().collect();
+    let motions: Result<Vec<Vec<SweptMotion>>, _> =
+        par_map(&groups, together).into_iter().collect();
     Ok(motions?.into_iter().flatten().collect())
 }

@@ -54,7 +54,7 @@ impl<'a> TrueBackbone<'a> {
             places: vec![],
             times: FARTHEST,
         };
-        let asked = backbone.asked().abs();
+        let asked = backbone.given_amplitude().abs();
         let _ = backbone.frequency(asked);
         let work = backbone.physics.as_ref().map_or(0, |physics| physics.rest.evaluations());
         let by_energy = backbone.physics.as_ref().is_none_or(NumericOscillator::by_energy);
@@ -70,20 +70,20 @@ impl<'a> TrueBackbone<'a> {
     }
 
     /// The amplitude asked for, with its sign.
-    pub(super) fn asked(&self) -> f64 {
+    pub(super) fn given_amplitude(&self) -> f64 {
         self.numbers.get(&self.amplitude).copied().unwrap_or(1.0)
     }
 
     /// The numbers with another size of the amplitude.
     pub(super) fn numbers_at(&self, size: f64) -> BTreeMap<Symbol, f64> {
         let mut numbers = self.numbers.clone();
-        numbers.insert(self.amplitude, size.copysign(self.asked()));
+        numbers.insert(self.amplitude, size.copysign(self.given_amplitude()));
         numbers
     }
 
     /// The size of the amplitude beyond which no motion released on the side asked for is periodic.
     pub(super) fn largest_amplitude(&self) -> f64 {
-        let end = self.well.and_then(|well| well.on_side(self.asked()));
+        let end = self.well.and_then(|well| well.on_side(self.given_amplitude()));
         end.map_or(f64::INFINITY, |end| end.amplitude.abs())
     }
 
@@ -104,8 +104,8 @@ impl<'a> TrueBackbone<'a> {
 
     /// The end of what is looked at.
     pub(super) fn farthest(&self) -> f64 {
-        f64::min(0.999 * self.largest_amplitude(), self.times * self.asked().abs())
-            .max(self.asked().abs().min(self.largest_amplitude()))
+        f64::min(0.999 * self.largest_amplitude(), self.times * self.given_amplitude().abs())
+            .max(self.given_amplitude().abs().min(self.largest_amplitude()))
     }
 
     /// The true frequency; `None` where the motion is not periodic.
@@ -118,7 +118,7 @@ impl<'a> TrueBackbone<'a> {
             .physics
             .as_ref()
             .filter(affordable)
-            .and_then(|physics| physics.frequency(size.copysign(self.asked())).ok());
+            .and_then(|physics| physics.frequency(size.copysign(self.given_amplitude())).ok());
         self.known.borrow_mut().insert(size.to_bits(), found);
         found
     }
@@ -134,7 +134,7 @@ impl<'a> TrueBackbone<'a> {
         let at_once = FOR_A_ROOT * physics.rest.evaluations();
         // These places only say where to look, and leave most of the work to what is found there.
         let affordable = || physics.rest.evaluations() + at_once < MOST / 4;
-        let (side, farthest) = (self.asked().signum(), self.farthest());
+        let (side, farthest) = (self.given_amplitude().signum(), self.farthest());
         let mut sizes: Vec<f64> = Vec::new();
         let cuts = physics.rest.cuts(-farthest, farthest);
         for &place in cuts.iter().step_by(cuts.len().div_ceil(MOST_PLACES).max(1)) {
@@ -163,7 +163,7 @@ impl<'a> TrueBackbone<'a> {
     pub(super) fn amplitudes(&self) -> Vec<f64> {
         const PER_DECADE: i32 = 4;
         const LINEAR: usize = 8;
-        let (asked, farthest) = (self.asked().abs(), self.farthest());
+        let (asked, farthest) = (self.given_amplitude().abs(), self.farthest());
         let mut sizes: Vec<f64> = (-2 * PER_DECADE..=2 * PER_DECADE)
             .map(|k| asked * 10.0_f64.powf(f64::from(k) / f64::from(PER_DECADE)))
             .collect();

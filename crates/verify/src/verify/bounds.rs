@@ -101,7 +101,7 @@ fn course(force: &CentredForce, amplitude: f64) -> Option<Vec<(f64, f64)>> {
     places.retain(|place| *place > 0.0 && *place <= amplitude);
     places.sort_by(f64::total_cmp);
     places.dedup();
-    let quotient = |x: f64| force.at(x) / x;
+    let quotient = |x: f64| force.value(x) / x;
     let at_rest = Some(force.slope(0.0)).filter(|slope| slope.is_finite());
     let mut course = vec![(0.0, at_rest.unwrap_or_else(|| quotient(1e-9 * amplitude)))];
     course.extend(places.iter().map(|&place| (place, quotient(place))));

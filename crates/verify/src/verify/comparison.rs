@@ -62,7 +62,7 @@ impl Comparison {
     /// The letters of its formulas: those of the first answer.
     pub fn letters(&self) -> ResultSymbols {
         let first = self.rows.first().map(|row| row.solution.letters());
-        first.unwrap_or_else(|| ResultSymbols::beside(&[], false))
+        first.unwrap_or_else(|| ResultSymbols::avoiding(&[], false))
     }
 }
 
@@ -438,7 +438,7 @@ fn row(
         relative_error,
         max_deviation,
         reach: reach(oscillator, solution, truth, tolerance),
-        verdict: true_motion.map(|_| Verdict::of(pass)),
+        verdict: true_motion.map(|_| Verdict::from_passed(pass)),
     }
 }
 

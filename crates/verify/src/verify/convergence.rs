@@ -105,11 +105,12 @@ fn exact_coefficients(solution: &Solution) -> Option<(Monomial, Vec<Rational>)> 
     if solution.numerical {
         return None;
     }
-    let (mut variable, mut coefficients) = PowerSeries::of(solution, true).in_one_variable()?;
+    let (mut variable, mut coefficients) =
+        PowerSeries::from_solution(solution, true).in_one_variable()?;
     if solution.method.counts() == Counts::Powers {
         // The powers to the order of the answer that are not in the law are zero.
-        let count =
-            solution.order as usize / usize::try_from(PowerSeries::of(solution, true).step).ok()?;
+        let count = solution.order as usize
+            / usize::try_from(PowerSeries::from_solution(solution, true).step).ok()?;
         coefficients.resize((count + 1).max(coefficients.len()), Rational::zero());
     }
     let powers = coefficients.iter().enumerate().filter(|(_, value)| !value.is_zero());

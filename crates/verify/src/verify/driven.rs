@@ -79,7 +79,7 @@ pub(super) fn motions(
             .collect(),
         truth: times
             .map(|t| {
-                let (x, v) = found.at(t);
+                let (x, v) = found.phase_point_at(t);
                 (t, x, v)
             })
             .collect(),
@@ -172,7 +172,7 @@ impl<'a> DrivenComparison<'a> {
             .collect();
         let judge = |state: &SteadyState, found: Option<&PeriodicOrbit>| match is_held(state) {
             true => held(*state),
-            false => self.truth.beside(&self.motion, *state, found),
+            false => self.truth.compare(&self.motion, *state, found),
         };
         let judged: Vec<JudgedState> =
             states.iter().zip(&found).map(|(state, found)| judge(state, found.as_ref())).collect();
@@ -234,7 +234,7 @@ impl<'a> DrivenComparison<'a> {
 
 /// Position and velocity at the start of a true motion.
 fn start_of(found: &Option<PeriodicOrbit>) -> Option<(f64, f64)> {
-    found.as_ref().map(|found| found.at(0.0))
+    found.as_ref().map(|found| found.phase_point_at(0.0))
 }
 
 /// All that is small is halved again and again, and the deviation of the same steady motion
@@ -270,7 +270,7 @@ fn slope(
             return None;
         }
         let found = question.truth.near(&question.motion, state)?;
-        question.truth.beside(&question.motion, state, Some(&found)).max_deviation
+        question.truth.compare(&question.motion, state, Some(&found)).max_deviation
     };
     let errors: Vec<f64> =
         (0..HALVINGS).map_while(deviation).take_while(|error| *error >= FLOOR).collect();
@@ -320,7 +320,7 @@ pub(super) fn judge(
         steady_states: states,
         spurious,
         followed: None,
-        verdict: Verdict::of(passed),
+        verdict: Verdict::from_passed(passed),
     })
 }
 
@@ -450,11 +450,11 @@ impl Truth {
     /// same motion.
     fn starts(&self, found: &PeriodicOrbit) -> Vec<[f64; 2]> {
         let part = self.period / f64::from(self.drives);
-        let start = |k: u32| found.at(part * f64::from(k)).into();
+        let start = |k: u32| found.phase_point_at(part * f64::from(k)).into();
         (0..self.drives).map(start).collect()
     }
 
-    fn beside(
+    fn compare(
         &self,
         motion: &SteadyFormula,
         state: SteadyState,
@@ -463,9 +463,12 @@ impl Truth {
         let own = found.map(|found| found.harmonic(self.own));
         let error = own.map(|own| state.amplitude / own - 1.0);
         let deviation = found.map(|found| {
-            let largest =
-                largest_over(self.period, |t| (found.at(t).0 - motion.position(t, state)).abs());
-            let size = largest_over(self.period, |t| (found.at(t).0 - motion.equilibrium).abs());
+            let largest = largest_over(self.period, |t| {
+                (found.phase_point_at(t).0 - motion.position(t, state)).abs()
+            });
+            let size = largest_over(self.period, |t| {
+                (found.phase_point_at(t).0 - motion.equilibrium).abs()
+            });
             if size == 0.0 { 0.0 } else { largest / size }
         });
         JudgedState {

@@ -76,7 +76,7 @@ impl FreeMotion {
     ///
     /// # Errors
     /// It cannot be followed.
-    pub(super) fn of(
+    pub(super) fn follow(
         oscillator: &Oscillator,
         numbers: &BTreeMap<Symbol, f64>,
         start: &Start,
@@ -132,12 +132,12 @@ impl FreeMotion {
     }
 
     /// Distance from the equilibrium and velocity.
-    pub(super) fn at(&self, time: f64) -> (f64, f64) {
+    pub(super) fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let found = match &self.motion {
             FreePath::Series(motion) => {
-                motion.at(time).and_then(|state| Some((*state.first()?, *state.get(1)?)))
+                motion.states_at(time).and_then(|state| Some((*state.first()?, *state.get(1)?)))
             }
-            FreePath::Evaluated(motion) => motion.at(time),
+            FreePath::Evaluated(motion) => motion.phase_point_at(time),
         };
         found.map_or((f64::NAN, f64::NAN), |(x, v)| (x - self.equilibrium, v))
     }
@@ -150,23 +150,23 @@ impl FreeMotion {
         let count = if count.is_finite() { (count as usize).min(MOST) } else { 0 };
         let time = |k: usize| self.end * k as f64 / count as f64;
         let (mut turns, mut crossings) = (vec![], vec![]);
-        let mut before = (0.0, self.at(0.0));
+        let mut before = (0.0, self.phase_point_at(0.0));
         for k in 1..=count {
-            let now = (time(k), self.at(time(k)));
+            let now = (time(k), self.phase_point_at(time(k)));
             let ((t0, (x0, v0)), (t1, (x1, v1))) = (before, now);
             if x0 * x1 < 0.0
-                && let Ok(t) = find_root(|t| self.at(t).0, t0, t1)
+                && let Ok(t) = find_root(|t| self.phase_point_at(t).0, t0, t1)
             {
                 crossings.push(t);
             }
             // At the very start it is at rest, and where friction holds it it does not turn.
             let turned = v0 * v1 < 0.0;
-            if turned && let Ok(t) = find_root(|t| self.at(t).1, t0, t1) {
-                turns.push((t, self.at(t).0));
+            if turned && let Ok(t) = find_root(|t| self.phase_point_at(t).1, t0, t1) {
+                turns.push((t, self.phase_point_at(t).0));
             }
             if v0 != 0.0 && v1 == 0.0 {
                 let t = self.begin_of_rest(t0, t1);
-                self.held = Some((t, self.at(t).0));
+                self.held = Some((t, self.phase_point_at(t).0));
             }
             before = now;
         }
@@ -177,14 +177,15 @@ impl FreeMotion {
     /// When the velocity becomes zero and stays so, between a time at which it moves and one at
     /// which it is held.
     fn begin_of_rest(&self, moves: f64, held: f64) -> f64 {
-        let [_, begin] = bisect(|t| self.at(t).1 != 0.0, moves, held, BisectionStop::Width(0.0));
+        let [_, begin] =
+            bisect(|t| self.phase_point_at(t).1 != 0.0, moves, held, BisectionStop::Width(0.0));
         begin
     }
 
     /// When the line through the sizes at the turning points, and where it is held, straight on the
     /// logarithm, comes down to this size.
     pub(super) fn falls_to(&self, size: f64) -> Option<f64> {
-        let start = (0.0, self.at(0.0).0);
+        let start = (0.0, self.phase_point_at(0.0).0);
         let points: Vec<(f64, f64)> = std::iter::once(start)
             .chain(self.turns.iter().copied())
             .chain(self.held)

@@ -96,7 +96,7 @@ impl SampledMotions {
             formula: times().map(|t| (t, place.call(&[t]), speed.call(&[t]))).collect(),
             truth: times()
                 .map(|t| {
-                    let (x, v) = path.at(t).unwrap_or((f64::NAN, f64::NAN));
+                    let (x, v) = path.phase_point_at(t).unwrap_or((f64::NAN, f64::NAN));
                     (t, x, v)
                 })
                 .collect(),
@@ -184,7 +184,7 @@ pub(super) fn judge(
         steady_states: vec![],
         spurious: 0,
         followed: None,
-        verdict: Verdict::of(deviation.is_some_and(|deviation| deviation <= tolerance)),
+        verdict: Verdict::from_passed(deviation.is_some_and(|deviation| deviation <= tolerance)),
     })
 }
 

@@ -79,7 +79,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// Passed or not.
-    pub fn of(passed: bool) -> Self {
+    pub fn from_passed(passed: bool) -> Self {
         if passed { Self::Pass } else { Self::Fail }
     }
 
@@ -463,7 +463,7 @@ pub fn judge_to(
             false => motion.by_harmonic(half_a_period),
         }),
         followed: None,
-        verdict: Verdict::of(pass),
+        verdict: Verdict::from_passed(pass),
     })
 }
 
@@ -513,7 +513,7 @@ fn in_convention_of(
     }
     let meant = OrbitTarget { convention: given, ..meant(oscillator, solution, &numbers) };
     let equilibrium = solution.equilibrium.evaluate(&numbers)?;
-    let motion = TrueMotion::of(oscillator, &meant, &numbers)?;
+    let motion = TrueMotion::follow(oscillator, &meant, &numbers)?;
     let Some(converted) = motion.amplitude_by_the_other(given, equilibrium) else {
         return Ok(None);
     };
@@ -889,7 +889,7 @@ fn meant_motion(
     meant: &OrbitTarget,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<TrueMotion, VerificationError> {
-    let found = TrueMotion::of(oscillator, meant, numbers);
+    let found = TrueMotion::follow(oscillator, meant, numbers);
     found.map_err(|error| validity::why_no_motion(oscillator, solution, numbers, error))
 }
 
@@ -911,7 +911,7 @@ fn about_the_cycle(truth: &TrueMotion, coordinate: Symbol) -> Option<validity::R
     Some(validity::Range {
         text: format!(
             "the true limit cycle turns at {coordinate} = {} and {does}",
-            decimal(cycle.at(0.0).0)
+            decimal(cycle.phase_point_at(0.0).0)
         ),
         outside: false,
     })

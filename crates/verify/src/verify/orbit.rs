@@ -65,10 +65,10 @@ impl Orbit {
     }
 
     /// Displacement and velocity, `t` between zero and the period.
-    fn at(&self, t: f64) -> (f64, f64) {
+    fn phase_point_at(&self, t: f64) -> (f64, f64) {
         match self {
-            Self::Swing(path) => path.at(t).unwrap_or((f64::NAN, f64::NAN)),
-            Self::LimitCycle(cycle) => cycle.at(t),
+            Self::Swing(path) => path.phase_point_at(t).unwrap_or((f64::NAN, f64::NAN)),
+            Self::LimitCycle(cycle) => cycle.phase_point_at(t),
         }
     }
 }
@@ -90,7 +90,7 @@ impl TrueMotion {
     ///
     /// # Errors
     /// There is none, or it cannot be followed.
-    pub(super) fn of(
+    pub(super) fn follow(
         oscillator: &Oscillator,
         meant: &OrbitTarget,
         numbers: &BTreeMap<Symbol, f64>,
@@ -145,7 +145,7 @@ impl TrueMotion {
         };
         let amplitude = match (meant.convention, &meant.limit_cycle) {
             (AmplitudeConvention::FirstHarmonic, None) => meant.amplitude_at(numbers).abs(),
-            _ => (orbit.at(0.0).0 - equilibrium).abs(),
+            _ => (orbit.phase_point_at(0.0).0 - equilibrium).abs(),
         };
         Self { frequency, orbit: Some(orbit), shift, amplitude }
     }
@@ -168,7 +168,7 @@ impl TrueMotion {
         let orbit = self.orbit.as_ref()?;
         Some(match convention {
             AmplitudeConvention::Initial => first_harmonic(orbit).0,
-            AmplitudeConvention::FirstHarmonic => orbit.at(0.0).0 - equilibrium,
+            AmplitudeConvention::FirstHarmonic => orbit.phase_point_at(0.0).0 - equilibrium,
         })
     }
 
@@ -185,7 +185,8 @@ impl TrueMotion {
     /// The time, the true position and the true velocity at the time `t` of the formula.
     pub(super) fn sample(&self, t: f64) -> (f64, f64, f64) {
         let place = (t + self.shift).rem_euclid(self.period());
-        let (x, v) = self.orbit.as_ref().map_or((f64::NAN, f64::NAN), |orbit| orbit.at(place));
+        let (x, v) =
+            self.orbit.as_ref().map_or((f64::NAN, f64::NAN), |orbit| orbit.phase_point_at(place));
         (t, x, v)
     }
 }
@@ -257,7 +258,7 @@ impl NumericOscillator {
     pub(super) fn force_at(&self, y: f64, v: f64) -> f64 {
         let position = self.rest.equilibrium() + y;
         let moving = self.moving.as_ref().map_or(0.0, |moving| moving.call(&[position, v]));
-        self.rest.at(y) + moving
+        self.rest.value(y) + moving
     }
 
     /// The period of a motion released at this distance from the equilibrium, by its energy.
@@ -296,7 +297,7 @@ impl NumericOscillator {
         let amplitude = near.amplitude;
         let equilibrium = self.rest.equilibrium();
         let step = 1e-3 * amplitude;
-        let slope = (self.rest.at(step) - self.rest.at(-step)) / (2.0 * step);
+        let slope = (self.rest.value(step) - self.rest.value(-step)) / (2.0 * step);
         let equation = AutonomousEquation {
             acceleration: &|x, v| -self.force_at(x - equilibrium, v),
             equilibrium,
@@ -352,7 +353,7 @@ fn first_harmonic(orbit: &Orbit) -> (f64, f64) {
     let period = orbit.period();
     let sample = |k: usize| {
         let phase = k as f64 / SAMPLES as f64;
-        let x = orbit.at(period * phase).0;
+        let x = orbit.phase_point_at(period * phase).0;
         (x * (TAU * phase).cos(), x * (TAU * phase).sin())
     };
     let sum = (0..SAMPLES).map(sample).fold((0.0, 0.0), |sum, (c, s)| (sum.0 + c, sum.1 + s));
@@ -367,7 +368,7 @@ pub(super) fn true_frequency(
 ) -> Result<f64, VerificationError> {
     let physics = NumericOscillator::new(oscillator, meant, numbers)?;
     match meant.limit_cycle {
-        Some(_) => TrueMotion::of(oscillator, meant, numbers).map(|truth| truth.frequency),
+        Some(_) => TrueMotion::follow(oscillator, meant, numbers).map(|truth| truth.frequency),
         None => physics.frequency(meant.amplitude_at(numbers)),
     }
 }

@@ -136,13 +136,13 @@ pub(super) fn reach(
     }
     // Over the many hilltops of a force that waves a balance has many solutions, and following it
     // finds one or another.
-    if MethodEntry::of(solution.method).motion == MotionEvaluation::Balance
+    if MethodEntry::for_method(solution.method).motion == MotionEvaluation::Balance
         && truth.has_waves_of_hilltops()
     {
         return None;
     }
     let mut amplitudes = truth.amplitudes();
-    let asked = truth.asked();
+    let asked = truth.given_amplitude();
     let known = NumbersCache::default();
     let error = |size: f64| {
         let true_frequency = truth.frequency(size)?;

@@ -77,7 +77,7 @@ struct ReleaseValues {
 impl ReleaseValues {
     /// # Errors
     /// A definition without a value.
-    fn of(
+    fn new(
         solution: &Solution,
         modulation: &Modulation,
         numbers: &BTreeMap<Symbol, f64>,
@@ -149,7 +149,7 @@ impl SlowMotion {
         numbers: &BTreeMap<Symbol, f64>,
     ) -> Result<Self, VerificationError> {
         let equilibrium = solution.equilibrium.evaluate(numbers)?;
-        let numbers = ReleaseValues::of(solution, modulation, numbers)?;
+        let numbers = ReleaseValues::new(solution, modulation, numbers)?;
         let (a, theta) = (modulation.amplitude, solution.phase());
         let place = numbers.put(&displacement(solution, theta)?)?;
         let rates =
@@ -205,7 +205,7 @@ impl SlowMotion {
     }
 
     /// Distance from the equilibrium and velocity.
-    pub(super) fn at(&self, t: f64) -> (f64, f64) {
+    pub(super) fn phase_point_at(&self, t: f64) -> (f64, f64) {
         let at = self.slow_at(t);
         match at[0] == 0.0 {
             true => (0.0, 0.0),
@@ -244,12 +244,12 @@ impl SlowMotion {
     pub(super) fn crossings(&self, until: f64) -> Vec<f64> {
         let count = (LOOKS * until / self.period).ceil().max(1.0) as usize;
         let time = |k: usize| until * k as f64 / count as f64;
-        let mut before = (0.0, self.at(0.0).0);
+        let mut before = (0.0, self.phase_point_at(0.0).0);
         let mut found = vec![];
         for k in 1..=count {
-            let now = (time(k), self.at(time(k)).0);
+            let now = (time(k), self.phase_point_at(time(k)).0);
             if before.1 * now.1 < 0.0
-                && let Ok(t) = find_root(|t| self.at(t).0, before.0, now.0)
+                && let Ok(t) = find_root(|t| self.phase_point_at(t).0, before.0, now.0)
             {
                 found.push(t);
             }

@@ -80,7 +80,7 @@ pub(super) fn judge(
     tolerance: f64,
 ) -> Result<Verification, VerificationError> {
     let symbols = symbol_values(oscillator, solution, numbers, None);
-    let judged = TransientPair::of(oscillator, solution, modulation, numbers)?;
+    let judged = TransientPair::new(oscillator, solution, modulation, numbers)?;
     let TransientPair { slow, truth, until, reason, start } = &judged;
     let crossings = slow.crossings(*until);
     let own: Vec<f64> = truth.crossings.iter().copied().filter(|t| t <= until).collect();
@@ -142,7 +142,7 @@ pub(super) fn judge(
             ),
             true_tenth: truth.falls_to(start.abs() / 10.0),
         }),
-        verdict: Verdict::of(pass),
+        verdict: Verdict::from_passed(pass),
     })
 }
 
@@ -156,7 +156,7 @@ pub(super) fn motions(
     modulation: &Modulation,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<Motions, VerificationError> {
-    let judged = TransientPair::of(oscillator, solution, modulation, numbers)?;
+    let judged = TransientPair::new(oscillator, solution, modulation, numbers)?;
     let rest = judged.slow.equilibrium;
     let count = samples(judged.until, judged.slow.period);
     let time = |k: usize| judged.until * k as f64 / count as f64;
@@ -165,8 +165,8 @@ pub(super) fn motions(
     let envelope = |t: f64| [0.0, PI].map(|phase| (t, rest + judged.slow.at_phase(t, phase)));
     let [upper, lower] = [0, 1].map(|side| times().map(|t| envelope(t)[side]).collect());
     Ok(Motions {
-        formula: times().map(|t| sample(t, judged.slow.at(t))).collect(),
-        truth: times().map(|t| sample(t, judged.truth.at(t))).collect(),
+        formula: times().map(|t| sample(t, judged.slow.phase_point_at(t))).collect(),
+        truth: times().map(|t| sample(t, judged.truth.phase_point_at(t))).collect(),
         envelope: Some([upper, lower]),
     })
 }
@@ -207,7 +207,7 @@ struct Errors {
 }
 
 impl TransientPair {
-    fn of(
+    fn new(
         oscillator: &Oscillator,
         solution: &Solution,
         modulation: &Modulation,
@@ -229,7 +229,7 @@ impl TransientPair {
         duration: f64,
     ) -> Result<Self, VerificationError> {
         let start = numbers.get(&AmplitudeConvention::Initial.symbol()).copied().unwrap_or(1.0);
-        let truth = FreeMotion::of(
+        let truth = FreeMotion::follow(
             oscillator,
             numbers,
             &Start {
@@ -251,7 +251,9 @@ impl TransientPair {
         let times = (0..=count).map(|k| until * k as f64 / count as f64);
         Errors {
             amplitude: largest(apart),
-            deviation: largest(times.map(|t| (slow.at(t).0 - truth.at(t).0).abs() / start)),
+            deviation: largest(
+                times.map(|t| (slow.phase_point_at(t).0 - truth.phase_point_at(t).0).abs() / start),
+            ),
         }
     }
 
@@ -267,7 +269,7 @@ impl TransientPair {
         let (mut defects, mut forces) = (0.0, 0.0);
         for k in 0..count {
             let t = self.until * k as f64 / count as f64;
-            let (y, v) = self.slow.at(t);
+            let (y, v) = self.slow.phase_point_at(t);
             let force = force.call(&[self.slow.equilibrium + y, v]);
             let defect = self.slow.acceleration(t)? + force;
             defects += defect * defect;

@@ -44,7 +44,8 @@ pub(super) fn ranges(
 ) -> Vec<Range> {
     let mut ranges: Vec<Range> = of_equation(oscillator, solution, numbers).into_iter().collect();
     if let Some(cycle) = &solution.limit_cycle {
-        let series = MethodEntry::of(solution.method).sees == ForceRepresentation::Derivatives
+        let series = MethodEntry::for_method(solution.method).sees
+            == ForceRepresentation::Derivatives
             && cycle.small_with.is_empty();
         // Without self-excitation there is no cycle to expand from.
         let feeds = numbers.get(&solution.small_parameter).is_some_and(|value| *value != 0.0);
@@ -77,7 +78,7 @@ pub(super) fn ranges(
         inner if inner > 0.0 => ranges.extend(positive_from(oscillator, solution, numbers, &truth)),
         _ => ranges.extend(vanishing(oscillator, solution, numbers, truth.largest_amplitude())),
     }
-    if MethodEntry::of(solution.method).sees == ForceRepresentation::Derivatives {
+    if MethodEntry::for_method(solution.method).sees == ForceRepresentation::Derivatives {
         ranges.extend(convergence(oscillator, solution, numbers));
     }
     if let Some(reach) = reach::reach(oscillator, solution, &truth, tolerance) {

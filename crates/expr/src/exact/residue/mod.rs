@@ -44,20 +44,20 @@ pub trait Work {
     type Output;
 
     /// Does it.
-    fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output;
+    fn run<A: Arithmetic>(self, arithmetic: A) -> Self::Output;
 }
 
 /// Does the work by the widest arithmetic of this processor.
 pub fn by_widest<W: Work>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     if let Some(wide) = wide::Wide::try_new() {
-        return work.by(wide);
+        return work.run(wide);
     }
     #[cfg(target_arch = "x86_64")]
     if let Some(narrow) = narrow::Narrow::try_new() {
-        return work.by(narrow);
+        return work.run(narrow);
     }
-    work.by(portable::Portable)
+    work.run(portable::Portable)
 }
 
 /// A prime, and what Montgomery's multiplication needs beside it. Residues are below the prime and

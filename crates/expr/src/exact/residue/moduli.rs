@@ -37,7 +37,7 @@ impl Moduli {
     /// # Panics
     ///
     /// Without any.
-    pub fn of(moduli: &[Modulus]) -> Self {
+    pub fn from_primes(moduli: &[Modulus]) -> Self {
         let last = moduli.len() - 1;
         let lanes = |part: fn(&Modulus) -> u64| {
             Lanes(std::array::from_fn(|lane| part(&moduli[lane.min(last)])))
@@ -242,12 +242,12 @@ mod tests {
     impl Work for LanesAgainstScalars {
         type Output = ();
 
-        fn by<A: Arithmetic>(self, arithmetic: A) {
+        fn run<A: Arithmetic>(self, arithmetic: A) {
             let moduli: Vec<Modulus> = primes_below(A::BITS, 48)
                 .take(WIDTH - 1)
                 .map(|prime| Modulus::new(prime, A::RADIX))
                 .collect();
-            let residues = Residues { arithmetic, moduli: Moduli::of(&moduli) };
+            let residues = Residues { arithmetic, moduli: Moduli::from_primes(&moduli) };
             let modulus = |lane: usize| &moduli[lane.min(WIDTH - 2)];
             let mut own: Vec<Lanes> = (3..40).map(|k| residues.small(k * k + 1)).collect();
             let inverses = {
@@ -288,7 +288,7 @@ mod tests {
 
     #[test]
     fn eight_primes_are_as_each_alone() {
-        LanesAgainstScalars.by(Portable);
+        LanesAgainstScalars.run(Portable);
         by_widest(LanesAgainstScalars);
     }
 }

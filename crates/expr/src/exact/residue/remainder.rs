@@ -275,7 +275,7 @@ mod tests {
     impl Work for RoundTrip {
         type Output = ();
 
-        fn by<A: Arithmetic>(self, arithmetic: A) {
+        fn run<A: Arithmetic>(self, arithmetic: A) {
             let primes: Vec<u64> = primes_below(A::BITS, 16).take(40).collect();
             let moduli: Vec<Modulus> =
                 primes.iter().map(|prime| Modulus::new(*prime, A::RADIX)).collect();
@@ -312,7 +312,7 @@ mod tests {
 
     #[test]
     fn a_number_is_what_its_residues_say() {
-        RoundTrip.by(Portable);
+        RoundTrip.run(Portable);
         by_widest(RoundTrip);
     }
 

@@ -73,11 +73,11 @@ pub fn convolve<A: Arithmetic>(
                             false => pairs(arithmetic, &left[start..], &right[..recent]),
                         };
                         let before =
-                            &tables.row(product.to, point)[tables.place(product.to, order)];
+                            &tables.row(product.to, point)[tables.offset(product.to, order)];
                         let sum = arithmetic.carry(arithmetic.merge(first, last));
                         arithmetic.add_product(sum, &residues.moduli.one, before)
                     };
-                    let place = tables.place(product.to, order);
+                    let place = tables.offset(product.to, order);
                     *tables.entry(product.to, point, place) = residues.reduce(sum);
                 }
             }
@@ -97,7 +97,7 @@ fn prepare<A: Arithmetic>(
     start: usize,
 ) {
     let arithmetic = residues.arithmetic;
-    let (orders, place) = (tables.row(product.to, point).len(), tables.place(product.to, start));
+    let (orders, place) = (tables.row(product.to, point).len(), tables.offset(product.to, start));
     for first in [start, start + TOGETHER / 2] {
         let left = &tables.row(product.left, point)[..start];
         let right = &tables.row(product.right, point)[..start];
@@ -251,7 +251,7 @@ pub fn mixture<A: Arithmetic>(
         let mut sum = arithmetic.none();
         for parts in parts.chunks(A::RUN) {
             for part in parts {
-                let entry = &tables.row(part.table, point)[tables.place(part.table, part.order)];
+                let entry = &tables.row(part.table, point)[tables.offset(part.table, part.order)];
                 sum = arithmetic.add_product(sum, &part.factor, entry);
             }
             sum = arithmetic.carry(sum);
@@ -269,7 +269,7 @@ pub fn vary<A: Arithmetic>(
     factor: Lanes,
     change: &[Lanes],
 ) {
-    let place = tables.place(table, order);
+    let place = tables.offset(table, order);
     for (point, change) in change.iter().enumerate() {
         let entry = tables.entry(table, point, place);
         *entry = residues.sum(*entry, residues.product(factor, *change));

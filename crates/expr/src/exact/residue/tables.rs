@@ -39,7 +39,7 @@ impl<'m> Tables<'m> {
     /// Where an order stands in a table: in rows too short for all of them, instead of one before
     /// it.
     #[inline(always)]
-    pub fn place(&self, table: usize, order: usize) -> usize {
+    pub fn offset(&self, table: usize, order: usize) -> usize {
         let length = self.places[table].1;
         if order < length { order } else { order % length }
     }

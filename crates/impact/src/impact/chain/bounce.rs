@@ -100,9 +100,9 @@ pub(super) struct Bounce {
 
 impl ChainBarrier {
     /// The barrier of this side, where there is one.
-    pub fn of(model: &Model, side: Side) -> Option<Self> {
+    pub fn from_model(model: &Model, side: Side) -> Option<Self> {
         let x = model.barrier(side).filter(|_| model.gamma > 0.0)?;
-        let spot = SwingAngle::at(side.sign() * x);
+        let spot = SwingAngle::new(side.sign() * x);
         Some(Self {
             side,
             spot,

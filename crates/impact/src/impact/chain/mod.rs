@@ -114,7 +114,7 @@ pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulat
     if let Some((side, _)) = model.depth(start.x) {
         return Err(ChainError::Inside(side));
     }
-    let barriers = [Side::Left, Side::Right].map(|side| ChainBarrier::of(model, side));
+    let barriers = [Side::Left, Side::Right].map(|side| ChainBarrier::from_model(model, side));
     let mut chain = Chain {
         model,
         settings,
@@ -215,10 +215,10 @@ impl<'a> Chain<'a> {
                 return self.held(x);
             }
             let side = if x > 0.0 { Side::Right } else { Side::Left };
-            StretchStart::Turn(side, SwingAngle::at(x.abs()), None)
+            StretchStart::Turn(side, SwingAngle::new(x.abs()), None)
         } else {
             let to = if velocity > 0.0 { Side::Right } else { Side::Left };
-            let spot = SwingAngle::at(to.sign() * x);
+            let spot = SwingAngle::new(to.sign() * x);
             let touched = self.barrier(to).filter(|barrier| barrier.spot == spot);
             let place = StretchStart::Leaving(to, spot, energy);
             touched
@@ -435,7 +435,7 @@ impl<'a> Chain<'a> {
             // It comes to rest before the bottom, where friction holds it.
             return None;
         }
-        let after = UndampedSwing::new(SwingAngle::at(angle).energy);
+        let after = UndampedSwing::new(SwingAngle::new(angle).energy);
         let mut turn = SwingAngle::turn(after.energy - self.below(&quarter(&after)));
         if let Some(ahead) = self.barrier(to)
             && turn.x > ahead.spot.x
@@ -578,7 +578,7 @@ impl<'a> Chain<'a> {
             self.path.push_closed([start, end], regime, form());
         }
         if self.t + time > self.settings.duration {
-            self.state = form().at(end - start).into();
+            self.state = form().phase_point_at(end - start).into();
             self.stop = Some(SimulationStop::Duration);
         }
         self.t = end;
@@ -602,7 +602,7 @@ impl<'a> Chain<'a> {
     fn integrate(&mut self) -> Option<StretchStart> {
         let left = Settings { duration: self.settings.duration - self.t, ..*self.settings };
         let [x, velocity] = self.state;
-        let motion = taylor::alone(*self.model, Start { x, velocity }, left);
+        let motion = taylor::simulate_one(*self.model, Start { x, velocity }, left);
         self.stop = Some(motion.stop.later(self.t));
         self.integrated = Some(motion);
         None
@@ -714,9 +714,9 @@ fn slowness(energy: f64) -> f64 {
 /// The area in the phase plane of the undamped swing of this amplitude, rad, and of the same
 /// between the barriers, units of m g L/omega.
 pub(super) fn actions(model: &Model, amplitude: f64) -> (f64, f64) {
-    let swing = UndampedSwing::new(SwingAngle::at(amplitude).energy);
+    let swing = UndampedSwing::new(SwingAngle::new(amplitude).energy);
     let reach = |side: Side| match model.barrier(side) {
-        Some(x) => swing.reach(&SwingAngle::at(side.sign() * x)).area,
+        Some(x) => swing.reach(&SwingAngle::new(side.sign() * x)).area,
         None => swing.quarter.area,
     };
     (4.0 * swing.quarter.area, 2.0 * (reach(Side::Left) + reach(Side::Right)))
@@ -731,8 +731,8 @@ fn closed(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) -> ClosedFo
     // The time from the bottom of the swing of mean energy to the phase that the place has in its
     // own.
     let phase = |energy: f64, place: f64| {
-        let (sine, _) = SwingAngle::at(place).phase(energy);
-        middle.reach(&SwingAngle::at(2.0 * (mean * sine).clamp(-1.0, 1.0).asin())).time
+        let (sine, _) = SwingAngle::new(place).phase(energy);
+        middle.reach(&SwingAngle::new(2.0 * (mean * sine).clamp(-1.0, 1.0).asin())).time
     };
     let [start, end] = [0, 1].map(|index| phase(energies[index], places[index]));
     ClosedForm::Swing {
@@ -766,7 +766,7 @@ mod tests {
         for amplitude in [0.01, 1.5, 3.0] {
             let start = Start { x: -amplitude, velocity: 0.0 };
             let formulas = chain(&model, start, &settings).expect("a chain");
-            let truth = taylor::alone(model, start, settings);
+            let truth = taylor::simulate_one(model, start, settings);
             let difference = formulas.difference(&truth, 2001);
             assert!(difference.displacement < 1e-9 * amplitude, "{amplitude}: {difference:?}");
             assert!(difference.velocity < 1e-9 * amplitude, "{amplitude}: {difference:?}");
@@ -784,7 +784,7 @@ mod tests {
             assert!((after.cos() - before.cos() - 0.03 * (before + after)).abs() < 1e-14);
         }
         // Held where the weight is less than the friction, as by the integration, to the end.
-        let truth = taylor::alone(model, Start::default(), settings);
+        let truth = taylor::simulate_one(model, Start::default(), settings);
         assert!((formulas.end_x - truth.end_x).abs() < 1e-3, "{} {}", formulas.end_x, truth.end_x);
         assert_eq!(formulas.end_velocity, 0.0);
     }
@@ -804,14 +804,15 @@ mod tests {
         let motion = chain(&model, start, &settings).expect("a chain");
         let pieces = motion.path.pieces();
         assert!(pieces.len() > 10);
-        let (x, _) = motion.path.at(0.0).expect("the start");
+        let (x, _) = motion.path.phase_point_at(0.0).expect("the start");
         assert!((x - start.x).abs() < 1e-12);
         for pair in pieces.windows(2) {
             assert_eq!(pair[0].end, pair[1].start);
             let (Some(before), Some(after)) = (pair[0].closed_form(), pair[1].closed_form()) else {
                 continue;
             };
-            let (left, right) = (before.at(pair[0].end - pair[0].start).0, after.at(0.0).0);
+            let (left, right) =
+                (before.phase_point_at(pair[0].end - pair[0].start).0, after.phase_point_at(0.0).0);
             assert!((left - right).abs() < 1e-8, "{left} {right} at {}", pair[0].end);
         }
     }

@@ -38,7 +38,7 @@ pub(super) struct SwingAngle {
 
 impl SwingAngle {
     /// The spot at this angle.
-    pub fn at(x: f64) -> Self {
+    pub fn new(x: f64) -> Self {
         let half = (0.5 * x).sin();
         Self { x, half, energy: 2.0 * half * half }
     }
@@ -166,7 +166,7 @@ mod tests {
     #[test]
     fn the_stretches_are_elliptic_integrals() {
         for amplitude in [1e-6, 0.01, 0.3, 1.0, 1.5, 2.5, 3.1, 3.13] {
-            let swing = UndampedSwing::new(SwingAngle::at(amplitude).energy);
+            let swing = UndampedSwing::new(SwingAngle::new(amplitude).energy);
             let m = 0.5 * swing.energy;
             let (first, second) = (ellipk(m).unwrap(), ellipe(m).unwrap());
             assert!((swing.quarter.time / first - 1.0).abs() < 1e-13, "{amplitude}");
@@ -175,7 +175,7 @@ mod tests {
             for part in [-0.999_999, -0.6, -0.1, 1e-9, 0.2, 0.5, 0.9, 0.999] {
                 let x: f64 = part * amplitude;
                 let phi = ((0.5 * x).sin() / m.sqrt()).asin();
-                let found = swing.reach(&SwingAngle::at(x));
+                let found = swing.reach(&SwingAngle::new(x));
                 let time = ellipf(phi, m).unwrap();
                 let area = 4.0 * (ellipeinc(phi, m).unwrap() - (1.0 - m) * time);
                 assert!(
@@ -196,7 +196,7 @@ mod tests {
     #[test]
     fn a_small_swing_keeps_the_digits_of_its_area() {
         for amplitude in [1e-12, 1e-7, 1e-4] {
-            let swing = UndampedSwing::new(SwingAngle::at(amplitude).energy);
+            let swing = UndampedSwing::new(SwingAngle::new(amplitude).energy);
             let m = 0.5 * swing.energy;
             assert!(
                 (swing.quarter.area / (PI * m * (1.0 + 0.125 * m)) - 1.0).abs() < 1e-14,
@@ -211,11 +211,11 @@ mod tests {
     #[test]
     fn the_area_grows_with_the_energy_as_the_time() {
         for (amplitude, x) in [(1.5, 0.323), (0.5, -0.2), (2.9, 1.0), (1.0, 2.0)] {
-            let energy = SwingAngle::at(amplitude).energy;
+            let energy = SwingAngle::new(amplitude).energy;
             let step = 1e-5 * energy;
             let [below, above] = [energy - step, energy + step]
-                .map(|energy| UndampedSwing::new(energy).reach(&SwingAngle::at(x)).area);
-            let time = UndampedSwing::new(energy).reach(&SwingAngle::at(x)).time;
+                .map(|energy| UndampedSwing::new(energy).reach(&SwingAngle::new(x)).area);
+            let time = UndampedSwing::new(energy).reach(&SwingAngle::new(x)).time;
             assert!(((above - below) / (2.0 * step) / time - 1.0).abs() < 1e-7, "{amplitude} {x}");
         }
     }

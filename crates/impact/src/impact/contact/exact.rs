@@ -131,7 +131,7 @@ impl ExactContact {
     /// Depth and velocity at a time since touch; before and after the contact those of its ends.
     ///
     /// Good to 1e-12 of the depth and of the greatest speed.
-    pub fn at(&self, time: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let time = within(time, self.duration);
         let falling = time > 0.5 * self.duration;
         let since = if falling { self.duration - time } else { time };
@@ -148,12 +148,12 @@ impl ExactContact {
 
     /// The depth at a time since touch, in the unit of x.
     pub fn position(&self, time: f64) -> f64 {
-        self.at(time).0
+        self.phase_point_at(time).0
     }
 
     /// The velocity at a time since touch, positive into the barrier.
     pub fn velocity(&self, time: f64) -> f64 {
-        self.at(time).1
+        self.phase_point_at(time).1
     }
 
     /// The motion as a parabola and odd sines, as many as are needed to stay within `tolerance` of
@@ -265,7 +265,7 @@ impl SineSeries {
     /// assert!(series.deviation <= 1e-6 && (series.at(contact.duration).1 + contact.exit_speed).abs() < 1e-3);
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
     /// ```
-    pub fn of(
+    pub fn from_motion(
         position: impl Fn(f64) -> f64,
         duration: f64,
         parabola: f64,
@@ -317,7 +317,7 @@ impl SineSeries {
     }
 
     /// Depth and velocity at a time since touch; before and after the contact those of its ends.
-    pub fn at(&self, time: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let time = within(time, self.duration);
         let mut depth = self.parabola * time * (self.duration - time);
         let mut velocity = self.parabola * (self.duration - 2.0 * time);
@@ -504,7 +504,7 @@ mod tests {
                     for part in 0..=40 {
                         let time = law.duration * f64::from(part) / 40.0;
                         let ((depth, velocity), (expected, expected_velocity)) =
-                            (contact.at(time), law.at(time));
+                            (contact.phase_point_at(time), law.phase_point_at(time));
                         assert!(
                             (depth - expected).abs() < 1e-12 * law.depth,
                             "{law:?} at {part}/40: {depth}"
@@ -555,7 +555,7 @@ mod tests {
                     let time = before + beyond * f64::from(part) / 8.0;
                     let expected =
                         (depth + centre) * (omega * (before + beyond - time)).cos() - centre;
-                    let (found, _) = contact.at(time);
+                    let (found, _) = contact.phase_point_at(time);
                     assert!(
                         (found - expected).abs() < bound * depth,
                         "{jump} at {jump_at}, {part}/8: {found} for {expected}"
@@ -600,7 +600,7 @@ mod tests {
             let fastest =
                 path.samples(201).fold(0.0_f64, |fastest, state| fastest.max(state.v.abs()));
             for state in path.samples(201) {
-                let (depth, velocity) = contact.at(state.t);
+                let (depth, velocity) = contact.phase_point_at(state.t);
                 assert!(
                     (depth - state.x).abs() < 2e-9 * deepest,
                     "{case} at {}: {depth} against {}",
@@ -614,7 +614,7 @@ mod tests {
                     state.v
                 );
             }
-            let ends = (contact.at(0.0), contact.at(contact.duration));
+            let ends = (contact.phase_point_at(0.0), contact.phase_point_at(contact.duration));
             assert!(
                 ends.0.0.abs() < 1e-15 * deepest && (ends.0.1 / speed - 1.0).abs() < 1e-10,
                 "{case}: {ends:?}"
@@ -681,7 +681,7 @@ mod tests {
             let mut worst = 0.0_f64;
             for part in 0..=777 {
                 let time = contact.duration * f64::from(part) / 777.0;
-                worst = worst.max((series.at(time).0 - contact.position(time)).abs());
+                worst = worst.max((series.phase_point_at(time).0 - contact.position(time)).abs());
             }
             assert!(worst <= 1.1e-6 * contact.depth, "{case}: {}", worst / contact.depth);
             assert!(series.closed_form(9).starts_with("d(s) = "), "{}", series.closed_form(9));
@@ -736,7 +736,7 @@ mod tests {
         ) {
             for preload in [preload, -preload] {
                 if let Ok(contact) = ExactContact::new(|d| preload + stiffness * d.powf(exponent), speed) {
-                    let (depth, velocity) = contact.at(time);
+                    let (depth, velocity) = contact.phase_point_at(time);
                     prop_assert!(depth.is_finite() && velocity.is_finite(), "{depth} {velocity}");
                     prop_assert!(depth <= contact.depth * (1.0 + 1e-9) && depth >= 0.0, "{depth} of {}", contact.depth);
                     let energy = |d: f64| preload * d + stiffness / (exponent + 1.0) * d.powf(exponent + 1.0);

@@ -163,7 +163,7 @@ impl HuntCrossley {
     /// Depth and velocity at a time since touch; before and after the contact those of its ends.
     ///
     /// Good to 1e-12 of D and v.
-    pub fn at(&self, time: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let time = within(time, self.duration);
         let m = self.exponent + 1.0;
         let left = self.duration - time;
@@ -182,12 +182,12 @@ impl HuntCrossley {
 
     /// The depth at a time since touch, in the unit of x.
     pub fn position(&self, time: f64) -> f64 {
-        self.at(time).0
+        self.phase_point_at(time).0
     }
 
     /// The velocity at a time since touch, positive into the barrier.
     pub fn velocity(&self, time: f64) -> f64 {
-        self.at(time).1
+        self.phase_point_at(time).1
     }
 
     /// Velocity and force, per unit of mass, at a depth on the way in; beyond the greatest depth
@@ -570,7 +570,7 @@ mod tests {
                     );
                     let mut peak = 0.0_f64;
                     for state in path.samples(401) {
-                        let (depth, velocity) = contact.at(state.t);
+                        let (depth, velocity) = contact.phase_point_at(state.t);
                         assert!(
                             (depth - state.x).abs() < 1e-9 * deepest,
                             "{case} at {}: {depth}",
@@ -758,7 +758,7 @@ mod tests {
                 prop_assert!(x.is_finite() && x >= 0.0);
             }
             if let Ok(contact) = HuntCrossley::new(exponent, stiffness, damping, speed) {
-                let (depth, velocity) = contact.at(time);
+                let (depth, velocity) = contact.phase_point_at(time);
                 prop_assert!((0.0..=contact.depth * (1.0 + 1e-12)).contains(&depth), "{contact:?} at {time}");
                 prop_assert!(velocity.abs() <= speed * (1.0 + 1e-9), "{contact:?} at {time}: {velocity}");
                 prop_assert!((0.0..=1.0).contains(&contact.restitution) && contact.energy_lost >= 0.0);

@@ -57,7 +57,7 @@ impl LineContact {
     }
 
     /// Depth and velocity at a time since touch.
-    pub(super) fn at(&self, time: f64) -> (f64, f64) {
+    pub(super) fn phase_point_at(&self, time: f64) -> (f64, f64) {
         let swing = self.speed / self.frequency;
         let (sine, cosine) = (0.5 * self.frequency * time).sin_cos();
         let depth = 2.0 * sine * (swing * cosine - self.centre * sine);

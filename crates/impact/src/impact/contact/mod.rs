@@ -235,7 +235,7 @@ mod tests {
         let header = "| gamma | T, power law | T, first order | its estimate | T, second order | its estimate | D, second order |";
         let rows = [1e8, 1e6, 1e4, 1e2].map(|stiffness| {
             let touch = Touch { stiffness, ..Touch::default() };
-            let exact = touch.by(ContactLaw::Exact).unwrap();
+            let exact = touch.contact_by(ContactLaw::Exact).unwrap();
             let plain = PowerLaw::new(1.5, stiffness, touch.speed).unwrap();
             let preload = touch.barrier.sin();
             let [first, second] =

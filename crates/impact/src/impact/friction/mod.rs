@@ -123,7 +123,7 @@ pub fn study(setup: FrictionSetup) -> Result<FrictionStudy, FrictionError> {
         return Err(FrictionError::Speed(*speed));
     }
     Ok(FrictionStudy {
-        rows: speeds.iter().copied().map(SpeedRow::at).collect(),
+        rows: speeds.iter().copied().map(SpeedRow::new).collect(),
         near_rest: near_rest::near_rest(alpha, amplitude)?,
         setup,
     })

@@ -80,7 +80,7 @@ impl Creep {
     /// The place by the formula of the creep, this long after rest, rad, up to the end of the
     /// motion; nothing where it swings.
     pub fn formula(&self, t: f64) -> Option<f64> {
-        self.without_inertia.as_ref()?.at(t)
+        self.without_inertia.as_ref()?.position_at(t)
     }
 }
 
@@ -196,7 +196,7 @@ pub(super) fn near_rest(alpha: f64, amplitude: f64) -> Result<NearRest, Friction
     let until = (stop.t + (8.0 / creep.rate_linear).min(40.0)).max(TAU);
     let coulomb = swing(alpha, Friction::Exact, -amplitude, until)?;
     let arctangent = swing(alpha, Friction::Arctangent, -amplitude, until)?;
-    let (x, velocity) = arctangent.path.at(stop.t).unwrap_or((stop.x, 0.0));
+    let (x, velocity) = arctangent.path.phase_point_at(stop.t).unwrap_or((stop.x, 0.0));
     Ok(NearRest {
         stop,
         half_swings,
@@ -214,7 +214,9 @@ fn first_cycle(motion: &Simulation) -> FirstCycle {
     let until = turns.nth(1).map_or(TAU.min(motion.end_time), |turn| turn.t);
     // The middles of equal times.
     let speeds: Vec<f64> = (0..POINTS)
-        .filter_map(|index| motion.path.at(until * (index as f64 + 0.5) / POINTS as f64))
+        .filter_map(|index| {
+            motion.path.phase_point_at(until * (index as f64 + 0.5) / POINTS as f64)
+        })
         .map(|(_, velocity)| velocity.abs())
         .collect();
     let law = |speed: f64| FRAC_2_PI * (STEEPNESS * speed).atan();
@@ -224,7 +226,7 @@ fn first_cycle(motion: &Simulation) -> FirstCycle {
     };
     let way: f64 = speeds.iter().sum();
     let work: f64 = speeds.iter().map(|speed| law(*speed) * speed).sum();
-    let at_the_turn = motion.path.at(until).map_or(0.0, |(_, velocity)| velocity.abs());
+    let at_the_turn = motion.path.phase_point_at(until).map_or(0.0, |(_, velocity)| velocity.abs());
     let slowest = speeds.iter().copied().fold(at_the_turn, f64::min);
     FirstCycle {
         until,
@@ -241,7 +243,7 @@ fn creep(alpha: f64, x: f64) -> Result<Creep, FrictionError> {
     let (creeps, rate_linear) = (damping > 2.0, slow_rate(damping));
     let duration = 10.0 / rate_linear;
     let motion = swing(alpha, Friction::Arctangent, x, duration)?;
-    let at = |t: f64| motion.path.at(t).map_or(f64::NAN, |(x, _)| x);
+    let at = |t: f64| motion.path.phase_point_at(t).map_or(f64::NAN, |(x, _)| x);
     // Eight times slower than the rate |100 x'| is small, and the motion is that of the linear
     // equation.
     let step = (0.5 / rate_linear).min(1.0);
@@ -262,7 +264,7 @@ fn creep(alpha: f64, x: f64) -> Result<Creep, FrictionError> {
             .map(|t| CreepSample {
                 t,
                 x: at(t),
-                formula: without_inertia.as_ref().and_then(|creep| creep.at(t)),
+                formula: without_inertia.as_ref().and_then(|creep| creep.position_at(t)),
             })
             .into(),
         without_inertia,
@@ -307,7 +309,7 @@ impl WithoutInertia {
         let rate = 0.5 * PI / (STEEPNESS * alpha);
         let start = Point { t: 0.0, y: [(0.5 * PI * (x.abs().sin() / alpha).min(1.0)).sin().ln()] };
         let falls = move |_: f64, [log]: &[f64; 1], rates: &mut [f64; 1]| {
-            *rates = [-rate * place(alpha, *log).cos()]
+            *rates = [-rate * creep_position(alpha, *log).cos()]
         };
         let options = IntegrationOptions::with_tolerance(TOLERANCE);
         let logarithm = integrate_first_order(falls, start, duration, &[], &options);
@@ -319,14 +321,14 @@ impl WithoutInertia {
     }
 
     /// The place after this time, rad.
-    fn at(&self, t: f64) -> Option<f64> {
+    fn position_at(&self, t: f64) -> Option<f64> {
         let [log] = self.logarithm.state_at(t)?.y;
-        Some(self.side * place(self.alpha, log))
+        Some(self.side * creep_position(self.alpha, log))
     }
 }
 
 /// |x| of the creep without inertia from log y.
-fn place(alpha: f64, log: f64) -> f64 {
+fn creep_position(alpha: f64, log: f64) -> f64 {
     (FRAC_2_PI * alpha * log.exp().min(1.0).asin()).asin()
 }
 
@@ -387,7 +389,7 @@ mod tests {
     fn the_creep_solves_its_equation() {
         for (alpha, start) in [(0.3, 0.2), (0.95, -1.058), (0.8, -0.479), (0.5, 0.5_f64.asin())] {
             let creep = WithoutInertia::from_rest(alpha, start, 100.0).expect("a creep");
-            let at = |t: f64| creep.at(t).expect("a place");
+            let at = |t: f64| creep.position_at(t).expect("a place");
             assert!((at(0.0) - start).abs() < 1e-13, "{alpha}: {}", at(0.0));
             let step = 1e-3;
             for t in [0.5, 5.0, 40.0] {

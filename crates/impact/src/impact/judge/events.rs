@@ -68,7 +68,7 @@ fn index(place: HybridMode, stuck: bool) -> usize {
     region * MOTIONS + motion
 }
 
-fn place(index: usize) -> (HybridMode, bool) {
+fn mode_and_sticking(index: usize) -> (HybridMode, bool) {
     let direction = [0.0, 1.0, -1.0, 0.0][index % MOTIONS];
     let region = REGIONS[(index / MOTIONS).min(REGIONS.len() - 1)];
     (HybridMode { region, direction }, index % MOTIONS == 3)
@@ -76,7 +76,7 @@ fn place(index: usize) -> (HybridMode, bool) {
 
 impl Coordinate {
     /// x itself, or the depth in the barrier of a region.
-    fn of(model: &Model, region: Regime) -> Self {
+    fn for_region(model: &Model, region: Regime) -> Self {
         match region {
             Regime::Contact(side) | Regime::Detached(side) => {
                 Self { sign: side.sign(), origin: model.barrier(side).unwrap_or_default() }
@@ -88,7 +88,7 @@ impl Coordinate {
 
 /// All but friction, at rest, in the direction of x.
 fn force_at_rest(model: &Model, region: Regime, t: f64, value: f64) -> f64 {
-    let coordinate = Coordinate::of(model, region);
+    let coordinate = Coordinate::for_region(model, region);
     let contact = match region {
         Regime::Contact(_) => model.contact(value, 0.0),
         _ => 0.0,
@@ -144,7 +144,7 @@ fn phase<'a>(
     settings: &Settings,
     number: usize,
 ) -> (ode::IntegrationPhase<'a>, Vec<JudgeEvent>) {
-    let (place, stuck) = place(number);
+    let (place, stuck) = mode_and_sticking(number);
     let HybridMode { region, direction } = place;
     if stuck {
         let (event, meaning) = letting_go(model, place);
@@ -157,7 +157,7 @@ fn phase<'a>(
     watched.push(turning(model, place));
     watched.extend(settings.rest_energy.map(|energy| fall_to_rest(model, region, energy)));
     let (events, meanings) = watched.into_iter().unzip();
-    let coordinate = Coordinate::of(model, region);
+    let coordinate = Coordinate::for_region(model, region);
     let swing =
         move |t: f64, x: f64, velocity: f64| model.field(t, x) + model.damping(velocity, direction);
     let phase = match region {
@@ -172,7 +172,7 @@ fn phase<'a>(
 
 /// Held by friction, until all the other forces together exceed it.
 fn letting_go(model: &Model, HybridMode { region, .. }: HybridMode) -> Watched<'_> {
-    let sign = Coordinate::of(model, region).sign;
+    let sign = Coordinate::for_region(model, region).sign;
     let excess = move |t: f64, value: f64, _: f64| {
         force_at_rest(model, region, t, value).abs() - model.alpha
     };
@@ -213,7 +213,7 @@ fn ends_of_contact(
     HybridMode { region, direction }: HybridMode,
     side: Side,
 ) -> Vec<Watched<'_>> {
-    let Coordinate { sign, origin } = Coordinate::of(model, region);
+    let Coordinate { sign, origin } = Coordinate::for_region(model, region);
     let to = move |region: Regime| index(HybridMode { region, direction }, false);
     let release = move |state: ode::State| {
         let v = sign * state.v.min(0.0);
@@ -247,14 +247,14 @@ fn turning(model: &Model, HybridMode { region, direction }: HybridMode) -> Watch
         (from_rest(model, region, state.t, state.x), state)
     };
     let turn = Event::switch(move |_, _, v| v, next);
-    let inwards = direction * Coordinate::of(model, region).sign > 0.0;
+    let inwards = direction * Coordinate::for_region(model, region).sign > 0.0;
     let turn = if inwards { turn.falling() } else { turn.rising() };
     (turn, JudgeEvent::Turn)
 }
 
 /// The energy falls to that of rest, and the run ends.
 fn fall_to_rest(model: &Model, region: Regime, rest_energy: f64) -> Watched<'_> {
-    let coordinate = Coordinate::of(model, region);
+    let coordinate = Coordinate::for_region(model, region);
     let energy = move |_: f64, value: f64, v: f64| {
         let stored = match region {
             Regime::Contact(_) => model.elastic_energy(value),
@@ -275,7 +275,7 @@ pub(in crate::impact) fn follow(
     let (phases, meanings): (Vec<_>, Vec<_>) =
         (0..REGIONS.len() * MOTIONS).map(|number| phase(model, settings, number)).unzip();
     let region = beginning(model, start);
-    let Coordinate { sign, origin } = Coordinate::of(model, region);
+    let Coordinate { sign, origin } = Coordinate::for_region(model, region);
     let first = match start.velocity {
         _ if !model.sticks() => index(HybridMode { region, direction: 0.0 }, false),
         0.0 => from_rest(model, region, 0.0, sign * (start.x - origin)),
@@ -295,13 +295,13 @@ pub(in crate::impact) fn follow(
         stiff: false,
         interrupt: settings.interrupt,
     };
-    let first_region = place(first).0.region;
+    let first_region = mode_and_sticking(first).0.region;
     let begin = ode::State {
         t: 0.0,
         x: match first_region {
             Regime::Free => start.x,
             first => {
-                let Coordinate { sign, origin } = Coordinate::of(model, first);
+                let Coordinate { sign, origin } = Coordinate::for_region(model, first);
                 sign * (start.x - origin)
             }
         },
@@ -348,7 +348,7 @@ fn contacts_and_turns(
         turns.push(TurningPoint { t: 0.0, x: start.x });
     }
     for EventOccurrence { phase, event, state, .. } in trajectory.occurrences().iter().copied() {
-        let region = place(phase).0.region;
+        let region = mode_and_sticking(phase).0.region;
         match meanings.get(phase).and_then(|list| list.get(event)) {
             Some(&JudgeEvent::Touch(side)) => {
                 let speed = (side.sign() * state.v).max(0.0);
@@ -367,8 +367,10 @@ fn contacts_and_turns(
                 {
                     enter(&mut impacts, (model, settings), side, state.t, [0.0, 0.0]);
                 }
-                turns
-                    .push(TurningPoint { t: state.t, x: Coordinate::of(model, region).x(state.x) });
+                turns.push(TurningPoint {
+                    t: state.t,
+                    x: Coordinate::for_region(model, region).x(state.x),
+                });
                 if matches!(region, Regime::Contact(_))
                     && let Some(impact) = impacts.last_mut()
                 {
@@ -403,7 +405,7 @@ fn end_in_x(model: &Model, trajectory: &Trajectory) -> (f64, f64) {
         .rev()
         .find_map(|pair| trajectory.phase_at(0.5 * (pair[0] + pair[1])))
         .unwrap_or(0);
-    let coordinate = Coordinate::of(model, place(last_phase).0.region);
+    let coordinate = Coordinate::for_region(model, mode_and_sticking(last_phase).0.region);
     let end = trajectory.end();
     (coordinate.x(end.x), coordinate.sign * end.v)
 }
@@ -416,8 +418,8 @@ fn path_of(model: &Model, settings: &Settings, trajectory: Trajectory) -> Simula
         for pair in knots.windows(2) {
             let [from, to] = [pair[0], pair[1]];
             let phase = path.judged_phase(0.5 * (from + to)).unwrap_or(0);
-            let (HybridMode { region, .. }, stuck) = place(phase);
-            let Coordinate { origin, sign } = Coordinate::of(model, region);
+            let (HybridMode { region, .. }, stuck) = mode_and_sticking(phase);
+            let Coordinate { origin, sign } = Coordinate::for_region(model, region);
             let regime = if stuck { Regime::Stuck } else { region };
             path.push_judged([from, to], regime, [origin, sign]);
         }

@@ -375,19 +375,20 @@ impl TrueImpact {
 
     /// Displacement and velocity at a time between release and return, whose ends stand for all
     /// before and after.
-    pub fn at(&self, t: f64) -> (f64, f64) {
+    pub fn phase_point_at(&self, t: f64) -> (f64, f64) {
         let barrier = self.touch.x;
         let t = t.clamp(0.0, self.period);
         if t < self.touch.t {
             return self.flight(t);
         }
         if t < self.exit.t {
-            let (depth, v) = self.contact.at(t - self.touch.t).unwrap_or((0.0, self.exit.v));
+            let (depth, v) =
+                self.contact.phase_point_at(t - self.touch.t).unwrap_or((0.0, self.exit.v));
             return (barrier + depth, v);
         }
         if let Some(back) = &self.back {
             let end = back.end();
-            let (gone, v) = back.at(t - self.exit.t).unwrap_or((end.x, end.v));
+            let (gone, v) = back.phase_point_at(t - self.exit.t).unwrap_or((end.x, end.v));
             return (barrier - gone, -v);
         }
         let (x, v) = self.flight(self.period - t);
@@ -397,7 +398,7 @@ impl TrueImpact {
     /// Displacement and velocity on the approach.
     fn flight(&self, t: f64) -> (f64, f64) {
         let way = self.approach.end().x;
-        match self.approach.at(t) {
+        match self.approach.phase_point_at(t) {
             Some((gone, v)) => (self.touch.x - (way - gone), v),
             None => (self.touch.x, self.touch.v),
         }
@@ -417,7 +418,7 @@ impl TrueImpact {
 /// ```
 pub fn deviation(closed_form: &ThreePhases, truth: &TrueImpact) -> Deviation {
     let true_limits = [0.0, truth.touch.t, truth.exit.t, truth.period];
-    let true_position = |t: f64| truth.at(t).0;
+    let true_position = |t: f64| truth.phase_point_at(t).0;
     let mut phases = [0.0; 3];
     let mut aligned = [0.0; 3];
     for (index, phase) in closed_form.phases.iter().enumerate() {
@@ -426,7 +427,7 @@ pub fn deviation(closed_form: &ThreePhases, truth: &TrueImpact) -> Deviation {
         // As long as both last.
         let common = (to - from).min(phase.end - phase.start);
         aligned[index] = largest(0.0, common, |elapsed| {
-            phase.at(phase.start + elapsed).0 - true_position(from + elapsed)
+            phase.phase_point_at(phase.start + elapsed).0 - true_position(from + elapsed)
         });
     }
     // The contact of the closed form falls into another true phase and is short: seen there with a
@@ -535,7 +536,7 @@ mod tests {
             near(truth.penetration, depth, 1e-12);
             near(truth.duration, duration, 2e-12);
             near(truth.period, 2.0 * approach + duration, 1e-11);
-            near(truth.at(truth.period).0, -1.5, 1e-11);
+            near(truth.phase_point_at(truth.period).0, -1.5, 1e-11);
             assert!(truth.energy_drift < 1e-10, "drift {}", truth.energy_drift);
         }
     }

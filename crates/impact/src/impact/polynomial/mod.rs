@@ -51,24 +51,24 @@ impl Roots {
 
 /// p(u).
 pub(super) fn value(coefficients: &[f64], u: f64) -> f64 {
-    let [value] = values(alone(coefficients), &[u]);
+    let [value] = values(as_lane(coefficients), &[u]);
     value
 }
 
 /// p(u) and p'(u).
 pub(super) fn value_and_slope(coefficients: &[f64], u: f64) -> (f64, f64) {
-    let ([value], [slope]) = values_and_slopes(alone(coefficients), &[u]);
+    let ([value], [slope]) = values_and_slopes(as_lane(coefficients), &[u]);
     (value, slope)
 }
 
 /// A bound on |p(u) - p(0)| for 0 <= u <= h.
 pub(super) fn variation(coefficients: &[f64], h: f64) -> f64 {
-    let [sum] = variations(alone(coefficients), &[h]);
+    let [sum] = variations(as_lane(coefficients), &[h]);
     sum
 }
 
 /// One polynomial as one lane.
-fn alone(coefficients: &[f64]) -> &[[f64; 1]] {
+fn as_lane(coefficients: &[f64]) -> &[[f64; 1]] {
     coefficients.as_chunks().0
 }
 
@@ -101,7 +101,7 @@ pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots
     };
     // Where it leaves zero its value at the end is that of p/u^k.
     let end = if zeros == 0 { end } else { value(coefficients, h) };
-    let [changes] = changes_of_sign(alone(coefficients), &[h]);
+    let [changes] = changes_of_sign(as_lane(coefficients), &[h]);
     if changes == 0.0 && first * end > 0.0 {
         return found;
     }
@@ -193,7 +193,7 @@ pub(super) fn bracketed(
     (to, end): (f64, f64),
 ) -> f64 {
     let [place] =
-        crossings(alone(coefficients), &[level], (&[from], &[start]), (&[to], &[end]), &[true]);
+        crossings(as_lane(coefficients), &[level], (&[from], &[start]), (&[to], &[end]), &[true]);
     place
 }
 

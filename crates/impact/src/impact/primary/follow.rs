@@ -204,7 +204,7 @@ impl<'a> PrimaryRun<'a> {
         self.regime = PrimaryRegime::Free(direction);
         let PrimaryState { x, velocity, y, speed } = self.state;
         for side in [Side::Left, Side::Right] {
-            if x != self.place(side) {
+            if x != self.barrier_position(side) {
                 continue;
             }
             let push = match velocity == 0.0 {
@@ -230,7 +230,7 @@ impl<'a> PrimaryRun<'a> {
     }
 
     /// A barrier's place.
-    fn place(&self, side: Side) -> f64 {
+    fn barrier_position(&self, side: Side) -> f64 {
         self.case.model.barrier(side).unwrap_or(f64::INFINITY * side.sign())
     }
 
@@ -299,10 +299,10 @@ impl<'a> PrimaryRun<'a> {
         )?;
         self.turns_of(&path, |state| state[2], |time| time);
         for met in path.occurrences().iter().filter(|met| Some(met.event) == swings) {
-            self.swings.extend(path.at(met.time).map(|state| (met.time, state[0])));
+            self.swings.extend(path.states_at(met.time).map(|state| (met.time, state[0])));
         }
         let (reason, end) = (path.reason(), path.end());
-        let last = path.at(end).unwrap_or(start);
+        let last = path.states_at(end).unwrap_or(start);
         self.state = PrimaryState { x: last[0], velocity: last[1], y: last[2], speed: last[3] };
         self.keep_accounts(&last[4..], &followed);
         self.path.push(self.t, end, PrimarySegment::Flight(path));
@@ -323,7 +323,7 @@ impl<'a> PrimaryRun<'a> {
     }
 
     fn enter(&mut self, side: Side, direction: f64) {
-        self.state.x = self.place(side);
+        self.state.x = self.barrier_position(side);
         self.begin_impact(side, 0.0);
         self.regime = PrimaryRegime::Contact(side, direction);
     }
@@ -343,7 +343,7 @@ impl<'a> PrimaryRun<'a> {
     }
 
     fn leave(&mut self, side: Side, direction: f64) {
-        self.state.x = self.place(side);
+        self.state.x = self.barrier_position(side);
         let (t, taken, velocity) = (self.t, self.taken, self.state.velocity);
         if let Some(impact) = self.impacts.last_mut() {
             impact.exit_time = Some(t);
@@ -354,7 +354,7 @@ impl<'a> PrimaryRun<'a> {
     }
 
     fn touch(&mut self, side: Side, direction: f64) -> Result<PathEnd, PrimaryError> {
-        let place = self.place(side);
+        let place = self.barrier_position(side);
         let followed = self.equations.contact(side, place, direction)?;
         let depth = (side.sign() * (self.state.x - place)).max(0.0);
         // From a touch without speed the variable w would never leave its zero.
@@ -378,12 +378,12 @@ impl<'a> PrimaryRun<'a> {
         let path = followed.system.solve(0.0, &start, LONGEST_CONTACT, &events, &self.options())?;
         self.turns_of(&path, |state| state[2], |_| f64::NAN);
         let turns = path.occurrences().iter().filter(|met| met.event == 3);
-        let turns: Vec<Vec<f64>> = turns.filter_map(|met| path.at(met.time)).collect();
+        let turns: Vec<Vec<f64>> = turns.filter_map(|met| path.states_at(met.time)).collect();
         let deepest = turns.iter().map(|state| state[0] * state[0]).fold(depth, f64::max);
         let swing = |state: &Vec<f64>| (state[4], place + side.sign() * state[0] * state[0]);
         self.swings.extend(turns.iter().map(swing));
         let reason = path.reason();
-        let last = path.at(path.end()).unwrap_or(start);
+        let last = path.states_at(path.end()).unwrap_or(start);
         let w = last[0].max(0.0);
         self.state = PrimaryState {
             x: place + side.sign() * w * w,
@@ -419,7 +419,7 @@ impl<'a> PrimaryRun<'a> {
     /// Out of a barrier that comes back more slowly than the pendulum: as free as in flight, until
     /// it is out, or slow enough to be pushed again.
     fn let_go(&mut self, side: Side, direction: f64) -> Result<PathEnd, PrimaryError> {
-        let place = self.place(side);
+        let place = self.barrier_position(side);
         let sign = Expr::from(side.sign() as i64);
         let events = [
             Event::record(own("y'")),
@@ -464,7 +464,7 @@ impl<'a> PrimaryRun<'a> {
         )?;
         self.turns_of(&path, |state| state[0], |time| time);
         let (reason, end) = (path.reason(), path.end());
-        let last = path.at(end).unwrap_or(start);
+        let last = path.states_at(end).unwrap_or(start);
         self.state = PrimaryState { x, velocity: 0.0, y: last[0], speed: last[1] };
         self.keep_accounts(&last[2..], &followed);
         self.path.push(self.t, end, PrimarySegment::Held { path, x });
@@ -482,7 +482,7 @@ impl<'a> PrimaryRun<'a> {
     /// The turning points of the main mass in this piece.
     fn turns_of(&mut self, path: &Path, y: impl Fn(&[f64]) -> f64, time: impl Fn(f64) -> f64) {
         for met in path.occurrences().iter().filter(|met| met.event == 0) {
-            if let Some(state) = path.at(met.time) {
+            if let Some(state) = path.states_at(met.time) {
                 let t = time(met.time);
                 // In a contact the time is a state of its own.
                 let t = if t.is_nan() { state.get(4).copied().unwrap_or(self.t) } else { t };

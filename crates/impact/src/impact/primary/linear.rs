@@ -37,10 +37,13 @@ pub struct UndampedAndLocked {
 impl Primary {
     /// The two linear cases beside the damper.
     pub fn others(&self) -> UndampedAndLocked {
-        UndampedAndLocked { without: self.alone(self.mass), locked: self.alone(self.mass + 1.0) }
+        UndampedAndLocked {
+            without: self.single_mass(self.mass),
+            locked: self.single_mass(self.mass + 1.0),
+        }
     }
 
-    fn alone(&self, mass: f64) -> Alone {
+    fn single_mass(&self, mass: f64) -> Alone {
         let decay = 0.5 * self.damping / mass;
         let square = self.stiffness / mass - decay * decay;
         let driven = self.force != 0.0;

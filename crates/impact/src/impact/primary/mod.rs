@@ -288,8 +288,8 @@ impl PrimaryMotion {
     /// assert!((case.energy(state) / motion.energy.start - 1.0).abs() < 1e-9); // nothing damps
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn at(&self, time: f64) -> Option<PrimaryState> {
-        self.path.at(time)
+    pub fn state_at(&self, time: f64) -> Option<PrimaryState> {
+        self.path.state_at(time)
     }
 
     /// Whether it was followed as long as asked.
@@ -305,7 +305,7 @@ impl PrimaryMotion {
     /// The largest |y| from this time on, by its turning points and the end.
     pub fn largest_since(&self, time: f64) -> f64 {
         let turns = self.turns.iter().filter(|(at, _)| *at >= time).map(|(_, y)| y.abs());
-        let end = self.at(self.end).map_or(0.0, |state| state.y.abs());
+        let end = self.state_at(self.end).map_or(0.0, |state| state.y.abs());
         turns.fold(end, f64::max)
     }
 }

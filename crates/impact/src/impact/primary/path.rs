@@ -31,14 +31,14 @@ pub(super) enum PrimarySegment {
 
 impl PrimarySegment {
     /// The state at a time within the piece.
-    fn at(&self, time: f64) -> Option<PrimaryState> {
+    fn state_at(&self, time: f64) -> Option<PrimaryState> {
         match self {
             Self::Flight(path) => {
-                let state = path.at(time.min(path.end()))?;
+                let state = path.states_at(time.min(path.end()))?;
                 Some(PrimaryState { x: state[0], velocity: state[1], y: state[2], speed: state[3] })
             }
             Self::Contact { path, side, place } => {
-                let state = path.at(own_time(path, time)?)?;
+                let state = path.states_at(own_time(path, time)?)?;
                 Some(PrimaryState {
                     x: place + side.sign() * state[0] * state[0],
                     velocity: state[1],
@@ -47,7 +47,7 @@ impl PrimarySegment {
                 })
             }
             Self::Held { path, x } => {
-                let state = path.at(time.min(path.end()))?;
+                let state = path.states_at(time.min(path.end()))?;
                 Some(PrimaryState { x: *x, velocity: 0.0, y: state[0], speed: state[1] })
             }
         }
@@ -56,7 +56,7 @@ impl PrimarySegment {
 
 /// s at this t: the last of its states grows with it.
 fn own_time(path: &Path, time: f64) -> Option<f64> {
-    let clock = |s: f64| path.at(s).map(|state| state[4]);
+    let clock = |s: f64| path.states_at(s).map(|state| state[4]);
     let end = path.end();
     if time >= clock(end)? {
         return Some(end);
@@ -80,12 +80,12 @@ impl PrimaryPath {
         self.end = end;
     }
 
-    pub(super) fn at(&self, time: f64) -> Option<PrimaryState> {
+    pub(super) fn state_at(&self, time: f64) -> Option<PrimaryState> {
         if !(0.0..=self.end).contains(&time) {
             return None;
         }
         let after = self.pieces.partition_point(|(start, _)| *start <= time);
-        self.pieces.get(after.checked_sub(1)?)?.1.at(time)
+        self.pieces.get(after.checked_sub(1)?)?.1.state_at(time)
     }
 
     /// The contacts that begin in this interval of time: their paths in s, and the sides of their

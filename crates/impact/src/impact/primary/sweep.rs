@@ -6,7 +6,7 @@ use super::{
     simulate_primary,
 };
 use crate::impact::NoRest;
-use crate::parallel::each;
+use crate::parallel::par_map;
 
 /// The part of a run, its last, that counts as the long run.
 const LAST: f64 = 0.25;
@@ -77,7 +77,7 @@ pub fn sweep_primary(
         progress(1);
         row
     };
-    each(&numbered, one).into_iter().collect()
+    par_map(&numbered, one).into_iter().collect()
 }
 
 fn row(case: PrimaryCase, settings: &PrimarySettings) -> Result<PrimaryRow, PrimaryError> {

@@ -415,7 +415,7 @@ impl Simulation {
             return None;
         }
         let sign = impact.side.sign();
-        let force = |t: f64| match self.path.at(t) {
+        let force = |t: f64| match self.path.phase_point_at(t) {
             Some((x, velocity)) => self.model.contact(sign * (x - barrier), sign * velocity),
             None => 0.0,
         };
@@ -428,7 +428,9 @@ impl Simulation {
         let mut difference = MotionDifference { displacement: 0.0, velocity: 0.0, until };
         for index in 0..count {
             let t = until * (index as f64 / (count.max(2) - 1) as f64);
-            if let (Some((x, v)), Some((other_x, other_v))) = (self.path.at(t), other.path.at(t)) {
+            if let (Some((x, v)), Some((other_x, other_v))) =
+                (self.path.phase_point_at(t), other.path.phase_point_at(t))
+            {
                 difference.displacement = difference.displacement.max((x - other_x).abs());
                 difference.velocity = difference.velocity.max((v - other_v).abs());
             }

@@ -108,7 +108,7 @@ impl SimulationPath {
     }
 
     /// Displacement (rad) and velocity at a time; nothing outside the time covered.
-    pub fn at(&self, t: f64) -> Option<(f64, f64)> {
+    pub fn phase_point_at(&self, t: f64) -> Option<(f64, f64)> {
         let last = self.pieces.last()?;
         if !(self.pieces.first()?.start..=last.end).contains(&t) {
             return None;
@@ -290,7 +290,7 @@ impl SimulationPath {
             }
             Representation::Constant { x } => node(x, 0.0),
             Representation::Closed(form) => {
-                let (x, velocity) = form.at(t - piece.start);
+                let (x, velocity) = form.phase_point_at(t - piece.start);
                 let depth = match (form, piece.regime) {
                     (ClosedForm::Contact { barrier, .. }, Regime::Contact(side)) => {
                         (side.sign() * (x - barrier)).max(0.0)
@@ -302,8 +302,11 @@ impl SimulationPath {
             Representation::Judged { origin, sign } => {
                 // The end of a step may be the beginning of another phase, with another coordinate.
                 let inside = t.clamp(piece.start, piece.end.next_down().max(piece.start));
-                let (value, velocity) =
-                    self.judge.as_ref().and_then(|path| path.at(inside)).unwrap_or((0.0, 0.0));
+                let (value, velocity) = self
+                    .judge
+                    .as_ref()
+                    .and_then(|path| path.phase_point_at(inside))
+                    .unwrap_or((0.0, 0.0));
                 QuadratureNode {
                     depth: if matches!(piece.regime, Regime::Contact(_)) {
                         value.max(0.0)

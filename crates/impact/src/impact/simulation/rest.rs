@@ -90,7 +90,7 @@ impl Simulation {
     /// When it came to rest.
     pub fn rest(&self) -> Rest {
         let amplitude = self.first_swing();
-        let place = self.place().x;
+        let place = self.rest_point().x;
         let level = REST_FRACTION * amplitude;
         if amplitude == 0.0 {
             return Rest { amplitude, place, time: Err(NoRest::NoAmplitude), last_crossing: None };
@@ -118,7 +118,7 @@ impl Simulation {
     }
 
     /// Where it settles.
-    pub(super) fn place(&self) -> RestPoint {
+    pub(super) fn rest_point(&self) -> RestPoint {
         RestPoint::near(&self.model, self.end_x)
     }
 
@@ -131,7 +131,7 @@ impl Simulation {
     /// The same from this first swing; only the points that are known to belong to it.
     fn envelope_from(&self, amplitude: f64) -> Vec<TurningPoint> {
         let mut envelope = vec![TurningPoint { t: 0.0, x: amplitude }];
-        let place = self.place();
+        let place = self.rest_point();
         let free = place.free_side(&self.model);
         let counted = |turn: &TurningPoint| TurningPoint { t: turn.t, x: turn.x - place.x };
         // From where it came tells on which side a turning point lies; a moment of rest without
@@ -182,7 +182,7 @@ impl Simulation {
     fn last_swing(&self) -> f64 {
         let swing =
             swing_of(self.model.energy(self.end_x, self.end_velocity)).unwrap_or(f64::INFINITY);
-        (swing - self.place().height()).max(0.0)
+        (swing - self.rest_point().height()).max(0.0)
     }
 
     /// What the turning points say of the rest.
@@ -205,7 +205,7 @@ impl Simulation {
         if self.model.beta != 0.0 || self.last_swing() > level {
             return Err(NoRest::StaysAbove);
         }
-        let place = self.place().x;
+        let place = self.rest_point().x;
         let last =
             self.turns.last().map_or(above, |last| TurningPoint { t: last.t, x: last.x - place });
         if self.end_time - last.t <= TAU {
@@ -231,7 +231,7 @@ impl Simulation {
             }
             RestByTurningPoints::Fall(from) => from,
         };
-        Some(TurningPoint { t: from.t, x: from.x + self.place().x })
+        Some(TurningPoint { t: from.t, x: from.x + self.rest_point().x })
     }
 
     fn path_tells_the_fall(&self) -> bool {
@@ -244,12 +244,12 @@ impl Simulation {
         if !self.path_tells_the_fall() {
             return self.fall;
         }
-        let place = self.place().x;
+        let place = self.rest_point().x;
         let begins = if from.t > 0.0 { from.x } else { self.start.x - place };
         let next = self.turns.iter().find(|turn| turn.t > from.t);
         let until = next.map_or(self.end_time, |turn| turn.t);
         let edge = place + level.copysign(begins);
-        let excess = |t: f64| self.path.at(t).map_or(0.0, |(x, _)| x - edge);
+        let excess = |t: f64| self.path.phase_point_at(t).map_or(0.0, |(x, _)| x - edge);
         let falls = begins.abs() > level && excess(until) * begins < 0.0;
         falls.then(|| crossing_of(excess, from.t, until))
     }
@@ -257,7 +257,7 @@ impl Simulation {
     /// Between turning points x only rises or only falls: the last stretch that begins beyond the
     /// level holds the crossing, unless the run ends beyond it.
     fn last_crossing(&self, level: f64) -> Option<f64> {
-        let place = self.place().x;
+        let place = self.rest_point().x;
         let beyond = |x: f64| (x - place).abs() > level;
         if self.path.pieces().is_empty() || beyond(self.end_x) {
             return None;
@@ -275,7 +275,7 @@ impl Simulation {
             .copied()
             .unwrap_or(end);
         let edge = place + level.copysign(from.x - place);
-        let excess = |t: f64| self.path.at(t).map_or(0.0, |(x, _)| x - edge);
+        let excess = |t: f64| self.path.phase_point_at(t).map_or(0.0, |(x, _)| x - edge);
         Some(crossing_of(excess, from.t, to.t))
     }
 }

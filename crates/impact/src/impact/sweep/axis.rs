@@ -161,7 +161,7 @@ impl Axis {
             index if index == last => to,
             index => value(index as f64 / last as f64),
         });
-        Self::of(name, spacing, values.collect())
+        Self::new(name, spacing, values.collect())
     }
 
     /// These values, in this order.
@@ -181,12 +181,12 @@ impl Axis {
     /// ```
     pub fn list(name: &str, values: Vec<f64>) -> Result<Self, AxisError> {
         match (2..=MOST_MOTIONS).contains(&values.len()) {
-            true => Self::of(name, Spacing::List, values),
+            true => Self::new(name, Spacing::List, values),
             false => Err(AxisError::Count(values.len().to_string())),
         }
     }
 
-    fn of(name: &str, spacing: Spacing, values: Vec<f64>) -> Result<Self, AxisError> {
+    fn new(name: &str, spacing: Spacing, values: Vec<f64>) -> Result<Self, AxisError> {
         if let Some(value) = values.iter().find(|value| !value.is_finite()) {
             return Err(AxisError::Number(value.to_string()));
         }

@@ -135,7 +135,7 @@ pub(super) fn square<const L: usize>(
 }
 
 #[inline(always)]
-pub(super) fn each<const L: usize>(value: impl Fn(usize) -> f64) -> [f64; L] {
+pub(super) fn per_lane<const L: usize>(value: impl Fn(usize) -> f64) -> [f64; L] {
     let mut result = [0.0; L];
     for (lane, entry) in result.iter_mut().enumerate() {
         *entry = value(lane);
@@ -213,6 +213,6 @@ pub(super) fn time<const L: usize>(
     [p, q]: &[[f64; L]; 2],
 ) {
     series[1] = *unit;
-    series[2] = each(|lane| INVERSE[2] * unit[lane] * p[lane]);
-    series[3] = each(|lane| INVERSE[3] * unit[lane] * q[lane]);
+    series[2] = per_lane(|lane| INVERSE[2] * unit[lane] * p[lane]);
+    series[3] = per_lane(|lane| INVERSE[3] * unit[lane] * q[lane]);
 }

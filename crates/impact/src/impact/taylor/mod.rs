@@ -141,7 +141,7 @@ enum StepEvent {
 }
 
 /// One motion from its start to its end.
-pub(super) fn alone(model: Model, start: Start, settings: Settings) -> Simulation {
+pub(super) fn simulate_one(model: Model, start: Start, settings: Settings) -> Simulation {
     let mut runner = Runner::new(model, start, settings);
     let mut series = SeriesCoefficients::<1>::new();
     let mut inputs = Inputs::<1>::new();
@@ -175,7 +175,7 @@ pub(super) fn fall(simulation: &Simulation) -> Option<f64> {
     if settings.duration <= 0.0 {
         return None;
     }
-    let again = alone(simulation.model, start, settings);
+    let again = simulate_one(simulation.model, start, settings);
     let level = REST_FRACTION * first_swing(&simulation.model, simulation.start);
     let fall = again.fall(TurningPoint { t: 0.0, x: start.x }, level)?;
     Some(from.t + fall)

@@ -5,7 +5,7 @@
 //! bit for bit what it would get alone.
 
 use super::angle::sines_and_cosines;
-use super::kernels::each;
+use super::kernels::per_lane;
 use super::{Loaded, StepEquation};
 use crate::impact::polynomial::lanes::{values, values_of, variations};
 
@@ -223,7 +223,7 @@ impl<const L: usize> SeriesCoefficients<L> {
         let [place, velocity, time] = self.values(lengths, order, equation);
         let angle = match equation {
             StepEquation::Flight => place,
-            StepEquation::Contact => each(|lane| inputs.base[lane] + place[lane] * place[lane]),
+            StepEquation::Contact => per_lane(|lane| inputs.base[lane] + place[lane] * place[lane]),
         };
         let (sine, cosine) = sines_and_cosines(&angle);
         Ends {

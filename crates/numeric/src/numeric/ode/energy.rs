@@ -227,7 +227,7 @@ impl<'a> PiecewiseForce<'a> {
     }
 
     /// The force at a position.
-    pub fn at(&self, x: f64) -> f64 {
+    pub fn value_at(&self, x: f64) -> f64 {
         (self.value)(x)
     }
 
@@ -336,7 +336,7 @@ impl<'a> TimePerAngle<'a> {
         let (end, start) = (self.knots[0], self.knots[self.knots.len() - 1]);
         let (low, high) = (self.knots[piece], self.knots[piece + 1]);
         let mean_force = |from: f64, to: f64| {
-            integral(&|u| self.force.at(from + (to - from) * u), 0.0, 1.0, 0.0)
+            integral(&|u| self.force.value_at(from + (to - from) * u), 0.0, 1.0, 0.0)
         };
         // From the nearer end: beside a pole the distance from it counts, not the position. Or from
         // the middle, for the same reason.
@@ -545,11 +545,11 @@ pub fn turning_point(
     let evaluations = Cell::new(0_u64);
     let value = |x: f64| {
         evaluations.set(evaluations.get() + 1);
-        force.at(x)
+        force.value_at(x)
     };
     let amplitude = start - equilibrium;
     let side = amplitude.signum();
-    if force.at(start) * side <= 0.0 || amplitude == 0.0 {
+    if force.value_at(start) * side <= 0.0 || amplitude == 0.0 {
         return Err(PeriodError::PushedAway { start, equilibrium, range: None });
     }
     if is_symmetric(force, equilibrium, amplitude) {
@@ -625,14 +625,14 @@ fn is_symmetric(force: &PiecewiseForce, equilibrium: f64, amplitude: f64) -> boo
     /// The search for a turning point does not pass a place where the force is infinite: there
     /// symmetry may be lost in rounding.
     const ROUNDING: f64 = 1e-12;
-    let infinite = grows_towards_zero(&|y| force.at(equilibrium + y), amplitude);
+    let infinite = grows_towards_zero(&|y| force.value_at(equilibrium + y), amplitude);
     let rounding = if infinite { ROUNDING } else { 0.0 };
     let mut places: Vec<f64> = (1..=16).map(|k| amplitude * f64::from(k) / 16.0).collect();
     let knots = force.knots(equilibrium - amplitude, equilibrium + amplitude);
     places.extend(knots.iter().map(|knot| knot - equilibrium));
     places.extend(knots.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]) - equilibrium));
     places.into_iter().filter(|&x| x != 0.0).all(|x| {
-        let (here, there) = (force.at(equilibrium + x), force.at(equilibrium - x));
+        let (here, there) = (force.value_at(equilibrium + x), force.value_at(equilibrium - x));
         (here + there).abs() <= rounding * here.abs() && here * x.signum() > 0.0
     })
 }
@@ -642,7 +642,7 @@ fn is_symmetric(force: &PiecewiseForce, equilibrium: f64, amplitude: f64) -> boo
 fn where_it_turns(force: &PiecewiseForce, side: f64, from: f64, to: f64) -> Vec<(f64, f64)> {
     const SAMPLES: usize = 4;
     let place = |k: usize| from + (to - from) * k as f64 / SAMPLES as f64;
-    let drives: Vec<bool> = (1..SAMPLES).map(|k| force.at(place(k)) * side > 0.0).collect();
+    let drives: Vec<bool> = (1..SAMPLES).map(|k| force.value_at(place(k)) * side > 0.0).collect();
     if drives.windows(2).all(|pair| pair[0] || !pair[1]) {
         return vec![(from, to)];
     }

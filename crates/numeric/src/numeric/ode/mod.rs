@@ -134,16 +134,16 @@ mod tests {
     fn between_the_knots_it_is_as_good_as_at_the_knots() {
         let path = integrate(pendulum, REST, 20.0, &[], &IntegrationOptions::with_tolerance(1e-10))
             .unwrap();
-        let error = |t: f64| (path.at(t).unwrap().0 - exact_pendulum(1.5, t).0).abs();
+        let error = |t: f64| (path.phase_point_at(t).unwrap().0 - exact_pendulum(1.5, t).0).abs();
         let at_knots = path.knots().map(|knot| error(knot.t)).fold(0.0, f64::max);
         let anywhere = path.samples(5000).map(|state| error(state.t)).fold(0.0, f64::max);
         assert!(anywhere < 3.0 * at_knots, "{anywhere} between, {at_knots} at the knots");
         assert!(
-            path.at(-1e-9).is_none()
-                && path.at(20.000_001).is_none()
-                && path.at(f64::NAN).is_none()
+            path.phase_point_at(-1e-9).is_none()
+                && path.phase_point_at(20.000_001).is_none()
+                && path.phase_point_at(f64::NAN).is_none()
         );
-        assert_eq!(path.at(0.0), Some((1.5, 0.0)));
+        assert_eq!(path.phase_point_at(0.0), Some((1.5, 0.0)));
     }
 
     #[test]
@@ -312,7 +312,7 @@ mod tests {
                     "gamma {gamma}: crossing {index} at {}",
                     found.state.t
                 );
-                assert_eq!(path.at(found.state.t).unwrap().0, 0.323);
+                assert_eq!(path.phase_point_at(found.state.t).unwrap().0, 0.323);
                 assert_eq!(path.phase_at(found.state.t), Some(1 - exit));
             }
         }
@@ -374,7 +374,7 @@ mod tests {
             integrate(|_, x, _| 6.0 * x * x, start, 3.0, &[], &IntegrationOptions::default())
                 .unwrap();
         assert!(!path.is_complete() && (path.end().t - 1.0).abs() < 1e-3, "{}", path.stop_reason());
-        assert!((path.at(0.5).unwrap().0 - 4.0).abs() < 1e-7);
+        assert!((path.phase_point_at(0.5).unwrap().0 - 4.0).abs() < 1e-7);
 
         // Beyond x = 1 there is no acceleration; x = t gets there at t = 1.
         let start = State { t: 0.0, x: 0.0, v: 1.0 };
@@ -390,7 +390,7 @@ mod tests {
             panic!("{}", path.stop_reason())
         };
         assert!((time - 1.0).abs() < 1e-12);
-        assert!((path.at(0.75).unwrap().0 - 0.75).abs() < 1e-12);
+        assert!((path.phase_point_at(0.75).unwrap().0 - 0.75).abs() < 1e-12);
 
         let few = IntegrationOptions { maximum_steps: 5, ..IntegrationOptions::default() };
         let path = integrate(pendulum, REST, 30.0, &[], &few).unwrap();
@@ -429,7 +429,7 @@ mod tests {
             integrate_phases(&pendulum_and_barrier(0.323, 1e6), 2, REST, 1.0, &usual).unwrap_err();
         assert_eq!(refused, IntegrationError::UnknownPhase { phase: 2, count: 2 });
         let path = integrate(pendulum, REST, 0.0, &[], &usual).unwrap();
-        assert_eq!((path.end(), path.at(0.0)), (REST, Some((1.5, 0.0))));
+        assert_eq!((path.end(), path.phase_point_at(0.0)), (REST, Some((1.5, 0.0))));
     }
 
     #[test]

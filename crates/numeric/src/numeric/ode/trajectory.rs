@@ -123,7 +123,7 @@ impl fmt::Display for StopReason {
 impl Trajectory {
     /// Displacement and velocity at time `t`; `None` outside the time covered. Where a switch
     /// changed the state, the value after the switch.
-    pub fn at(&self, t: f64) -> Option<(f64, f64)> {
+    pub fn phase_point_at(&self, t: f64) -> Option<(f64, f64)> {
         self.state_at(t).map(|state| (state.x, state.v))
     }
 }
@@ -139,7 +139,7 @@ impl<S: Sample> Trajectory<S> {
             return None;
         }
         let step = self.steps.get(self.step_index(t)?)?;
-        Some(S::new(t, &step.at((t - step.start.time()) / step.length)))
+        Some(S::new(t, &step.values_at((t - step.start.time()) / step.length)))
     }
 
     /// The initial state.
@@ -233,7 +233,7 @@ impl<S: Sample> TrajectoryStep<S> {
     }
 
     /// The values at the fraction s of the step.
-    pub(super) fn at(&self, fraction: f64) -> S::Values {
+    pub(super) fn values_at(&self, fraction: f64) -> S::Values {
         let mut values = self.start.values();
         for (component, value) in values.as_mut().iter_mut().enumerate() {
             *value += fraction * clenshaw(|term| self.quotient[term].as_ref()[component], fraction);
@@ -243,7 +243,7 @@ impl<S: Sample> TrajectoryStep<S> {
 
     /// The state at the fraction s of the step.
     pub(super) fn state_at(&self, fraction: f64) -> S {
-        S::new(self.start.time() + fraction * self.length, &self.at(fraction))
+        S::new(self.start.time() + fraction * self.length, &self.values_at(fraction))
     }
 }
 
@@ -291,12 +291,12 @@ mod tests {
         let step = TrajectoryStep::new(0, start, 0.5, values);
         for index in 0..=50 {
             let s = f64::from(index) / 50.0;
-            let [x, v] = step.at(s);
+            let [x, v] = step.values_at(s);
             assert!((x - start.x - s * p(s)).abs() < 1e-14, "x at {s}");
             assert!((v - start.v - s * r(s)).abs() < 1e-14, "v at {s}");
         }
-        assert_eq!(step.at(0.0), [0.3, -1.0]);
+        assert_eq!(step.values_at(0.0), [0.3, -1.0]);
         // Next to the start the sign of x - x0 is that of s P(0), down to the last bit.
-        assert!(step.at(1e-15)[0] > 0.3);
+        assert!(step.values_at(1e-15)[0] > 0.3);
     }
 }

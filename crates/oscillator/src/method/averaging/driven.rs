@@ -60,13 +60,13 @@ pub(super) fn solve(
     if options.amplitude == Some(AmplitudeConvention::Initial) {
         return refuse(Reason::ConventionOfFirstHarmonic);
     }
-    let drive = Drive::of(parts, oscillator, Method::Averaging)?;
+    let drive = Drive::from_parts(parts, oscillator, Method::Averaging)?;
     let mut free = oscillator.clone();
     free.force = (&oscillator.force - &parts.forcing).expand()?;
     let averaged = DrivenAveraging {
         oscillator,
         free: &free,
-        small: SmallTerms::of(&free, options)?,
+        small: SmallTerms::from_oscillator(&free, options)?,
         asked: DrivenRequest {
             method: Method::Averaging,
             oscillator,
@@ -144,7 +144,7 @@ impl DrivenAveraging<'_> {
         let refuse = |reason: Reason| Err(reason.to(Method::Averaging));
         let (oscillator, drive) = (self.oscillator, self.asked.drive);
         let a = AmplitudeConvention::FirstHarmonic.symbol();
-        let projected = Projected::of(self.free, &self.small, &Expr::from(a))?;
+        let projected = Projected::new(self.free, &self.small, &Expr::from(a))?;
         let near = match self.asked.resonance {
             Some(_) => None,
             None => ratio_of(&drive.frequency, &self.small.linear_part()?.linear_in_full()),
@@ -392,7 +392,7 @@ impl<'a> ResonantEquation<'a> {
             Some((still, [polynomials(&turning[0])?, polynomials(&turning[1])?]))
         };
         if let Some(([rate, phase], waves)) = whole() {
-            let found = FrequencyResponse::of([&rate, &phase], &waves, self.sigma, self.a);
+            let found = FrequencyResponse::from_rates([&rate, &phase], &waves, self.sigma, self.a);
             response.relation = found.relation;
             response.branches = found.branches;
             response.peak = found.peak;
@@ -423,7 +423,7 @@ impl<'a> ResonantEquation<'a> {
         [amplitude_rate, phase_rate]: [&Expr; 2],
         response: &Response,
     ) -> Result<Vec<DerivationLine>, ExprError> {
-        let letters = DerivationLetters::beside(&self.oscillator.names());
+        let letters = DerivationLetters::avoiding(&self.oscillator.names());
         let mut lines = self.projected.along(self.oscillator, &Expr::from(self.a), &letters)?;
         let theta = Expr::from(self.oscillator.phase());
         let turned = &(Expr::from(i64::from(self.p)) * theta) + &Expr::from(self.phase);

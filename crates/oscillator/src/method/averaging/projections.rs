@@ -135,7 +135,7 @@ fn of_velocity_beside_power(
     amplitude: &Expr,
     speed: &Expr,
 ) -> Option<[Expr; 2]> {
-    let p = position.whole()?;
+    let p = position.integer_exponent()?;
     let (k, halves) = if p.is_even() { (1, p / 2) } else { (0, p / 2 + 1) };
     let value = projected(function, halves, velocity, speed, k)?
         * amplitude.integer_power(p as i64).ok()?;
@@ -153,7 +153,7 @@ fn of_position_beside_power(
     amplitude: &Expr,
     speed: &Expr,
 ) -> Option<[Expr; 2]> {
-    let q = velocity.whole()?;
+    let q = velocity.integer_exponent()?;
     let (k, halves) = if q.is_even() { (1, q / 2) } else { (0, q / 2 + 1) };
     let value = projected(function, halves, coordinate, amplitude, k)?
         * speed.integer_power(q as i64).ok()?;
@@ -209,7 +209,7 @@ fn arctangent_coefficient(product: &Expr, variable: Symbol, size: &Expr, k: usiz
             _ => return None,
         }
     }
-    let (count, z) = (power.whole()?, slope? * size);
+    let (count, z) = (power.integer_exponent()?, slope? * size);
     let root = (Expr::one() + z.integer_power(2).ok()?).sqrt().ok()?;
     let r = Expr::divide(&(root - Expr::one()), &z).ok()?;
     // cos^n cos(k .) = 2^-n sum_i binomial(n, i) cos((k + n - 2 i) .)

@@ -56,7 +56,7 @@ pub(super) struct PurePower {
 impl PurePower {
     /// The restoring force of a damped motion, where it is one power, a number above -1 other than
     /// one; `None` for any other.
-    pub(super) fn of(parts: &Parts, coordinate: Symbol) -> Option<Self> {
+    pub(super) fn from_parts(parts: &Parts, coordinate: Symbol) -> Option<Self> {
         if parts.damping.is_zero() || !parts.inertia.is_zero() || !parts.forcing.is_zero() {
             return None;
         }
@@ -157,7 +157,7 @@ struct Shape {
 
 impl Shape {
     /// Of the force `sgn(x) |x|^n`.
-    fn of(restoring: &PurePower, oscillator: &Oscillator, parts: &Parts) -> Option<Self> {
+    fn new(restoring: &PurePower, oscillator: &Oscillator, parts: &Parts) -> Option<Self> {
         /// The highest harmonic, and the least that is written.
         const MOST: usize = 15;
         const LEAST: f64 = 1e-10;
@@ -206,12 +206,12 @@ struct AnswerSymbols {
 }
 
 impl AnswerSymbols {
-    fn beside(oscillator: &Oscillator) -> Self {
+    fn avoiding(oscillator: &Oscillator) -> Self {
         let taken = oscillator.names();
         let [first, turning] = ["chi", "r"].map(|name| fresh(name, &taken));
         Self {
             amplitude: AmplitudeConvention::FirstHarmonic.symbol(),
-            phase: DerivationLetters::beside(&taken).phase,
+            phase: DerivationLetters::avoiding(&taken).phase,
             first,
             turning,
             taken,
@@ -229,7 +229,7 @@ struct SlowEquations {
 impl SlowEquations {
     /// # Errors
     /// A damping term without a closed mean.
-    fn of(
+    fn from_pure_power(
         oscillator: &Oscillator,
         parts: &Parts,
         restoring: &PurePower,
@@ -312,11 +312,11 @@ pub(super) fn solve(
     options: &Options,
 ) -> Result<Solution, Refusal> {
     refuse_other_orders(parts, options)?;
-    let names = AnswerSymbols::beside(oscillator);
-    let Some(shape) = Shape::of(restoring, oscillator, parts) else {
+    let names = AnswerSymbols::avoiding(oscillator);
+    let Some(shape) = Shape::new(restoring, oscillator, parts) else {
         return Err(Reason::NoProjection.to(Method::Averaging).about(&parts.restoring));
     };
-    let slow = SlowEquations::of(oscillator, parts, restoring, &names)?;
+    let slow = SlowEquations::from_pure_power(oscillator, parts, restoring, &names)?;
     let (small, small_with, cut) = small_in_words(oscillator, parts)?;
     let harmonic = shape.last_harmonic();
     let mut validity = vec![cut, Note::AlongTrueMotion { harmonic }];

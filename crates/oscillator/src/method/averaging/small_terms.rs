@@ -33,7 +33,10 @@ impl SmallTerms {
     ///
     /// # Errors
     /// A letter that does not occur, or a term that no letter makes small beside the one asked for.
-    pub(super) fn of(oscillator: &Oscillator, options: &Options) -> Result<Self, Refusal> {
+    pub(super) fn from_oscillator(
+        oscillator: &Oscillator,
+        options: &Options,
+    ) -> Result<Self, Refusal> {
         let delta = fresh("delta", &oscillator.names());
         let expanded = oscillator.force.expand()?;
         let asked = match options.small.as_deref() {

@@ -95,7 +95,7 @@ fn expanded(
     parts: &Parts,
     options: &Options,
 ) -> Result<Solution, Refusal> {
-    let drive = Drive::of(parts, oscillator, Method::MultipleScales)?;
+    let drive = Drive::from_parts(parts, oscillator, Method::MultipleScales)?;
     let free = undriven_oscillator(oscillator, parts)?;
     let parts = free.parts()?;
     let scaling_of = |order: Option<u32>| -> Result<Scaling, Refusal> {
@@ -233,7 +233,7 @@ impl DrivenRequest<'_> {
             let term = term.map_or_else(Expr::zero, |driven| driven.term.clone());
             return Err(Reason::ResonanceWithoutDamping.to(self.method).about(&term));
         }
-        let found = self.at(resonance, scaling)?.ok_or_else(|| {
+        let found = self.answer_at(resonance, scaling)?.ok_or_else(|| {
             let others = self.drive.resonances().into_iter().filter(reaches).collect();
             let asked = resonance;
             Reason::NoResonance { asked, others }.to(self.method)
@@ -256,11 +256,11 @@ impl DrivenRequest<'_> {
         let mut candidates = self.candidates(scaling).into_iter();
         let found = candidates
             .find(|candidate| is_near(*candidate) && self.reaches(*candidate, scaling))?;
-        self.at(found, scaling).transpose()
+        self.answer_at(found, scaling).transpose()
     }
 
     /// The answer at a resonance; `None` where the drive does not reach the motion there.
-    pub(in crate::method) fn at(
+    pub(in crate::method) fn answer_at(
         &self,
         resonance: (u32, u32),
         scaling: &Scaling,
@@ -315,7 +315,7 @@ impl<'a> DrivenProblem<'a> {
     ) -> Result<Self, Refusal> {
         let (oscillator, drive) = (asked.oscillator, asked.drive);
         let LinearPart { frequency: linear_frequency, root, definitions, taken } =
-            LinearPart::of(&scaling.force, oscillator);
+            LinearPart::new(&scaling.force, oscillator);
         let (p, q) = resonance;
         let hard = drive.terms.iter().filter(|driven| driven.is_force(oscillator.coordinate));
         let hard: BTreeSet<u32> =

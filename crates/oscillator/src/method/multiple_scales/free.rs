@@ -39,7 +39,7 @@ pub(super) fn solve(
 ) -> Result<Solution, Refusal> {
     let mut scaling = scaling(oscillator, parts, options, DEFAULT, HIGHEST)?;
     scaling.force.write_with_frequency(&oscillator.names());
-    let linear = LinearPart::of(&scaling.force, oscillator);
+    let linear = LinearPart::new(&scaling.force, oscillator);
     let units = FrequencyUnits::new(&scaling.force, linear.frequency.clone());
     let cycles = cycles(&scaling, &units, options, &linear.taken)?;
     let names = ExpansionSymbols::new(&linear.taken, oscillator.coordinate, scaling.marker);

@@ -188,7 +188,7 @@ pub(super) fn response(
         true => {
             let still = rates.each_ref().map(|waves| unmarked(SlowRates::still(waves)));
             let waves = rates.each_ref().map(|waves| turning(waves).map(unmarked));
-            FrequencyResponse::of(still.each_ref(), &waves, question.sigma, a).cut(cut, a)
+            FrequencyResponse::from_rates(still.each_ref(), &waves, question.sigma, a).cut(cut, a)
         }
         false => FrequencyResponse::of_relation(cut, a),
     };

@@ -25,7 +25,7 @@ pub(in crate::method) struct Factored(Vec<(u64, u64)>);
 
 impl Factored {
     /// The factors of a number whose primes are all small; `None` of another.
-    pub fn of(number: &Integer) -> Option<Self> {
+    pub fn factorize(number: &Integer) -> Option<Self> {
         let mut rest = number.clone();
         let mut factored = Self::default();
         let halvings = remove(&mut rest, 2, u64::MAX);
@@ -426,7 +426,7 @@ mod tests {
 
     #[test]
     fn factors_and_lowest_terms() {
-        let number = Factored::of(&integer(720_720)).expect("small factors");
+        let number = Factored::factorize(&integer(720_720)).expect("small factors");
         assert_eq!(number.value(), integer(720_720));
         assert_eq!(number.lowest_terms(integer(-1001 * 9)), (integer(-1), integer(80)));
         assert_eq!(number.lowest_terms(integer(0)), (integer(0), integer(1)));
@@ -438,7 +438,7 @@ mod tests {
             &number,
             &common,
             &Factored::default(),
-            &Factored::of(&integer(6).pow(77)).expect("small factors"),
+            &Factored::factorize(&integer(6).pow(77)).expect("small factors"),
         ] {
             assert_eq!(number.ladder().residue(&modulus), modulus.integer(&number.value()));
         }
@@ -446,17 +446,17 @@ mod tests {
         assert_eq!(ratio(-1001 * 9), Rational::new(integer(-1), integer(80)));
         assert_eq!(ratio(0), Rational::zero());
         // More of one prime than a word holds.
-        let power = Factored::of(&integer(3).pow(90)).expect("small factors");
+        let power = Factored::factorize(&integer(3).pow(90)).expect("small factors");
         let long = power.fraction(&(integer(3).pow(85) * integer(-14)), &power.value());
         assert_eq!(long, Rational::new(integer(-14), integer(243)));
-        assert!(Factored::of(&integer(1_000_003)).is_none());
+        assert!(Factored::factorize(&integer(1_000_003)).is_none());
     }
 
     #[test]
     fn growth_is_told_from_the_first_orders() {
         let divisors = |order: usize| order as u64 + 1;
         let known = |denominator: &dyn Fn(u32) -> Integer| -> Vec<Factored> {
-            (0..=10).map(|n| Factored::of(&denominator(n)).expect("small factors")).collect()
+            (0..=10).map(|n| Factored::factorize(&denominator(n)).expect("small factors")).collect()
         };
         let powers = known(&|n| integer(32).pow(n));
         let found = Growth::Power.denominators(&powers, 20, &divisors).expect("a power");

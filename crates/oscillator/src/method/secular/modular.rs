@@ -99,7 +99,7 @@ impl<A: Arithmetic> NullaryFnOnce for Prepare<'_, A> {
     #[inline(always)]
     fn call(self) -> Self::Output {
         let Self(arithmetic, plan, moduli) = self;
-        let residues = Residues { arithmetic, moduli: Moduli::of(moduli) };
+        let residues = Residues { arithmetic, moduli: Moduli::from_primes(moduli) };
         let mut coefficients = Vec::with_capacity(plan.terms.len());
         for (term, (_, derivative)) in plan.terms.iter().zip(&plan.of_terms) {
             let power = if *derivative { i64::from(term.position) + 1 } else { 1 };
@@ -341,7 +341,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     /// The coefficients of the harmonics of `y_n`.
     pub fn displacement(&self, order: usize) -> impl Iterator<Item = Lanes> {
         let harmonics = 0..self.plan.harmonics(order);
-        harmonics.map(move |index| self.motion.at(self.plan, index, order))
+        harmonics.map(move |index| self.motion.coefficient(self.plan, index, order))
     }
 
     /// Expands with these coefficients of the terms.

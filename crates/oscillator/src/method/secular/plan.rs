@@ -340,7 +340,7 @@ impl<'m> HarmonicTable<'m> {
         (plan.first(index, order), &self.entries[row.begin..][..row.length])
     }
 
-    pub fn at(&self, plan: &Plan, index: usize, order: usize) -> Lanes {
+    pub fn coefficient(&self, plan: &Plan, index: usize, order: usize) -> Lanes {
         let (first, row) = self.row(plan, index, order);
         let place = order.checked_sub(first).map(|after| after / plan.step());
         place.and_then(|place| row.get(place)).copied().unwrap_or_default()

@@ -30,7 +30,7 @@ use crate::exact::residue::{
 };
 use crate::exact::{Integer, Integers, Rational};
 use crate::interrupt::Supervision;
-use crate::parallel::{each, threads};
+use crate::parallel::{par_map, threads};
 use crate::series::fourier::fraction as in_lowest_terms;
 use crate::series::waves::Wave;
 
@@ -148,13 +148,13 @@ struct ExpandByPrimes<'a> {
 impl Work for ExpandByPrimes<'_> {
     type Output = Option<SecularExpansion<Integers>>;
 
-    fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
+    fn run<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
         /// So many show how denominators grow.
         const SOME: usize = 8;
         let Self { equation, plan, slope, orders: short, supervision } = self;
         let extent = equation.extent;
         let beginning = match short.len() >= SOME {
-            true => Some(FirstGuesses::of(&short)?),
+            true => Some(FirstGuesses::from_orders(&short)?),
             false => None,
         };
         // A guess about the denominators that turns out wrong costs little where the order is low.
@@ -167,7 +167,7 @@ impl Work for ExpandByPrimes<'_> {
                 let shorter =
                     Reconstruction::new(arithmetic, &plan, extent, Supervision::default());
                 orders.extend(shorter.orders_from(orders.len(), beginning)?);
-                (Some(FirstGuesses::of(&orders)?), orders)
+                (Some(FirstGuesses::from_orders(&orders)?), orders)
             }
         };
         let longer = Reconstruction::new(arithmetic, plan, extent, supervision);
@@ -313,7 +313,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             for block in places.chunks(length * LOTS * threads) {
                 let lots: Vec<&[usize]> = block.chunks(length).collect();
                 let found: Option<Vec<Vec<PrimeImage>>> =
-                    each(&lots, |places| lot(places)).into_iter().collect();
+                    par_map(&lots, |places| lot(places)).into_iter().collect();
                 for (own, places) in found?.into_iter().zip(lots) {
                     let whole = own.len() == places.len();
                     images.extend(own);
@@ -439,7 +439,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             )
         };
         let lifted: Option<Vec<Vec<ExpansionOrder>>> = match self.plan.highest > ALONE {
-            true => each(&groups, group).into_iter().collect(),
+            true => par_map(&groups, group).into_iter().collect(),
             false => groups.iter().map(group).collect(),
         };
         Some(lifted?.into_iter().flatten().collect())
@@ -514,16 +514,16 @@ impl FirstGuesses {
     }
 
     /// From the orders of a shorter expansion.
-    fn of(orders: &[ExpansionOrder]) -> Option<Self> {
+    fn from_orders(orders: &[ExpansionOrder]) -> Option<Self> {
         let mut beginning = Self::default();
         for order in orders {
             let bits = |numbers: &mut dyn Iterator<Item = &Integer>| {
                 numbers.map(Integer::bits).max().unwrap_or(0) as f64
             };
             let size = bits(&mut order.displacement.iter()) - order.denominator.bits() as f64;
-            beginning.motion.push(Factored::of(&order.denominator)?, size);
+            beginning.motion.push(Factored::factorize(&order.denominator)?, size);
             let both = [&order.frequency, &order.frequency_squared];
-            let denominator = Factored::of(&both[0].denom().lcm(both[1].denom()))?;
+            let denominator = Factored::factorize(&both[0].denom().lcm(both[1].denom()))?;
             let sizes =
                 both.map(|number| number.numer().bits() as f64 - number.denom().bits() as f64);
             beginning.frequency.push(denominator, sizes[0].max(sizes[1]));
@@ -547,7 +547,7 @@ struct Guess {
 
 impl Guess {
     fn add(&mut self, (denominator, size): (Integer, f64)) -> Option<()> {
-        self.push(Factored::of(&denominator)?, size);
+        self.push(Factored::factorize(&denominator)?, size);
         Some(())
     }
 
@@ -778,7 +778,7 @@ mod tests {
                     orders: vec![],
                     supervision: Supervision::default(),
                 };
-                let portable = by_primes.by(Portable).expect("the same by primes");
+                let portable = by_primes.run(Portable).expect("the same by primes");
                 let alone = super::expand(
                     force,
                     highest,

@@ -59,20 +59,20 @@ pub(super) fn split(
     let enough = (LONG..=terms.len()).contains(&highest);
     let rate = if enough { rate(&terms, highest) } else { None };
     if rate.is_some() {
-        terms.retain(|term| place(term).is_none());
+        terms.retain(|term| sine_index(term).is_none());
     }
     (rate, terms)
 }
 
 /// The index of a term in the series of the sine: `n` for `delta^n y^(2n+1)`.
-fn place(term: &PlannedTerm) -> Option<usize> {
+fn sine_index(term: &PlannedTerm) -> Option<usize> {
     let own = term.velocity == 0 && term.position as usize == 2 * term.order + 1;
     own.then_some(term.order)
 }
 
 fn rate(terms: &[PlannedTerm], highest: usize) -> Option<Rational> {
     let coefficient = |n: usize| {
-        let mut own = terms.iter().filter(|term| place(term) == Some(n));
+        let mut own = terms.iter().filter(|term| sine_index(term) == Some(n));
         own.next().filter(|_| own.next().is_none()).map(|term| &term.coefficient)
     };
     let rate = coefficient(1)? * Rational::from_integer(Integer::from(6));

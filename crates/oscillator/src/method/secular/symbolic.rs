@@ -34,7 +34,7 @@ use crate::exact::residue::{
 };
 use crate::exact::{Integer, Integers, Monomial, Polynomial, Polynomials, Rational};
 use crate::interrupt::Supervision;
-use crate::parallel::{each, threads};
+use crate::parallel::{par_map, threads};
 use crate::series::FourierSeries;
 use crate::series::waves::Wave;
 
@@ -67,7 +67,7 @@ struct ExpandSymbols<'a>(&'a [ForceTerm<Symbols>], usize, Scheme, ExpansionScope
 impl Work for ExpandSymbols<'_> {
     type Output = Option<SecularExpansion<Symbols>>;
 
-    fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
+    fn run<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
         /// More are as slow as polynomials.
         const MOST_POINTS: usize = 5000;
         /// Expansions to this order are done at once.
@@ -356,7 +356,7 @@ impl<A: Arithmetic> PrimeSearch<'_, A> {
             const LOTS: usize = 4;
             let length = points.len().div_ceil(LOTS * threads()).next_multiple_of(WIDTH);
             let lots: Vec<_> = points.chunks(length).collect();
-            let found = each(&lots, |points| self.values(modulus, points));
+            let found = par_map(&lots, |points| self.values(modulus, points));
             let found: Option<Vec<Vec<Vec<u64>>>> = found.into_iter().collect();
             let mut values = Vec::with_capacity(points.len());
             for (own, points) in found?.into_iter().zip(lots) {
@@ -611,7 +611,7 @@ mod tests {
                     .expect("the same by primes");
                 let portable =
                     ExpandSymbols(force, highest, scheme, ExpansionScope::Motion, nobody)
-                        .by(Portable);
+                        .run(Portable);
                 let alone = expand(force, highest, &scheme, ExpansionScope::Frequency, nobody)
                     .expect("the frequency");
                 assert_eq!(alone.frequency_squared, exact.frequency_squared);

@@ -12,7 +12,7 @@ use super::{Field, HermitePade};
 use crate::exact::residue::remainder::{ReconstructedIntegers, Remainders, fraction};
 use crate::exact::residue::{Arithmetic, Lanes, Modulus, WIDTH, Work, by_widest, primes_below};
 use crate::exact::{Integer, Rational};
-use crate::parallel::each;
+use crate::parallel::par_map;
 
 /// The combination of these series, each with the degree of its factor, that vanishes to the
 /// highest order: whole numbers without a common factor, a list for each series, the lowest power
@@ -105,7 +105,7 @@ impl Exact<'_> {
 impl Work for Exact<'_> {
     type Output = Option<Vec<Vec<Integer>>>;
 
-    fn by<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
+    fn run<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
         /// As many as [`Remainders`] takes.
         const MOST: usize = 1 << 13;
         /// If so many see nothing there is nothing.
@@ -118,7 +118,7 @@ impl Work for Exact<'_> {
             while images.len() <= count {
                 let primes: Vec<u64> = source.by_ref().take(count + 1 - images.len()).collect();
                 let seen: Vec<Option<CoefficientImage>> =
-                    each(&primes, |prime| self.image(Modulus::new(*prime, A::RADIX)));
+                    par_map(&primes, |prime| self.image(Modulus::new(*prime, A::RADIX)));
                 blind += seen.iter().filter(|image| image.is_none()).count();
                 if seen.is_empty() || blind > BLIND + images.len() / 100 {
                     return None;

@@ -296,7 +296,7 @@ impl DampedCertificate {
                         &turned(formula.motion(self.bits)),
                     )
                 };
-                let exponent = Enclosure::of(&self.exponent(&motion, proof.radius)?);
+                let exponent = Enclosure::from_ball(&self.exponent(&motion, proof.radius)?);
                 (Some(exponent), None, formula.map(errors))
             }
             Some(drive) => {
@@ -307,12 +307,12 @@ impl DampedCertificate {
                     truth.errors_of_driven(&own, [&amplitude_of(&own, drive.harmonic), &amplitude])
                 };
                 let errors = formula.map(errors);
-                (None, Some(Enclosure::of(&amplitude)), errors)
+                (None, Some(Enclosure::from_ball(&amplitude)), errors)
             }
         };
         Ok(Certified {
             proof,
-            frequency: Enclosure::of(&frequency),
+            frequency: Enclosure::from_ball(&frequency),
             exponent,
             amplitude,
             copies: copies.len().max(1),

@@ -190,7 +190,7 @@ pub(super) fn prove(problem: DampedProblem) -> Result<Proof, NotProved> {
     if problem.odd && !problem.is_odd()? {
         return Err(NotProved::NotOdd);
     }
-    let system = DampedBoundData::of(problem)?;
+    let system = DampedBoundData::new(problem)?;
     let problem = &system.equations.problem;
     let x = coordinate();
     let slope = problem.force.differentiate(x)?;
@@ -221,7 +221,7 @@ pub(super) fn prove(problem: DampedProblem) -> Result<Proof, NotProved> {
 /// # Errors
 /// As [`prove`].
 pub(super) fn correction(problem: DampedProblem) -> Result<Correction<BasisFunction>, NotProved> {
-    Ok(DampedBoundData::of(problem)?.correction())
+    Ok(DampedBoundData::new(problem)?.correction())
 }
 
 /// About the derivative on the block, row by row, for what is not proved.
@@ -229,7 +229,7 @@ pub(super) fn correction(problem: DampedProblem) -> Result<Correction<BasisFunct
 /// # Errors
 /// As [`prove`].
 pub(super) fn derivative_of_block(problem: DampedProblem) -> Result<Vec<Vec<f64>>, NotProved> {
-    let equations = DampedEquations::of(problem)?;
+    let equations = DampedEquations::new(problem)?;
     let derivative = equations.derivative()?;
     let entry = |row: BasisFunction, place: usize| match place < equations.unknowns_before_waves() {
         true => WORKING.nearest(&equations.by_reciprocal(row)),
@@ -247,7 +247,7 @@ struct Multiplier {
 }
 
 impl Multiplier {
-    fn of(series: &FourierSeries) -> Self {
+    fn new(series: &FourierSeries) -> Self {
         let halved = |(k, ball): (usize, &Ball)| {
             let half = if k == 0 { ball.clone() } else { WORKING.divided(ball, 2) };
             SHORT.converted(&half, WORKING)
@@ -257,7 +257,7 @@ impl Multiplier {
     }
 
     /// The coefficient of one wave in the product with another.
-    fn at(&self, row: BasisFunction, column: BasisFunction) -> Ball {
+    fn coefficient(&self, row: BasisFunction, column: BasisFunction) -> Ball {
         let cosine = |m: usize| self.cosines.get(m).cloned().unwrap_or_else(Ball::zero);
         let sine = |m: usize| match m {
             0 => Ball::zero(),
@@ -313,15 +313,14 @@ impl Derivative {
         // (cos)' = -k sin, (sin)' = k cos.
         let drag = match row {
             BasisFunction::Cosine(harmonic) => {
-                SHORT.scaled(&self.by_damping.at(BasisFunction::Sine(harmonic), column), k)
+                SHORT.scaled(&self.by_damping.coefficient(BasisFunction::Sine(harmonic), column), k)
             }
-            BasisFunction::Sine(harmonic) => {
-                SHORT.scaled(&self.by_damping.at(BasisFunction::Cosine(harmonic), column), -k)
-            }
+            BasisFunction::Sine(harmonic) => SHORT
+                .scaled(&self.by_damping.coefficient(BasisFunction::Cosine(harmonic), column), -k),
         };
         SHORT.sum(
             &SHORT.product(&self.reciprocal, &drag),
-            &SHORT.product(&self.squared, &self.by_slope.at(row, column)),
+            &SHORT.product(&self.squared, &self.by_slope.coefficient(row, column)),
         )
     }
 
@@ -351,7 +350,7 @@ struct DampedEquations<'a> {
 }
 
 impl<'a> DampedEquations<'a> {
-    fn of(problem: DampedProblem<'a>) -> Result<Self, NotProved> {
+    fn new(problem: DampedProblem<'a>) -> Result<Self, NotProved> {
         let motion = &problem.motion;
         let drag = problem.along(problem.damping, motion)?.product(&motion.derivative());
         let force = problem.along(problem.force, motion)?;
@@ -378,8 +377,8 @@ impl<'a> DampedEquations<'a> {
         Ok(Derivative {
             reciprocal: SHORT.converted(&problem.reciprocal, WORKING),
             squared: SHORT.converted(&self.squared, WORKING),
-            by_damping: Multiplier::of(&damping),
-            by_slope: Multiplier::of(&slope),
+            by_damping: Multiplier::new(&damping),
+            by_slope: Multiplier::new(&slope),
             damping,
             slope,
         })
@@ -425,12 +424,12 @@ struct DampedBoundData<'a> {
 }
 
 impl<'a> DampedBoundData<'a> {
-    fn of(problem: DampedProblem<'a>) -> Result<Self, NotProved> {
+    fn new(problem: DampedProblem<'a>) -> Result<Self, NotProved> {
         // Without p among the unknowns all weigh the same.
         let sigma = if problem.is_free() { problem.sigma } else { 0 };
-        let inverse = Inverse::of(problem.inverse, problem.inverse_bits, sigma);
+        let inverse = Inverse::from_entries(problem.inverse, problem.inverse_bits, sigma);
         let next = (problem.highest + 1) as f64;
-        let equations = DampedEquations::of(problem)?;
+        let equations = DampedEquations::new(problem)?;
         let beyond = Bound::exactly(1.0).over(next);
         let (mut size, mut size_of_derivative) = (beyond.over(next), beyond);
         for (column, wave) in equations.block.iter().enumerate() {
@@ -813,7 +812,7 @@ mod tests {
                 Some(_) => light = spoilt.clone(),
             }
             for (certificate, is_proved) in [(&sound, true), (&spoilt, false), (&light, false)] {
-                let system = DampedBoundData::of(certificate.problem()).expect("a system");
+                let system = DampedBoundData::new(certificate.problem()).expect("a system");
                 let derivative = system.equations.derivative().expect("a derivative");
                 let contraction =
                     system.contraction(&derivative).map_or(f64::INFINITY, Bound::value);
@@ -836,7 +835,7 @@ mod tests {
     fn what_a_series_leaves_out_counts() {
         let certificate = certificate();
         let more = Bound::exactly(0.001);
-        let system = || DampedBoundData::of(certificate.problem()).expect("a system");
+        let system = || DampedBoundData::new(certificate.problem()).expect("a system");
         let own = system();
         let size = own.size.value();
         let reciprocal = WORKING.nearest(&own.equations.problem.reciprocal);
@@ -867,7 +866,7 @@ mod tests {
         // A harmonic beyond the block is off by itself.
         let mut shaken = certificate.clone();
         shaken.cosines[41] += Integer::from(1) << (shaken.bits - 20);
-        let defect = DampedBoundData::of(shaken.problem()).expect("a system").defect().value();
+        let defect = DampedBoundData::new(shaken.problem()).expect("a system").defect().value();
         assert!((defect * f64::from(1 << 20) - 1.0).abs() < 0.2, "{defect}");
     }
 
@@ -879,7 +878,7 @@ mod tests {
 
     fn second_derivative_is_bounded(certificate: &DampedCertificate) {
         let (h, within) = (Bound::power_of_two(-20), WORKING.fraction(&ratio(1, 1 << 20)));
-        let system = DampedBoundData::of(certificate.problem()).expect("a system");
+        let system = DampedBoundData::new(certificate.problem()).expect("a system");
         let ball = system.equations.problem.motion.clone().widened(h);
         let slope = |expression: &Expr| expression.differentiate(coordinate()).expect("a slope");
         let norm = |expression: &Expr| {

@@ -130,11 +130,11 @@ pub fn enclose_impact(
     let duration = contact.duration(&qm)?;
     let period = WORKING.sum(&WORKING.scaled(&time_to_contact, 2), &duration);
     Ok(ImpactEnclosure {
-        time_to_contact: Enclosure::of(&time_to_contact),
-        speed: Enclosure::of(&speed),
-        penetration: Enclosure::of(&WORKING.product(&qm, &qm)),
-        duration: Enclosure::of(&duration),
-        period: Enclosure::of(&period),
+        time_to_contact: Enclosure::from_ball(&time_to_contact),
+        speed: Enclosure::from_ball(&speed),
+        penetration: Enclosure::from_ball(&WORKING.product(&qm, &qm)),
+        duration: Enclosure::from_ball(&duration),
+        period: Enclosure::from_ball(&period),
     })
 }
 

@@ -56,7 +56,7 @@ use taylor::{SystemSeries, TaylorRun, TaylorStep};
 ///     ("q", "(2*cos(a - b)*sin(a) - 2*sin(b) + sin(a - b)*(2*p^2 + cos(a - b)*q^2))/(2 - cos(a - b)^2)"),
 /// ], &[])?;
 /// let path = links.solve(0.0, &[1.5, -0.5, 0.0, 0.0], 20.0, &[], &SystemOptions::default())?;
-/// let [a, b, p, q] = path.at(20.0).expect("a state")[..] else { unreachable!() };
+/// let [a, b, p, q] = path.states_at(20.0).expect("a state")[..] else { unreachable!() };
 /// let energy = p * p + q * q / 2.0 + (a - b).cos() * p * q - 2.0 * a.cos() - b.cos();
 /// assert!((energy + 2.0 * 1.5_f64.cos() + 0.5_f64.cos()).abs() < 1e-12);
 /// # Ok::<(), lindstedt::system::SystemError>(())
@@ -343,7 +343,7 @@ impl Path {
 
     /// The states at many times, in increasing order: those of the times that are within the path
     /// are added to `kept`, and the first states there to the columns, one each. Costs less than as
-    /// many calls of [`Path::at`] and has the same values.
+    /// many calls of [`Path::states_at`] and has the same values.
     pub fn sample(&self, times: &[f64], kept: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         match &self.motion {
             PathRepresentation::Taylor { steps, start } => {
@@ -379,7 +379,7 @@ impl Path {
 /// let solver = System::parse(&[("x", "v"), ("v", "-k*x")], &[("k", 4.0)])?.solver(&[], &SystemOptions::default());
 /// let slower = solver.with_numbers(&stiffness(0.25)).expect("equations of the same form");
 /// let path = slower.solve(0.0, &[1.0, 0.0], 2.0)?;
-/// assert!((path.at(2.0).expect("a state")[0] - 1.0_f64.cos()).abs() < 1e-14);
+/// assert!((path.states_at(2.0).expect("a state")[0] - 1.0_f64.cos()).abs() < 1e-14);
 /// # Ok::<(), lindstedt::system::SystemError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -527,7 +527,7 @@ impl System {
     /// let system = System::parse(&[("x", "x*(1 - y)"), ("y", "y*(x - 1)")], &[])?;
     /// let [taylor, runge_kutta] = [Integrator::Taylor, Integrator::RungeKutta].map(|integrator| {
     ///     let options = SystemOptions { integrator, ..SystemOptions::default() };
-    ///     system.solve(0.0, &[2.0, 1.0], 10.0, &[], &options).map(|path| path.at(10.0))
+    ///     system.solve(0.0, &[2.0, 1.0], 10.0, &[], &options).map(|path| path.states_at(10.0))
     /// });
     /// let difference = taylor?.expect("a state")[0] - runge_kutta?.expect("a state")[0];
     /// assert!(difference.abs() < 1e-9);

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// use lindstedt::Interrupt;
 ///
 /// static STOP: AtomicBool = AtomicBool::new(false);
-/// let interrupt = Interrupt::by(&STOP);
+/// let interrupt = Interrupt::from_flag(&STOP);
 /// assert!(!interrupt.is_requested());
 /// STOP.store(true, Ordering::Relaxed);
 /// assert!(interrupt.is_requested());

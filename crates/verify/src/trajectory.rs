@@ -294,7 +294,7 @@ impl TrajectoryRequest {
     /// let mut course = TrajectoryRequest::of_equation(&Oscillator::parse("x'' + 4*x = 0")?);
     /// course.begin("x".into(), 1.0)?;
     /// let motion = course.follow()?;
-    /// assert!((motion.at(10.0).ok_or("no state")?[0] - 20.0_f64.cos()).abs() < 1e-13);
+    /// assert!((motion.states_at(10.0).ok_or("no state")?[0] - 20.0_f64.cos()).abs() < 1e-13);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn follow(self) -> Result<Trajectory, TrajectoryError> {

@@ -164,7 +164,7 @@ impl FrictionTable {
     /// ```
     /// use lindstedt::{audit::paper::FrictionTable, impact::friction};
     ///
-    /// let table = FrictionTable::of(&friction::study(friction::FrictionSetup::default())?);
+    /// let table = FrictionTable::from_study(&friction::study(friction::FrictionSetup::default())?);
     /// assert_eq!((table.best().name, table.best().either), ("3.14", table.entries()));
     /// # Ok::<(), friction::FrictionError>(())
     /// ```

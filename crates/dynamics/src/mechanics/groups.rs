@@ -73,7 +73,7 @@ impl Groups {
     /// pendulum.dissipation = "c*x'^2/2".parse()?;
     /// let units = [("m", "kg"), ("L", "m"), ("g", "m/s^2"), ("c", "N*m*s"), ("x", "rad")];
     /// let units = units.map(|(name, unit)| (name.into(), unit.parse::<Dimension>().expect("a unit"))).into();
-    /// let groups = Groups::of(&pendulum, &pendulum.equations()?, &units)?;
+    /// let groups = Groups::from_mechanism(&pendulum, &pendulum.equations()?, &units)?;
     /// assert_eq!(groups.left[0].to_string(), "x'' + 2*zeta*x' + sin(x)");
     /// assert_eq!(groups.groups[0].definition.to_string(), "c/(2*sqrt(g)*L^(3/2)*m)");
     /// # Ok::<(), Box<dyn std::error::Error>>(())

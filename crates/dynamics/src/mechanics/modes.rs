@@ -88,8 +88,8 @@ impl Modes {
     ///
     /// let pendulum = Mechanism::parse(&["x"], "m*L^2*x'^2/2", "-m*g*L*cos(x)")?.equations()?;
     /// let [hanging, upright] = &equilibria(&pendulum)?[..] else { unreachable!() };
-    /// assert_eq!(Modes::at(&pendulum, hanging)?.square()?.map(|square| square.to_string()), Some("g/L".to_owned()));
-    /// assert_eq!(Modes::at(&pendulum, upright)?.square()?.map(|square| square.to_string()), Some("-g/L".to_owned()));
+    /// assert_eq!(Modes::about_rest(&pendulum, hanging)?.square()?.map(|square| square.to_string()), Some("g/L".to_owned()));
+    /// assert_eq!(Modes::about_rest(&pendulum, upright)?.square()?.map(|square| square.to_string()), Some("-g/L".to_owned()));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn about_rest(equations: &EquationsOfMotion, rest: &Rest) -> Result<Self, MechanicsError> {

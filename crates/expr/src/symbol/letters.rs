@@ -41,10 +41,10 @@ pub fn may_stand_for(name: &str, usual: Symbol) -> bool {
 ///
 /// ```
 /// # use lindstedt_expr as lindstedt;
-/// use lindstedt::expr::{Expr, Letters};
+/// use lindstedt::expr::{Expr, ResultSymbols};
 /// use lindstedt::Symbol;
 ///
-/// let letters = Letters::beside(&["omega".into()], false);
+/// let letters = ResultSymbols::avoiding(&["omega".into()], false);
 /// assert_eq!((letters.amplitude.name(), letters.frequency.name()), ("A", "Omega"));
 /// let ratio = Expr::divide(&Expr::symbol("omega"), &Expr::from(Symbol::new("omega").apart()))?;
 /// let in_force = letters.in_force();

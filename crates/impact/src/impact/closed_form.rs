@@ -111,7 +111,7 @@ pub struct JudgedPhases {
 /// let impact = solve(Setup { stiffness: 1e6, ..Setup::default() })?;
 /// let derived = impact.column(PhaseReading::Derived).ok_or("none passes")?;
 /// let contact = &derived.phases.phases[1];
-/// assert!(contact.end > contact.start && contact.at(contact.start).1 > 0.0); // pressed into the barrier
+/// assert!(contact.end > contact.start && contact.phase_point_at(contact.start).1 > 0.0); // pressed into the barrier
 /// assert!((derived.phases.penetration / impact.truth.penetration - 1.0).abs() < 0.01);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

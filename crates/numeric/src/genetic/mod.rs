@@ -33,7 +33,7 @@
 //! use lindstedt::genetic::{Evaluation, GeneticOptions, Space, generator, search};
 //!
 //! let space = Space::new(vec![[-1.0, 2.0], [-1.0, 2.0]])?;
-//! let paraboloid = |point: &[f64]| Evaluation::of(point.iter().map(|x| x * x).sum());
+//! let paraboloid = |point: &[f64]| Evaluation::unconstrained(point.iter().map(|x| x * x).sum());
 //! let run = search(&space, paraboloid, &GeneticOptions::default(), &mut generator(1, 0), &mut |_| true);
 //! assert!(run.best.is_some_and(|best| best.evaluation.objectives[0] < 1e-6));
 //! # Ok::<(), lindstedt::genetic::SpaceError>(())

@@ -24,9 +24,9 @@ const STEP_TOLERANCE: f64 = 1e-13;
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::period::{Force, conservative_period};
+/// use lindstedt::numeric::period::{PiecewiseForce, conservative_period};
 ///
-/// let period = conservative_period(&Force::smooth(&f64::sin), 0.0, 1.5)?; // a pendulum, rad
+/// let period = conservative_period(&PiecewiseForce::smooth(&f64::sin), 0.0, 1.5)?; // a pendulum, rad
 /// assert!((std::f64::consts::TAU / period - 0.860_608_346_679_613).abs() < 1e-12);
 /// # Ok::<(), lindstedt::numeric::period::PeriodError>(())
 /// ```

@@ -122,7 +122,7 @@ pub struct Options {
     /// // Stopped before it begins: the orders that need no long work are there.
     /// static STOP: AtomicBool = AtomicBool::new(true);
     /// static COUNTER: Counter = Counter::new();
-    /// let supervision = Supervision { interrupt: Interrupt::by(&STOP), progress: Progress::by(&COUNTER) };
+    /// let supervision = Supervision { interrupt: Interrupt::from_flag(&STOP), progress: Progress::from_counter(&COUNTER) };
     /// let options = Options { order: Some(300), frequency_alone: true, supervision, ..Options::default() };
     /// let solution = solve(&Oscillator::parse("x'' - mu*(1 - x^2)*x' + x = 0")?, &options)?;
     /// assert!((1..300).contains(&solution.order));

@@ -9,8 +9,8 @@ use std::fmt;
 /// use lindstedt::solution::Degrees;
 ///
 /// assert_eq!(Degrees::Quotient(2, 1).to_string(), "[2/1]");
-/// assert_eq!(Degrees::of(&[3, 2]), Some(Degrees::Quotient(3, 2)));
-/// assert_eq!(Degrees::of(&[3]), None);
+/// assert_eq!(Degrees::from_list(&[3, 2]), Some(Degrees::Quotient(3, 2)));
+/// assert_eq!(Degrees::from_list(&[3]), None);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Degrees {

@@ -26,7 +26,7 @@
 //!
 //! // The paper's pendulum on a soft barrier: gravity is half of what turns it.
 //! let contact = ExactContact::new(|d| (0.323 + d).sin() + d.powf(1.5), 0.5)?;
-//! assert!((contact.at(contact.duration).1 + 0.5).abs() < 1e-12);
+//! assert!((contact.phase_point_at(contact.duration).1 + 0.5).abs() < 1e-12);
 //! let series = contact.sine_series(1e-6);
 //! assert!(series.deviation <= 1e-6 && series.harmonics.len() == 10);
 //! # Ok::<(), lindstedt::impact::contact::ContactError>(())
@@ -261,8 +261,8 @@ impl SineSeries {
     /// use lindstedt::impact::contact::{HuntCrossley, SineSeries};
     ///
     /// let contact = HuntCrossley::new(1.5, 1e6, 0.3, 1.0)?;
-    /// let series = SineSeries::of(|s| contact.position(s), contact.duration, 0.0, contact.depth, 1e-6);
-    /// assert!(series.deviation <= 1e-6 && (series.at(contact.duration).1 + contact.exit_speed).abs() < 1e-3);
+    /// let series = SineSeries::from_motion(|s| contact.position(s), contact.duration, 0.0, contact.depth, 1e-6);
+    /// assert!(series.deviation <= 1e-6 && (series.phase_point_at(contact.duration).1 + contact.exit_speed).abs() < 1e-3);
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
     /// ```
     pub fn from_motion(

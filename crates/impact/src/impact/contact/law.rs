@@ -171,9 +171,9 @@ impl Touch<'_> {
     /// use lindstedt::impact::contact::{ContactLaw, Touch};
     ///
     /// let touch = Touch { stiffness: 1e6, speed: 1.0, ..Touch::default() };
-    /// let (exact, sines) = (touch.by(ContactLaw::Exact)?, touch.by(ContactLaw::TwoHarmonics)?);
+    /// let (exact, sines) = (touch.contact_by(ContactLaw::Exact)?, touch.contact_by(ContactLaw::TwoHarmonics)?);
     /// assert!((sines.duration / exact.duration - 1.0).abs() < 2e-3);
-    /// assert!((sines.at(0.0).1 - 1.0).abs() < 1e-10);
+    /// assert!((sines.phase_point_at(0.0).1 - 1.0).abs() < 1e-10);
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
     /// ```
     pub fn contact_by(&self, law: ContactLaw) -> Result<ContactMotion, ContactError> {
@@ -294,10 +294,10 @@ impl ContactMotion {
     /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::contact::{ContactLaw, Touch};
     ///
-    /// let contact = Touch::default().by(ContactLaw::PowerLaw)?;
+    /// let contact = Touch::default().contact_by(ContactLaw::PowerLaw)?;
     /// let series = contact.sine_series(1e-6);
     /// let time = 0.3 * contact.duration;
-    /// assert!((series.at(time).0 - contact.position(time)).abs() <= 1e-6 * contact.depth);
+    /// assert!((series.phase_point_at(time).0 - contact.position(time)).abs() <= 1e-6 * contact.depth);
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
     /// ```
     pub fn sine_series(&self, tolerance: f64) -> SineSeries {
@@ -327,7 +327,7 @@ impl ContactMotion {
     /// use lindstedt::impact::contact::{ContactLaw, Touch};
     ///
     /// let touch = Touch { stiffness: 1e6, speed: 1.0, ..Touch::default() };
-    /// let formula = |law| touch.by(law).map(|motion| motion.closed_form(4, 1e-3));
+    /// let formula = |law| touch.contact_by(law).map(|motion| motion.closed_form(4, 1e-3));
     /// assert_eq!(formula(ContactLaw::Homotopy)?, "d(s) = 0.004122 sin(242.6 s)");
     /// assert_eq!(formula(ContactLaw::PowerLaw)?, "s = 0.006406 I(x; 0.4, 0.5), x = (d/0.004353)^2.5");
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())

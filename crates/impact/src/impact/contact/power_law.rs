@@ -85,7 +85,7 @@ impl PowerLaw {
     ///
     /// let hertz = PowerLaw::new(1.5, 1e6, 1.0)?;
     /// assert!((hertz.duration * hertz.speed / hertz.depth - 2.943_275_184_324_70).abs() < 1e-13);
-    /// assert!((hertz.at(hertz.duration / 2.0).0 - hertz.depth).abs() < 1e-15);
+    /// assert!((hertz.phase_point_at(hertz.duration / 2.0).0 - hertz.depth).abs() < 1e-15);
     /// assert!((hertz.velocity(hertz.duration) + 1.0).abs() < 1e-15); // it leaves as fast as it came
     /// # Ok::<(), lindstedt::impact::contact::ContactError>(())
     /// ```

@@ -50,7 +50,7 @@ impl SpeedRow {
     /// # use lindstedt_impact as lindstedt;
     /// use lindstedt::impact::friction::SpeedRow;
     ///
-    /// let row = SpeedRow::at(0.01);
+    /// let row = SpeedRow::new(0.01);
     /// assert!(row.sign == 1.0 && (row.error - 50.0).abs() < 1e-9);
     /// ```
     pub fn new(speed: f64) -> Self {

@@ -41,7 +41,7 @@ use crate::system::{Event, Path, PathEnd, SystemOptions};
 /// let model = Model { left: None, right: None, ..Model::default() };
 /// let case = PrimaryCase { primary, model, start: [0.0, 0.0, 0.1, 0.0] };
 /// let motion = simulate_primary(case, &PrimarySettings { duration: 10.0, ..PrimarySettings::default() })?;
-/// assert!((motion.at(10.0).ok_or("a state")?.y - 0.1 * 10.0_f64.cos()).abs() < 1e-5);
+/// assert!((motion.state_at(10.0).ok_or("a state")?.y - 0.1 * 10.0_f64.cos()).abs() < 1e-5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn simulate_primary(

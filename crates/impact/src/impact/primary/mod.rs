@@ -284,7 +284,7 @@ impl PrimaryMotion {
     /// let settings = PrimarySettings { duration: 20.0, ..PrimarySettings::default() };
     /// let motion = simulate_primary(case, &settings)?;
     /// assert!(motion.energy.residual < 1e-9 && !motion.impacts.is_empty());
-    /// let state = motion.at(20.0).ok_or("a state")?;
+    /// let state = motion.state_at(20.0).ok_or("a state")?;
     /// assert!((case.energy(state) / motion.energy.start - 1.0).abs() < 1e-9); // nothing damps
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

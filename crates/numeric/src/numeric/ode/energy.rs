@@ -518,9 +518,9 @@ fn size(function: &dyn Fn(f64) -> f64, from: f64, to: f64) -> f64 {
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
-/// use lindstedt::numeric::period::{Force, turning_point};
+/// use lindstedt::numeric::period::{PiecewiseForce, turning_point};
 ///
-/// let end = turning_point(&Force::smooth(&|x| x + 0.5 * x * x), 0.0, 0.5)?;
+/// let end = turning_point(&PiecewiseForce::smooth(&|x| x + 0.5 * x * x), 0.0, 0.5)?;
 /// let energy = |x: f64| x * x / 2.0 + x.powi(3) / 6.0;
 /// assert!(end < -0.5 && (energy(end) - energy(0.5)).abs() < 1e-12);
 /// # Ok::<(), lindstedt::numeric::period::PeriodError>(())

@@ -28,7 +28,7 @@
 //!
 //! let period = std::f64::consts::TAU / 0.860_608_346_679_613;
 //! assert!((path.end().t - 0.25 * period).abs() < 1e-9);
-//! assert!(path.at(1.0).is_some_and(|(x, v)| x > 0.0 && v < 0.0));
+//! assert!(path.phase_point_at(1.0).is_some_and(|(x, v)| x > 0.0 && v < 0.0));
 //! # Ok::<(), lindstedt::numeric::ode::IntegrationError>(())
 //! ```
 //!

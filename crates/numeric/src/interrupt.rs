@@ -35,7 +35,7 @@ impl Interrupt {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Progress(Option<&'static Counter>);
 
-/// How many parts of how many are done.
+/// The progress of a computation: the parts done, and all of them.
 #[derive(Debug, Default)]
 pub struct Counter {
     done: AtomicU64,
@@ -48,7 +48,7 @@ impl Counter {
         Self { done: AtomicU64::new(0), all: AtomicU64::new(0) }
     }
 
-    /// How many parts are done, of how many; of none before the work has begun.
+    /// Returns the number of parts done and of all parts, both zero before the work begins.
     pub fn read(&self) -> (u64, u64) {
         (self.done.load(Ordering::Relaxed), self.all.load(Ordering::Relaxed))
     }

@@ -4,7 +4,7 @@ use rand::{Rng, RngExt};
 
 use super::space::Space;
 
-/// How two parents make a child.
+/// The operator that makes a child of two parents.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Crossover {
     /// On the line from the worse to the better parent, beyond it: [`heuristic`], of this ratio.

@@ -21,7 +21,7 @@ use rand::{Rng, RngExt};
 
 use super::space::Space;
 
-/// How a parent makes a child alone.
+/// The operator that makes a child of one parent.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Mutation {
     /// [`adaptive_feasible`].

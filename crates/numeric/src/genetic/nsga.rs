@@ -12,10 +12,11 @@ use super::population::{GeneticOptions, GeneticRun, Individual};
 use super::space::{Evaluation, Space};
 use super::stopping::GeneticStop;
 
-/// How near to their parents the children of a crossover are: the larger the nearer.
+/// Distribution index of the simulated binary crossover: the larger it is, the nearer the children
+/// are to their parents.
 const CROSSOVER_INDEX: f64 = 15.0;
 
-/// The same of a mutation.
+/// Distribution index of the polynomial mutation.
 const MUTATION_INDEX: f64 = 20.0;
 
 /// The probability that two parents are crossed at all.
@@ -153,7 +154,7 @@ fn standings(population: &[Individual], tolerance: f64) -> (Vec<usize>, Vec<f64>
     (ranks, lonely)
 }
 
-/// How many stand in the front and are feasible.
+/// Number of feasible individuals in the first front.
 fn front_size(population: &[Individual], ranks: &[usize], tolerance: f64) -> f64 {
     let standing = population.iter().zip(ranks);
     let front =

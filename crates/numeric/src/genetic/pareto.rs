@@ -74,13 +74,13 @@ pub fn non_dominated(all: &[&Evaluation], tolerance: f64) -> Vec<usize> {
     (0..all.len()).filter(stands).collect()
 }
 
-/// How lonely everybody is among these values: the sum over them of the distance between the
+/// Crowding distance of every individual: the sum over the objectives of the distance between its
 /// neighbours on either side, in parts of the whole range; infinite at the ends.
 pub fn crowding(all: &[&Evaluation]) -> Vec<f64> {
     let mut distance = vec![0.0; all.len()];
     let values = all.iter().map(|each| each.objectives.len()).max().unwrap_or(0);
     for value in 0..values {
-        // What is not there is as bad as can be.
+        // A missing objective counts as infinite.
         let of = |index: usize| all[index].objectives.get(value).copied().unwrap_or(f64::INFINITY);
         let mut order: Vec<usize> = (0..all.len()).collect();
         order.sort_by(|one, other| of(*one).total_cmp(&of(*other)));

@@ -1,4 +1,4 @@
-//! What a point is worth that breaks a constraint: a score for every individual, to be small.
+//! The score of a point that violates a constraint: a number for every individual, to be small.
 //!
 //! - Death penalty: none at all, infinite.
 //! - Feasible first (K. Deb, *Comput. Methods Appl. Mech. Eng.* 186 (2000) 311): the worst value of
@@ -19,7 +19,7 @@
 
 use super::space::Evaluation;
 
-/// What becomes of points that break a constraint.
+/// The treatment of points that violate a constraint.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Penalty {
     /// They count for nothing.
@@ -31,7 +31,7 @@ pub enum Penalty {
     AugmentedLagrangian {
         /// rho at first.
         initial: f64,
-        /// What it is multiplied by.
+        /// The factor of the violation.
         factor: f64,
     },
 }
@@ -48,7 +48,7 @@ pub struct Multipliers {
     pub equalities: Vec<f64>,
     /// Of the inequalities, none negative.
     pub inequalities: Vec<f64>,
-    /// What the best point violated last.
+    /// Violation of the best point of the last generation.
     violation: f64,
 }
 

@@ -12,8 +12,7 @@ use super::selection::stochastic_uniform;
 use super::space::{Evaluation, Space};
 use super::stopping::{GeneticStop, StallTest, has_stalled};
 
-/// How a population lives; the default has real numbers in place of bits, and a
-/// penalty that is one.
+/// Options of a genetic algorithm. The default has real numbers in place of bits, and a penalty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GeneticOptions {
     /// Individuals.
@@ -22,15 +21,15 @@ pub struct GeneticOptions {
     pub elite: usize,
     /// The part of the others that crossover makes; mutation makes the rest.
     pub crossover_fraction: f64,
-    /// How genes are written.
+    /// The encoding of points as genes.
     pub coding: Coding,
-    /// How two parents make a child.
+    /// The crossover of two parents.
     pub crossover: Crossover,
-    /// How one parent makes a child.
+    /// The mutation of a parent.
     pub mutation: Mutation,
-    /// What a broken constraint costs.
+    /// The penalty of a violated constraint.
     pub penalty: Penalty,
-    /// How far an equality may be from zero.
+    /// Largest value of an equality that counts as zero.
     pub constraint_tolerance: f64,
     /// The most generations after the random population.
     pub generations: usize,
@@ -38,7 +37,7 @@ pub struct GeneticOptions {
     pub stall_generations: usize,
     /// Below this change it has ceased to change.
     pub function_tolerance: f64,
-    /// How that is measured.
+    /// The measure of that change.
     pub stall_test: StallTest,
     /// The most evaluations of a run, where there is such a limit.
     pub budget: Option<usize>,
@@ -105,9 +104,9 @@ pub enum OptionsError {
         "{operator} needs numbers and knows nothing of bits: use {instead}, or leave out `coding`"
     )]
     NeedsNumbers {
-        /// What was asked for.
+        /// The operator asked for.
         operator: &'static str,
-        /// What works.
+        /// The operators that work instead.
         instead: &'static str,
     },
     /// An operator that needs bits.
@@ -210,7 +209,7 @@ impl GeneticOptions {
         }
     }
 
-    /// How many children crossover makes, and how many mutation.
+    /// Numbers of children by crossover and by mutation.
     ///
     /// ```
     /// # use lindstedt_numeric as lindstedt;
@@ -238,11 +237,11 @@ impl GeneticOptions {
 pub struct Individual {
     /// The point, in the box.
     pub point: Vec<f64>,
-    /// What it is worth.
+    /// Its objectives and constraints.
     pub evaluation: Evaluation,
 }
 
-/// What came of one run.
+/// The result of one run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GeneticRun {
     /// The best of all points that break no constraint; nothing where there was none.
@@ -337,7 +336,8 @@ pub fn search(
     }
 }
 
-/// Where genes become members of the population; remembers the best that breaks no constraint.
+/// Decodes and evaluates the genes of new members of the population; keeps the best point that
+/// violates no constraint.
 struct PopulationBuilder<'a, E> {
     space: &'a Space,
     options: &'a GeneticOptions,

@@ -1,5 +1,4 @@
-//! What a genetic algorithm is to be measured by: points drawn at random, and differential
-//! evolution.
+//! Baselines for a genetic algorithm: random points, and differential evolution.
 //!
 //! The latter is that of the crate `basin`, DE/rand/1/bin with its default weights (R. Storn and K.
 //! Price, *J. Glob. Optim.* 11 (1997) 341). Both get the same number of evaluations; constraints by
@@ -92,8 +91,8 @@ impl<F> Constraints for &Boxed<F> {
     }
 }
 
-/// What a point costs that breaks a constraint, or has no value: more than any that has one, and
-/// finite.
+/// Cost of a point that violates a constraint or has no value: larger than that of any other point,
+/// and finite.
 const BROKEN: f64 = 1e100;
 
 impl<F: FnMut(&[f64]) -> Evaluation> CostFunction for &Boxed<F> {

@@ -17,11 +17,11 @@ pub enum SpaceError {
     /// Bounds in the wrong order, equal or no numbers.
     #[error("the bounds {lower} and {upper} of variable {number} leave nothing between them")]
     Inverted {
-        /// Which, counted from 1.
+        /// Number of the variable, counted from 1.
         number: usize,
-        /// What was given for the lower one.
+        /// The given lower bound.
         lower: f64,
-        /// What was given for the upper one.
+        /// The given upper bound.
         upper: f64,
     },
 }
@@ -71,14 +71,14 @@ impl Space {
     }
 }
 
-/// What a point is worth.
+/// Objectives and constraints of a point.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Evaluation {
-    /// What is to be small; infinite where there is no value.
+    /// Objectives to be minimised; infinite if they have no value.
     pub objectives: Vec<f64>,
-    /// What is to be zero, in parts of something that makes 1 a lot.
+    /// Equalities, to be zero, scaled so that 1 is a large violation.
     pub equalities: Vec<f64>,
-    /// What is to be no more than zero, likewise.
+    /// Inequalities, to be at most zero, scaled likewise.
     pub inequalities: Vec<f64>,
 }
 
@@ -94,7 +94,7 @@ impl Evaluation {
         if value.is_nan() { f64::INFINITY } else { value }
     }
 
-    /// By how much it breaks its constraints, all together; an equality holds up to the tolerance.
+    /// Sum of the violations of all constraints; an equality is violated beyond the tolerance.
     pub fn violation(&self, tolerance: f64) -> f64 {
         let equalities = self.equalities.iter().map(|value| (value.abs() - tolerance).max(0.0));
         let inequalities = self.inequalities.iter().map(|value| value.max(0.0));

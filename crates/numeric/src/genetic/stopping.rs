@@ -12,7 +12,7 @@
 //! run before generation 51: a run of exactly 51 generations is one whose best value hardly moved
 //! after the first.
 
-/// How the change of the best value over a window is measured.
+/// The measure of the change of the best value over a window of generations.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum StallTest {
     /// Its average.

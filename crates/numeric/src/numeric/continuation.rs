@@ -13,7 +13,7 @@
 use nalgebra::allocator::Allocator;
 use nalgebra::{DMatrix, DVector, DefaultAllocator, Dim, Dyn, LU, OVector};
 
-/// What comes of a step.
+/// The result of one continuation step.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ContinuationStep<Point, End> {
     /// The next point, and the ratio of the next step to this one.

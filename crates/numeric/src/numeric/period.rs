@@ -96,7 +96,7 @@ pub struct Swing {
 }
 
 impl Swing {
-    /// The same where positions were distances from `origin`.
+    /// Returns the motion with `origin` added to all positions.
     #[must_use]
     pub fn moved(mut self, origin: f64) -> Self {
         self.equilibrium += origin;

@@ -105,7 +105,8 @@ pub struct Shooting<'a, const N: usize> {
     pub solve: fn(DMatrix<f64>, DVector<f64>) -> Option<DVector<f64>>,
     /// Newton's steps after which the search ends.
     pub most: usize,
-    /// How far the start may move, in the sizes, and the period, in its guess.
+    /// Largest change of the start, in units of the sizes, and of the period, in units of its
+    /// guess.
     pub far: f64,
     /// The starts of orbits that are not looked for.
     pub known: &'a [[f64; N]],
@@ -176,9 +177,8 @@ impl<const N: usize> Shooting<'_, N> {
     }
 }
 
-/// What [`Shooting::orbit`] has to know of a motion, its derivative by central differences:
-/// `follow` gives the state after a period from a start, and the path; `sizes` are those of the
-/// states.
+/// The arguments of [`Shooting::orbit`] with the derivative by central differences: `follow`
+/// returns the state after a period from a start, and the path; `sizes` are those of the states.
 pub fn by_differences<const N: usize, Path>(
     start: [f64; N],
     sizes: [f64; N],

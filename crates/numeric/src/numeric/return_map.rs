@@ -23,8 +23,7 @@ use crate::numeric::ode::{Event, IntegrationOptions, State, StopReason, Trajecto
 /// Tolerance per step.
 const STEP_TOLERANCE: f64 = 1e-13;
 
-/// What a return may miss its start by, relative to it, where it is the accuracy of the steps that
-/// decides.
+/// Relative error of a return to the start that is accepted if the accuracy of the steps decides.
 const ROUNDING: f64 = 1e-11;
 
 /// Tolerance per step of the implicit method, and what its returns may miss their start by.
@@ -37,7 +36,7 @@ const STEPS_OF_SEARCH: usize = 20_000;
 const STEPS_OF_RELAXATION: usize = 40_000;
 const STIFF_STEPS: usize = 40_000;
 
-/// How long a return may take, in radians of the linear frequency.
+/// The longest time of a return, in radians of the linear frequency.
 const LONGEST: f64 = 1e4;
 const STIFF_LONGEST: f64 = 1e12;
 
@@ -45,8 +44,8 @@ const STIFF_LONGEST: f64 = 1e12;
 const RATIO: f64 = 1.15;
 const RINGS: i32 = 30;
 
-/// How many amplitudes away a motion that has not turned is gone for good: no cycle that is looked
-/// for reaches as far.
+/// Distance, in amplitudes, beyond which a motion that has not turned is lost: no cycle that is
+/// looked for reaches as far.
 const GONE: f64 = 1e4;
 
 /// Rings on end without a return after which a side is given up.
@@ -56,7 +55,7 @@ const LOST_RINGS: usize = 4;
 pub struct AutonomousEquation<'a> {
     /// The acceleration.
     pub acceleration: &'a dyn Fn(f64, f64) -> f64,
-    /// Where the motion swings about.
+    /// The equilibrium about which the motion oscillates.
     pub equilibrium: f64,
     /// About the amplitude of the cycle looked for: the one nearest to it, by ratio, is found.
     /// Positive.
@@ -190,8 +189,8 @@ pub fn nearest_limit_cycle(
     })
 }
 
-/// Where the attraction is strong, as that of a relaxation oscillation, two returns are on the
-/// cycle to the last digit.
+/// Finds a cycle of strong attraction, as that of a relaxation oscillation, directly: after two
+/// returns the motion is on it to the last digit.
 fn at_once(
     equation: &AutonomousEquation,
     attracts: bool,
@@ -241,8 +240,8 @@ fn by_rings(equation: &AutonomousEquation, directions: &[bool]) -> Option<Numeri
     for ring in 1..=RINGS {
         for ((&attracts, ends), lost) in directions.iter().zip(&mut ends).zip(&mut lost) {
             for (side, sign) in [(0, -1), (1, 1)] {
-                // Where motions do not come back from several rings on end, they do not from
-                // beyond.
+                // If motions from several neighbouring rings do not return, those from beyond do
+                // not either.
                 if lost[side] == LOST_RINGS {
                     continue;
                 }
@@ -296,7 +295,7 @@ fn swing(
     follow(equation, forward, start, LONGEST, &options)
 }
 
-/// The same by an implicit method, however long it takes.
+/// The half swing by an implicit method, whatever the number of steps.
 fn stiff_swing(
     equation: &AutonomousEquation,
     forward: bool,

@@ -78,7 +78,7 @@ pub enum PeriodError {
     Escapes {
         /// The release point.
         start: f64,
-        /// How far the search went.
+        /// The position that the search has reached.
         searched: f64,
         /// The range of periodic motions, in words.
         range: Option<String>,
@@ -127,7 +127,7 @@ pub enum PeriodError {
     /// A place in the way that no motion passes.
     #[error("the motion runs into x = {place}, where the force has no finite value")]
     Pole {
-        /// Where.
+        /// The position.
         place: f64,
     },
     /// The force is beyond all numbers where the motion leads.
@@ -135,9 +135,9 @@ pub enum PeriodError {
         "the force overflows at x = {place:e}: `{term}` is beyond the range of double precision, 1.8e308"
     )]
     Overflow {
-        /// Where.
+        /// The position.
         place: f64,
-        /// What is beyond, in words.
+        /// The part of the force that overflows, in words.
         term: String,
     },
     /// The force changes so often along the motion that its period would take too long.
@@ -177,7 +177,7 @@ impl PeriodError {
         }
     }
 
-    /// The same where positions were distances from `origin`.
+    /// Returns the error with `origin` added to all positions.
     #[must_use]
     pub fn moved(mut self, origin: f64) -> Self {
         match &mut self {
@@ -248,7 +248,7 @@ impl<'a> PiecewiseForce<'a> {
 /// `dt/dphi = 1/sqrt(2 g)` of the substitution above, piece by piece between the cuts of the force.
 pub struct TimePerAngle<'a> {
     force: &'a PiecewiseForce<'a>,
-    /// By how much longer an instant takes than without inertia of position.
+    /// Time dilation sqrt(M(x)) of a position-dependent mass, one if there is none.
     weight: &'a dyn Fn(f64) -> f64,
     /// From the far turning point to the start.
     pub knots: Vec<f64>,
@@ -382,7 +382,7 @@ pub fn grows_towards_zero(force: &dyn Fn(f64) -> f64, size: f64) -> bool {
 /// Further knots on both sides of zero, at distances of equal ratio: on each of these pieces a
 /// force that is infinite at zero is smooth.
 fn graded(knots: &[f64]) -> Vec<f64> {
-    /// What lies closer than this, relatively, adds less to the period than its rounding.
+    /// Relative distance below which a piece adds less to the period than its rounding.
     const CLOSEST: f64 = 1e-15;
     const RATIO: f64 = 0.25;
     let (end, start) = (knots[0], knots[knots.len() - 1]);
@@ -465,7 +465,8 @@ fn integral_within(
         return Ok(value);
     }
     match integrate_within(function, &[from, to], [TOLERANCE, 0.0], most_panels) {
-        // Where pull and push cancel, the integral is as good as the forces in it allow.
+        // If attraction and repulsion cancel, the integral is as accurate as the forces in it
+        // allow.
         Err(QuadratureError::NotConverged { value, error_estimate, .. })
             if error_estimate <= f64::max(1e-11 * size(function, from, to), negligible) =>
         {
@@ -536,7 +537,7 @@ pub fn turning_point(
     /// So many amplitudes away it is not the waves on the way that are in question, as over one
     /// summit of a pendulum after the other.
     const FAR: f64 = 100.0;
-    /// How often a stretch on which the force has no integral is halved.
+    /// Number of halvings of an interval on which the force has no integral.
     const HALVINGS: u32 = 60;
     /// Enough for a root at an end of a stretch; one with a pole is halved the sooner.
     const FEW_PANELS: usize = 120;

@@ -23,7 +23,7 @@ pub struct Event<'a, S = State> {
     pub(super) action: Action<'a, S>,
 }
 
-/// Which crossings of zero count.
+/// The direction of a zero crossing that counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
     /// From negative to positive.
@@ -34,7 +34,7 @@ pub enum Direction {
     Either,
 }
 
-/// What happens at an event.
+/// The action at an event.
 pub enum Action<'a, S = State> {
     /// It is listed in the trajectory; the run goes on.
     Record,
@@ -143,9 +143,9 @@ impl SignTracker {
         let starts_on_surface = first && samples.first().is_some_and(|&(_, value)| value == 0.0);
         if starts_on_surface {
             self.starts_on_surface = true;
-            // What rounding leaves of the values has any sign, and so has the error of the
-            // polynomial where what the function depends on is at rest: it leaves as a square of
-            // time at least.
+            // Rounding errors have any sign, and so has the error of the polynomial if the
+            // arguments of the event function are at rest: the function leaves zero as the square
+            // of time at least.
             let rounding = rounding_at(event, &step.state_at(0.0));
             let largest =
                 samples.iter().fold(0.0, |largest: f64, (_, value)| largest.max(value.abs()));
@@ -227,8 +227,7 @@ fn sample_fractions(first: bool) -> impl Iterator<Item = f64> {
     std::iter::once(0.0).chain(extra).chain(SAMPLES[1..].iter().copied())
 }
 
-/// Where |value| has a minimum between samples of one sign, inserts the nearest point found if it
-/// lies beyond zero.
+/// Inserts the minimum of |value| between samples of one sign if it lies beyond zero.
 fn insert_near_misses(samples: &mut Vec<(f64, f64)>, value_at: impl Fn(f64) -> f64) {
     let mut misses = Vec::new();
     let mut search = |from: f64, to: f64, sign: f64| {

@@ -19,7 +19,7 @@ use super::trajectory::{
 };
 use crate::interrupt::Interrupt;
 
-/// How closely and how long to integrate.
+/// Tolerances and limits of an integration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct IntegrationOptions {
     /// Error allowed per step relative to the size of each value.
@@ -47,7 +47,7 @@ impl Default for IntegrationOptions {
 }
 
 impl IntegrationOptions {
-    /// The same relative and absolute tolerance, the rest as in the default.
+    /// Options with one number as relative and absolute tolerance, the rest as in the default.
     pub fn with_tolerance(tolerance: f64) -> Self {
         Self {
             relative_tolerance: tolerance,
@@ -84,7 +84,7 @@ fn first_order(
     move |t, &[x, v], rates| *rates = [v, acceleration(t, x, v)]
 }
 
-/// What makes a run impossible from the outset. A run that began keeps what it has, see
+/// An error that prevents a run from the outset. A run that began keeps what it has, see
 /// [`StopReason`].
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
@@ -130,7 +130,7 @@ pub enum IntegrationError {
         "rate {index}, counted from 0, has no finite value at the start (t = {t}): start inside its domain"
     )]
     RateNotFinite {
-        /// Which.
+        /// Index of the value.
         index: usize,
         /// Time of the start.
         t: f64,
@@ -158,7 +158,7 @@ pub enum IntegrationError {
     UnknownPhase {
         /// The index asked for.
         phase: usize,
-        /// How many there are.
+        /// Number of phases.
         count: usize,
     },
 }
@@ -273,7 +273,7 @@ pub fn integrate_through<'a, Y: StateVector>(
     run(&[(&rates, events)], 0, start, end_time, looks, options)
 }
 
-/// What ends a step beside its error.
+/// Conditions that end a step beside its error.
 pub struct StepLimits<'a, S> {
     /// Times, in order, that no step crosses.
     pub critical: &'a [f64],
@@ -519,7 +519,7 @@ impl<S: Sample> Leg<'_, '_, S> {
         }
     }
 
-    /// How far the next critical time is, farther than rounding.
+    /// Time until the next critical time that is farther away than rounding.
     fn to_critical(&self, time: f64) -> f64 {
         let beyond = time + 4.0 * f64::EPSILON * time.abs();
         let next = self.looks.critical.partition_point(|critical| *critical <= beyond);

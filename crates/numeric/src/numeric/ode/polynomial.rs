@@ -39,7 +39,7 @@ pub fn real_zeros(coefficients: &[f64], ends: [f64; 2]) -> Vec<RealZero> {
         |k: usize| (coefficients[k] / coefficients[degree]).abs().powf(1.0 / (degree - k) as f64);
     let farthest = 2.0 * (0..degree).map(bound).fold(0.0, f64::max);
     let farthest = if farthest > 0.0 { farthest } else { 1.0 };
-    // Where powers overflow no zero is to be found.
+    // No zero can be found beyond the point at which the powers overflow.
     let is_finite =
         |x: f64| coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c.abs()).is_finite();
     let farthest = match is_finite(farthest) {

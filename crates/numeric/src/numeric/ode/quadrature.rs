@@ -44,7 +44,7 @@ pub enum QuadratureError {
         "the integrand has no finite value at {at}: split the interval there or substitute the singularity away"
     )]
     NonFinite {
-        /// Where.
+        /// The argument.
         at: f64,
     },
     /// The tolerance was not reached.
@@ -323,8 +323,8 @@ mod tests {
         ));
     }
 
-    /// Where it is all but a jump its argument is rounded to nine digits, and the pieces there have
-    /// none of their own to lose.
+    /// The argument of a steep function is rounded to nine digits at its step, and the pieces there
+    /// have no digits of their own to lose.
     #[test]
     fn a_piece_that_adds_nothing_is_not_halved_for_its_rounding() {
         let places = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 0.1];

@@ -43,7 +43,7 @@ pub enum RootError {
     /// The function has no finite value at this point.
     #[error("the function has no finite value at {at}: choose an interval on which it is defined")]
     NonFinite {
-        /// Where.
+        /// The argument.
         at: f64,
     },
 }

@@ -1,4 +1,4 @@
-//! What is followed: values at a time, as first-order equations have them or as the displacement
+//! The samples of a trajectory: values at a time, of first-order equations or as the displacement
 //! and velocity of one coordinate.
 
 use std::fmt::Debug;
@@ -18,7 +18,7 @@ impl StateVector for Vec<f64> {}
 
 /// A point of a motion.
 pub trait Sample: Clone + Debug {
-    /// What changes in time.
+    /// The dependent variables.
     type Values: StateVector;
 
     /// From a time and the values at it.

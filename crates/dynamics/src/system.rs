@@ -68,7 +68,7 @@ pub struct System {
     right: Vec<Expr>,
     numbers: BTreeMap<Symbol, f64>,
     critical: Vec<f64>,
-    /// What may turn faster than the motion.
+    /// Arguments of functions that may vary faster than the motion.
     narrow: Vec<Argument>,
 }
 
@@ -117,7 +117,7 @@ pub enum SystemError {
     Bounds,
 }
 
-/// How equations are followed.
+/// The integration method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
     /// By the Taylor series of the states, to rounding accuracy.
@@ -128,7 +128,7 @@ pub enum Integrator {
     RungeKutta,
 }
 
-/// How closely and how long to follow.
+/// Method, tolerance and limits of an integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SystemOptions {
     /// By which integrator.
@@ -207,7 +207,7 @@ impl Event {
 /// An event that happened.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EventCrossing {
-    /// Which of the events.
+    /// Index of the event.
     pub event: usize,
     /// When.
     pub time: f64,
@@ -286,7 +286,7 @@ pub struct Path {
     occurrences: Vec<EventCrossing>,
 }
 
-/// What the states are read from.
+/// The representation from which states are interpolated.
 #[derive(Clone, Debug)]
 enum PathRepresentation {
     Taylor { steps: Vec<TaylorStep>, start: f64 },

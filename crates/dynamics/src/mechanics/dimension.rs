@@ -54,7 +54,7 @@ pub enum UnitError {
     Parse {
         /// Whose.
         name: String,
-        /// What is wrong with it.
+        /// The error of its syntax.
         error: Box<ParseError>,
     },
     /// A word that is no unit.
@@ -82,33 +82,33 @@ pub enum UnitError {
     /// A term that is not measured in what the others are.
     #[error("in the {part} the term `{term}` has the unit {found}, where {expected} belongs")]
     Term {
-        /// Where it stands.
+        /// The part of the mechanism.
         part: String,
         /// The term.
         term: Expr,
-        /// What it is measured in.
+        /// The unit of the term.
         found: String,
-        /// What it should be measured in.
+        /// The expected unit.
         expected: String,
     },
     /// Something of a unit inside a function that takes a number.
     #[error("in the {part} the function in `{term}` takes a number, not {found}")]
     Argument {
-        /// Where it stands.
+        /// The part of the mechanism.
         part: String,
         /// The function and its argument.
         term: Expr,
-        /// What the argument is measured in.
+        /// The unit of the argument.
         found: String,
     },
     /// An exponent that is no number, on something of a unit; or an exponent of a unit.
     #[error("in the {part} the power `{term}` has no unit: its base is measured in {found}")]
     Power {
-        /// Where it stands.
+        /// The part of the mechanism.
         part: String,
         /// The power.
         term: Expr,
-        /// What the base is measured in.
+        /// The unit of the base.
         found: String,
     },
     /// A step of algebra failed.
@@ -132,7 +132,7 @@ impl UnitError {
 }
 
 impl Dimension {
-    /// That of a number.
+    /// The dimension of a number.
     pub fn none() -> Self {
         Self::default()
     }
@@ -225,7 +225,7 @@ impl FromStr for Dimension {
     }
 }
 
-/// What an expression is measured in, when every symbol in it has its unit.
+/// The dimension of an expression, if every symbol in it has a unit.
 ///
 /// # Errors
 /// [`UnitError`] names the term; `part` is where it stands.
@@ -273,7 +273,7 @@ pub fn dimension(
     })
 }
 
-/// What all terms are measured in; the one that most others disagree with is named.
+/// The common dimension of all terms; the error names the term that most others disagree with.
 fn odd_one_out(terms: &[Expr], found: &[Dimension], part: &str) -> Result<Dimension, UnitError> {
     let votes = |dimension: &Dimension| found.iter().filter(|other| *other == dimension).count();
     let expected =

@@ -1,4 +1,4 @@
-//! Where a mechanism can rest: `dV/dq_i - Q_i = 0` with every velocity zero.
+//! Equilibria of a mechanism: `dV/dq_i - Q_i = 0` with every velocity zero.
 //!
 //! Exactly, in three steps, and never more than is known: angles are tried at 0 and pi; what then
 //! enters linearly is solved for; of a single angle whose force is `sin(q)*(a + b*cos(q))` the
@@ -11,7 +11,7 @@ use super::{EquationsOfMotion, MechanicsError, trigonometry::simplified};
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
 
-/// Where a coordinate rests.
+/// The equilibrium position of a coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RestPosition {
     /// Here.
@@ -78,7 +78,7 @@ pub fn equilibria(equations: &EquationsOfMotion) -> Result<Vec<Rest>, MechanicsE
             add(Rest { places, condition: None });
         }
     }
-    // What does not follow linearly may still rest at zero.
+    // Equations that are not linear in the coordinates may still have an equilibrium at zero.
     let zero: BTreeMap<Symbol, Expr> =
         coordinates.iter().map(|name| (*name, Expr::zero())).collect();
     let rests = |force: &Expr| force.substitute_all(&zero).and_then(|force| simplified(&force));
@@ -106,7 +106,7 @@ pub fn equilibria(equations: &EquationsOfMotion) -> Result<Vec<Rest>, MechanicsE
     Ok(found)
 }
 
-/// What the terms in the time do at a place of rest of the equations without them.
+/// The effect of explicit time dependence at an equilibrium of the autonomous equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DriveAtRest {
     /// There are none.
@@ -119,7 +119,7 @@ pub enum DriveAtRest {
 }
 
 impl EquationsOfMotion {
-    /// What the terms in the time do at a place of rest.
+    /// Determines the effect of explicit time dependence at an equilibrium.
     pub(super) fn drive_at(&self, rest: &Rest) -> Result<DriveAtRest, ExprError> {
         let at = |place: &RestPosition| match place {
             RestPosition::At(place) => Some(place.clone()),
@@ -149,7 +149,8 @@ impl EquationsOfMotion {
         Ok(drive)
     }
 
-    /// What pulls at rest, equation by equation: no velocities, no terms in the time, no contacts.
+    /// Generalised forces at rest, equation by equation: without velocities, time-dependent terms
+    /// and contacts.
     pub(super) fn forces_at_rest(&self) -> Result<Vec<Expr>, ExprError> {
         let still: BTreeMap<Symbol, Expr> =
             self.coordinates.iter().map(|name| (name.derivative(), Expr::zero())).collect();

@@ -51,16 +51,16 @@ pub struct Groups {
 pub struct Group {
     /// Its name in the dimensionless equations.
     pub name: Symbol,
-    /// What it is in the parameters.
+    /// Its definition in the parameters.
     pub definition: Expr,
-    /// What it does.
+    /// Its meaning in words.
     pub meaning: String,
     /// The dimension of the definition, counted from the units of the parameters; that of a number.
     pub dimension: Dimension,
 }
 
 impl Groups {
-    /// Those of a mechanism whose units have passed their check.
+    /// The dimensionless groups of a mechanism whose units have passed their check.
     ///
     /// # Errors
     /// Nothing that has the dimension of a time; a step of algebra.
@@ -294,7 +294,7 @@ impl Basis {
         factors.map(|factors| Some(Expr::product(factors)))
     }
 
-    /// What is written in scaled parameters, in the parameters themselves.
+    /// Converts an expression in scaled parameters to the parameters themselves.
     fn in_parameters(
         &self,
         scaled: &Expr,
@@ -433,7 +433,7 @@ impl Scaling<'_> {
                 ));
             }
         }
-        // What stands inside of something else, such as the place of a barrier, one by one.
+        // Parameters inside of other functions, such as the position of a barrier, one by one.
         let name = self.symbols().into_iter().find(|name| self.is_open(*name, equations))?;
         Some((Expr::from(name), GroupRole::Other))
     }
@@ -481,7 +481,7 @@ impl Scaling<'_> {
     }
 }
 
-/// What a group does, by what it stands before.
+/// The role of a group, by the factor that it multiplies.
 #[derive(Clone, Copy, PartialEq)]
 enum GroupRole {
     Frequency,

@@ -29,7 +29,7 @@ pub struct EquationsOfMotion {
     /// The left sides as people print them: the factor that all terms have in common is divided
     /// out; `x'' + ...` where the inertia is a number or a product of parameters.
     pub left: Vec<Expr>,
-    /// What each was divided by; parameters are taken not to vanish.
+    /// The divisor of each equation; parameters are taken not to vanish.
     pub divisors: Vec<Expr>,
     /// The sums of parameters that enter as one; here they are written out.
     pub combinations: Vec<Combination>,
@@ -93,7 +93,7 @@ pub(super) fn jump(energy: &Expr, coordinates: &[Symbol]) -> Option<Expr> {
     let steps = |expr: &Expr| {
         expr.contains_function(Function::Step) || expr.contains_function(Function::Sign)
     };
-    // What is still to be looked at, with the factors that stand beside it.
+    // The expressions still to be examined, with the factors beside them.
     let mut open: Vec<(Expr, Vec<Expr>)> = vec![(energy.clone(), vec![])];
     while let Some((expr, beside)) = open.pop() {
         match expr.node() {

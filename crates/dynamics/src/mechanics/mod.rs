@@ -73,9 +73,9 @@ pub enum MechanicsError {
     /// An energy or a force that cannot be read.
     #[error("the {part}: {error}")]
     Parse {
-        /// Which.
+        /// The part of the mechanism.
         part: String,
-        /// What is wrong with it.
+        /// The error of its syntax.
         error: Box<ParseError>,
     },
     /// A step of algebra failed.
@@ -84,7 +84,7 @@ pub enum MechanicsError {
     /// No coordinates, or more than can be written out.
     #[error("a mechanism has 1 to {MOST_COORDINATES} coordinates, not {0}")]
     CoordinateCount(usize),
-    /// The same coordinate twice.
+    /// A coordinate that occurs twice.
     #[error("the coordinate `{0}` is listed twice")]
     Twice(Symbol),
     /// A name that cannot be a coordinate.
@@ -99,7 +99,7 @@ pub enum MechanicsError {
         part: String,
         /// The symbol.
         name: Symbol,
-        /// What belongs there.
+        /// The reason, and what to write instead.
         why: &'static str,
     },
     /// A coordinate that nothing accelerates.
@@ -118,7 +118,7 @@ pub enum MechanicsError {
          k*(x - a)^2*H(x - a)"
     )]
     Jump {
-        /// Which.
+        /// The part of the mechanism.
         part: String,
         /// The step or sign.
         jump: Expr,
@@ -151,7 +151,7 @@ impl Mechanism {
     /// A mechanism of these energies alone, as texts.
     ///
     /// # Errors
-    /// What cannot be read; [`Mechanism::equations`] judges what can.
+    /// A part that cannot be parsed; [`Mechanism::equations`] judges the others.
     pub fn parse(
         coordinates: &[&str],
         kinetic: &str,
@@ -197,7 +197,7 @@ impl Mechanism {
         Ok(equations.written_out(combinations)?)
     }
 
-    /// The same with something else in the place of every part.
+    /// Returns the mechanism with a function applied to every part.
     fn mapped(&self, change: impl Fn(&Expr) -> Result<Expr, ExprError>) -> Result<Self, ExprError> {
         let force = |(on, force): (&Symbol, &Expr)| Ok((*on, change(force)?));
         Ok(Self {

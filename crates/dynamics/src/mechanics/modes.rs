@@ -1,4 +1,4 @@
-//! How a mechanism swings near a place of rest.
+//! Small oscillations of a mechanism about an equilibrium.
 //!
 //! ```text
 //! M q'' + C q' + K q = 0,   q = u e^(lambda t)        C = 0, K symmetric: K u = omega^2 M u
@@ -272,7 +272,7 @@ fn changing<'a>(entries: impl Iterator<Item = &'a Expr>) -> Result<Option<Expr>,
 /// A value that is rounding beside the largest is none.
 const ROUNDING: f64 = 1e-13;
 
-/// How far rounding splits a double zero, over the largest value.
+/// Splitting of a double zero by rounding, over the largest value.
 const SPLIT: f64 = 1e-6;
 
 /// K u = omega^2 M u by M = L L^T: symmetric in w = L^T u.

@@ -1,4 +1,4 @@
-//! The same equations of first order, ready to be followed.
+//! The equations of motion as first-order equations, ready to be integrated.
 
 use super::{EquationsOfMotion, MechanicsError};
 use crate::expr::Expr;

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::symbol::Symbol;
 
-/// What is asked.
+/// A study of a mechanism: its energies, forces and values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MechanismQuestion {
     /// The mechanism.
@@ -24,7 +24,7 @@ pub struct MechanismQuestion {
 /// Everything that follows from the energies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MechanismStudy {
-    /// What was asked.
+    /// The question that this answers.
     pub question: MechanismQuestion,
     /// The equations of motion.
     pub equations: EquationsOfMotion,
@@ -37,9 +37,9 @@ pub struct MechanismStudy {
 /// A place of rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RestStudy {
-    /// Where.
+    /// The equilibrium.
     pub rest: Rest,
-    /// What the terms in the time, which the linear equations leave out, do there.
+    /// The effect there of explicit time dependence, which the linear equations leave out.
     pub drive: DriveAtRest,
     /// The linear equations there.
     pub modes: Modes,

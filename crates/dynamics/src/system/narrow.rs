@@ -28,7 +28,7 @@ pub(super) struct Argument {
     pub(super) kind: FunctionGrowth,
 }
 
-/// How a function answers to its argument.
+/// The behaviour of a function of large or small argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FunctionGrowth {
     /// It grows with it without bound, and is nothing far below zero: `exp`.
@@ -164,9 +164,8 @@ impl FunctionGrowth {
     }
 }
 
-/// How far a step may go so that it ends beside the next place that is narrow for it; nothing where
-/// it may go to its end. `series` is the argument along the step, by powers of the time since its
-/// beginning.
+/// Length of a step that ends beside the next narrow place of a function; `None` if it need not be
+/// shortened. `series` is the argument along the step, by powers of the time since its start.
 pub(super) fn end_of_step(kind: FunctionGrowth, series: &[f64], length: f64) -> Option<f64> {
     if is_wide(kind, series, length) || !series.iter().all(|value| value.is_finite()) {
         return None;
@@ -293,8 +292,8 @@ fn width(kind: FunctionGrowth, [argument, slope, curvature]: [f64; 3], error: f6
     (width > 0.0).then_some(width)
 }
 
-/// Where to end a step of this length before a place so far away; nothing where the place is wide,
-/// or so near that it is seen.
+/// Length of a step that ends before a narrow place at this distance; `None` if the place is wide,
+/// or so near that the step resolves it.
 fn end_before(distance: f64, width: f64, length: f64) -> Option<f64> {
     let width = width.max(1e-13 * length);
     let near = 2.0 * width;

@@ -139,7 +139,7 @@ pub(super) fn sign_at_start(series: &[f64], length: f64) -> f64 {
     }
 }
 
-/// The same polynomial about another centre, by Horner's scheme.
+/// The polynomial about another centre, by Horner's scheme.
 fn about(series: &[f64], centre: f64) -> Vec<f64> {
     let mut shifted = series.to_vec();
     for start in 0..shifted.len() {
@@ -192,7 +192,7 @@ mod tests {
         // One at the very end, where the value is exactly zero.
         assert_eq!(first_root(&[-1.0, 1.0], 0.0, 1.0), Some((1.0, true)));
         assert_eq!(first_root(&[1.0, -1.0], 0.0, 1.0), Some((1.0, false)));
-        // What the bounds about 0 decide by themselves.
+        // Cases that the bounds about 0 decide by themselves.
         assert_eq!(first_root(&[2.0, -1.0, 0.5], 0.0, 1.0), None);
         assert_eq!(first_root(&[1e-3, 1.0, 0.1], 0.0, 1.0), None);
         assert_eq!(first_root(&[3.0], 0.0, 1.0), None);

@@ -1,5 +1,5 @@
-//! The same equations by Runge-Kutta: the right sides are evaluated, never expanded, so that it is
-//! a check of the series.
+//! Integration by Runge-Kutta: the right sides are evaluated, never expanded, so that it is a check
+//! of the series.
 //!
 //! ```text
 //! abs(u) -> s u,   sgn(u) -> sgn(s),   H(u) -> H(s),   max(u, w) -> H(s) u + H(-s) w      s = 1 or -1: the side of a corner
@@ -91,7 +91,7 @@ impl ScaledTrajectory {
     }
 }
 
-/// What states and time are counted in.
+/// The units of states and time of a run.
 #[derive(Clone, Debug)]
 struct RunScales {
     /// The size of every state: what it reaches on the first step of its series. One that stays
@@ -107,8 +107,8 @@ impl RunScales {
         let alone = || (f64::INFINITY, values.iter().map(|value| value.abs()).collect());
         let (reach, mut sizes): (f64, Vec<f64>) =
             taylor::first_step(system, [start, end], values, events).unwrap_or_else(alone);
-        // What moves a state by next to nothing in all the time, as the rounding of a touch does,
-        // is no size to measure by.
+        // A rate that moves a state by next to nothing in all the time, as the rounding of a touch
+        // does, is no scale.
         for (right, moved) in system.right.iter().zip(sizes.clone()) {
             let rate = system.state.iter().position(|state| right.as_symbol() == Some(*state));
             if let Some(size) = rate.map(|rate| &mut sizes[rate])
@@ -146,7 +146,7 @@ pub(super) fn follow(
     events: &[Event],
     options: &SystemOptions,
 ) -> Result<Path, SystemError> {
-    // What cannot be expanded is refused by either integrator.
+    // Equations that cannot be expanded are refused by either integrator.
     taylor::check(system, events)?;
     let smooth = Smooth::new(system, events)?;
     let units = RunScales::new(system, [start, end], values, events);
@@ -160,8 +160,8 @@ pub(super) fn follow(
     let watched = scaled.watched(events);
     let settings = ode::IntegrationOptions {
         maximum_steps: options.step_limit,
-        // What is looked for may vary faster than the motion: no more than a series of it could
-        // tell.
+        // An event function may vary faster than the motion: the step is no longer than a series of
+        // it would allow.
         maximum_step: if watched.is_empty() { f64::INFINITY } else { 1.0 },
         interrupt: options.interrupt,
         ..ode::IntegrationOptions::with_tolerance(options.tolerance.max(SMALLEST_TOLERANCE))
@@ -199,7 +199,7 @@ pub(super) fn follow(
     Ok(Path { end, reason, occurrences, motion: super::PathRepresentation::RungeKutta(motion) })
 }
 
-/// Where the events of the user happened, each place once.
+/// Crossings of the user's events, each of them once.
 fn occurrences(
     all: &[ode::EventOccurrence<Point<Vec<f64>>>],
     units: &RunScales,
@@ -208,8 +208,7 @@ fn occurrences(
     let mut occurrences: Vec<EventCrossing> = Vec::new();
     for found in all.iter().filter(|found| found.event < events) {
         let (event, time, rising) = (found.event, units.time(found.state.t), found.rising);
-        // Where a corner lies at the same place, rounding may show the crossing before and behind
-        // it.
+        // If a corner lies at the same place, rounding may show the crossing before and behind it.
         let same = |met: &&EventCrossing| met.event == event && met.rising == rising;
         let again = occurrences.iter().rev().find(same);
         if again.is_none_or(|met| time - met.time > SAME_PLACE * units.time) {
@@ -276,7 +275,7 @@ impl ScaledSystem<'_> {
         ends.fold(None, |first: Option<f64>, end| Some(first.map_or(end, |first| first.min(end))))
     }
 
-    /// Where the run begins.
+    /// The initial state of the run in its units.
     ///
     /// # Errors
     /// A right side or an event without a value there.
@@ -374,7 +373,7 @@ struct Smooth {
     rates: Vec<CompiledFunction>,
     events: Vec<CompiledFunction>,
     corners: Vec<CompiledFunction>,
-    /// What may turn faster than the motion.
+    /// Arguments of functions that may vary faster than the motion.
     narrow: Vec<(FunctionGrowth, CompiledFunction)>,
 }
 
@@ -455,7 +454,7 @@ impl Corners {
         }
     }
 
-    /// The same expression with the sides in place of the signs.
+    /// The expression with the sides in place of the signs.
     fn smooth(&mut self, expression: &Expr) -> Result<Expr, ExprError> {
         expression.fold(|expr, children: &[Expr]| match (expr.node(), children) {
             (Node::Function(Function::Absolute, _), [u]) => {

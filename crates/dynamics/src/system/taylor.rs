@@ -77,7 +77,7 @@ pub(super) fn sample(steps: &[TaylorStep], mut times: &[f64], columns: &mut [Vec
 /// Whether there are recurrences for the right sides of a system and these events.
 ///
 /// # Errors
-/// What there is none for.
+/// A function without a recurrence.
 pub(super) fn check(system: &System, events: &[Event]) -> Result<(), RecurrenceError> {
     const ANY: f64 = 0.1;
     expansion(system, events, ANY).map(drop)
@@ -118,8 +118,8 @@ fn order(tolerance: f64) -> usize {
     (1.0 - 0.5 * tolerance.ln()).ceil() as usize + 1
 }
 
-/// How far the first series reaches, and how large every state becomes on the way, within so much
-/// time; `None` where there is none.
+/// The reach of the first series, and the size of every state on the way, within this time; `None`
+/// if there is no series.
 pub(super) fn first_step(
     system: &System,
     [start, end]: [f64; 2],
@@ -208,20 +208,20 @@ pub(super) struct TaylorRun<'a> {
     signs: Vec<f64>,
     steps: Vec<TaylorStep>,
     occurrences: Vec<EventCrossing>,
-    /// How often in a row it was back on a corner at once.
+    /// Number of consecutive steps that were back on a corner at once.
     stuck: usize,
     /// The corner that the last step ended on, and how fast its argument changed there.
     met: Option<(usize, f64)>,
     /// The last step, where it ended by itself and may be taken back.
     last: Option<StepUndo>,
-    /// How often in a row a step from here was taken back.
+    /// Number of consecutive halvings of the step from here.
     halvings: i32,
 }
 
 /// So often a step is taken back for half of it.
 const MOST_HALVINGS: i32 = 12;
 
-/// What it takes to take a step back.
+/// The values that are restored if a step is taken back.
 struct StepUndo {
     length: f64,
     signs: Vec<f64>,
@@ -354,7 +354,8 @@ impl<'a> TaylorRun<'a> {
         without_value(self.values.iter().copied(), [before, self.time])
     }
 
-    /// How far the series reach from here, and nothing is stepped over.
+    /// The length of the next step: the reach of the series here, shortened so that no critical
+    /// time and no narrow place is stepped over.
     fn reach(&mut self, now: f64) -> f64 {
         let reach = self.expansion.step().min(self.duration - self.time);
         let next = next_critical(&self.system.critical, now);
@@ -511,9 +512,9 @@ pub(super) struct SystemSeries {
     outputs: Vec<usize>,
     narrow: Vec<FunctionGrowth>,
     powers: PowerTable,
-    /// What the last terms of states, events and corners may be.
+    /// Bounds of the last terms of states, events and corners.
     of_steps: Allowance,
-    /// Those of arguments of what is narrow.
+    /// Bounds of the last terms of the arguments of narrow functions.
     of_arguments: Allowance,
 }
 
@@ -637,7 +638,7 @@ impl SystemSeries {
         let followed = (0..self.states).map(|state| self.tape.series(state));
         let events = self.outputs.iter().skip(self.states).take(self.events);
         let events = events.map(|output| self.tape.series(*output));
-        // What a side has no value for is not looked at.
+        // A corner whose argument has no value is left out.
         let finite = |series: &&[f64]| series.iter().all(|value| value.is_finite());
         let corners = self.tape.corners().map(|(series, _)| series).filter(finite);
         followed.chain(events).chain(corners).fold(f64::INFINITY, |longest, series| {
@@ -669,7 +670,7 @@ impl SystemSeries {
     /// between two steps is one at the beginning of the second.
     fn crossings(&self, signs: &mut [f64], length: f64) -> Vec<(usize, f64, bool)> {
         let mut met = Vec::new();
-        // Where no time passes, a sign would be rounding.
+        // In a step of length zero the sign would be rounding.
         if length == 0.0 {
             return met;
         }
@@ -719,13 +720,13 @@ impl SystemSeries {
             }
             None
         };
-        // What a side has no value for is not looked at.
+        // A corner whose argument has no value is left out.
         let corners = self.tape.corners().enumerate();
         let found = corners.filter(|(_, (series, _))| series[0].is_finite()).filter_map(met);
         found.min_by(|one, other| one.1.total_cmp(&other.1))
     }
 
-    /// How fast the argument of a corner changes behind so much time.
+    /// Speed at which the argument of a corner changes after this time.
     fn speed_at(&self, corner: usize, time: f64) -> Option<f64> {
         let (series, _) = self.tape.corners().nth(corner)?;
         let terms = series.iter().enumerate().skip(1).rev();
@@ -773,7 +774,7 @@ const LAST: usize = 8;
 /// The factor by which a step that is too long for the tolerance is shortened.
 const SHORTER: f64 = 0.9;
 
-/// What the last terms of a series may be, of its size on the step.
+/// Bounds of the last terms of a series, in parts of its size on the step.
 #[derive(Clone, Debug)]
 struct Allowance {
     order: usize,
@@ -822,7 +823,7 @@ impl Allowance {
             false => 0,
         };
         let first_trial = (0..in_vain).fold(h, |h, _| h * SHORTER);
-        // Where powers underflow the trials say something else.
+        // If powers underflow, the trials give another result.
         let is_known = powers.powers(first_trial)[order] >= f64::MIN_POSITIVE;
         let (mut h, trials) =
             if is_known { (first_trial, in_vain..TRIALS) } else { (h, 0..TRIALS) };
@@ -835,8 +836,8 @@ impl Allowance {
         h
     }
 
-    /// How many trials from the place with these powers on are certain to fail: the size of a
-    /// series falls with the place, so that the last terms have to fall to what they may be of the
+    /// Number of trials, from the point with these powers on, that are certain to fail: the size of
+    /// a series falls with the step, so that the last terms have to fall to their bounds of the
     /// size here.
     fn trials_in_vain(&self, series: &[f64], lead: usize, powers: &[f64]) -> usize {
         let size = self.size(series, lead, powers);
@@ -849,7 +850,7 @@ impl Allowance {
         (trials.fold(0.0, f64::max) - 1e-6) as usize
     }
 
-    /// How large the leading terms of a series are at the place with these powers.
+    /// Size of the leading terms of a series at the point with these powers.
     fn size(&self, series: &[f64], lead: usize, powers: &[f64]) -> f64 {
         let leading = lead..lead.max(self.order / 2) + 1;
         leading.fold(0.0, |size, k| size.max(series[k].abs() * powers[k]))

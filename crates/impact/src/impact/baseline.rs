@@ -1,5 +1,5 @@
-//! What a barrier is good for: the rest time beside that without a barrier and with one that loses
-//! nothing.
+//! The benefit of a barrier: the rest time compared with those without a barrier and with a
+//! lossless one.
 //!
 //! A barrier that loses nothing already shortens the rest, because the swing becomes shorter and
 //! faster: under light viscous damping the action, the area S of the orbit in the phase plane,
@@ -30,9 +30,9 @@ pub struct Baseline {
     pub no_barrier: Result<f64, NoRest>,
     /// With the same barrier, elastic: mu = 0.
     pub lossless_barrier: Result<f64, NoRest>,
-    /// What the actions say of the difference; nothing with dry friction, where the first swing
-    /// turns over, where a barrier holds the pendulum above the bottom, or where two hold it within
-    /// a tenth of it.
+    /// The difference as predicted by the actions; `None` with dry friction, if the first swing
+    /// turns over, if a barrier holds the pendulum above the bottom, or if two barriers hold it
+    /// within a tenth of the amplitude.
     pub geometry: Option<Geometry>,
 }
 

@@ -106,7 +106,7 @@ pub enum CaseError {
          [pendulum]", .side.name()
     )]
     Inside {
-        /// Which barrier.
+        /// The side of the barrier.
         side: Side,
         /// Its position, rad.
         barrier: f64,
@@ -298,7 +298,7 @@ impl Case {
         }
     }
 
-    /// What its contact damping is measured by.
+    /// The scales of its contact damping.
     fn scales(&self, gamma: f64, start: Start) -> ContactScales {
         ContactScales {
             gamma,
@@ -363,7 +363,7 @@ impl Case {
         let (model, start) = self.motion()?;
         let damping = self.contact_damping;
         let scales = self.scales(model.gamma, start);
-        // Where gamma is zero there is no barrier to touch.
+        // With gamma = 0 there is no barrier to touch.
         let touch_speed = self.touch_speed(start).filter(|_| model.gamma != 0.0);
         let form = |of: ContactDamping, scales: &ContactScales| {
             Some(damping.in_form(of, scales).ok()?.value())

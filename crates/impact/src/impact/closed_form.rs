@@ -30,7 +30,7 @@ use crate::verify::Verdict;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Impact {
-    /// What was asked.
+    /// The problem that was solved.
     pub setup: Setup,
     /// The equation as it is judged.
     pub equation: String,
@@ -38,7 +38,7 @@ pub struct Impact {
     pub letters: ImpactSymbols,
     /// The equilibrium of the swing, in the unit of x.
     pub equilibrium: f64,
-    /// Where the cycle starts: the release, or the turning point of a motion released inside the
+    /// The start of the cycle: the release, or the turning point of a motion released inside the
     /// barrier.
     pub turning_point: f64,
     /// The derived law of the free swing in the paper's reading, where there is one.
@@ -53,8 +53,7 @@ pub struct Impact {
     pub contact_laws: Vec<ContactRow>,
     /// lambda of the contact, zero where it loses nothing.
     pub damping: f64,
-    /// What was tried for the derived column, in order; where that has a reason not to be, it is
-    /// here.
+    /// Attempts at the derived column, in order, with the reasons of their failure.
     pub tried: Vec<Attempt>,
     /// The speed at the touch from the energy, exact for the equation.
     pub energy_speed: f64,
@@ -64,12 +63,12 @@ pub struct Impact {
     pub truth: TrueImpact,
 }
 
-/// How the three phases are read.
+/// The version of the three closed-form phases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PhaseReading {
     /// As the paper has it: every join continuous, contact speed from the one-term motion.
     Paper,
-    /// The same with the contact speed from the energy.
+    /// As in the paper, with the contact speed from the energy.
     Energy,
     /// The derived motion with all its harmonics, the joins from it.
     Derived,
@@ -90,7 +89,7 @@ impl PhaseReading {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct JudgedPhases {
-    /// Which reading it is.
+    /// The version.
     pub reading: PhaseReading,
     /// The closed forms.
     pub phases: ThreePhases,
@@ -121,7 +120,7 @@ pub fn solve(setup: Setup) -> Result<Impact, ImpactError> {
         let (free_swing, paper, no_paper) = match paper(trial) {
             Ok((law, phases)) => (Some(law), phases, None),
             Err(error) => {
-                // Where the same method was asked for both, its reason is the whole reason.
+                // If the same method was asked for both, its reason is the whole reason.
                 let alone = tried.iter().all(|attempt| attempt.method == Method::LindstedtPoincare);
                 if derived.is_none()
                     && alone
@@ -237,7 +236,7 @@ pub(super) fn paper(
 /// One number of an impact: by Runge-Kutta and by every column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImpactQuantity {
-    /// What it is.
+    /// Its name.
     pub name: &'static str,
     /// By Runge-Kutta.
     pub runge_kutta: f64,
@@ -282,7 +281,7 @@ impl Impact {
         self.setup.loss.is_none() && self.setup.contact_law == ContactLaw::Exact
     }
 
-    /// Where the true motion turns after the impact, in the unit of x.
+    /// The turning point of the true motion after the impact, in the unit of x.
     pub fn place_of_turn(&self) -> f64 {
         self.equilibrium + self.setup.side.sign() * self.truth.phase_point_at(self.truth.period).0
     }
@@ -368,8 +367,8 @@ impl Impact {
         (0..self.columns.len()).map(passes).collect()
     }
 
-    /// What lies beyond the tolerance in a column, by its place: the quantities with their errors,
-    /// and what of the closed form they come from.
+    /// The quantities of a column that are beyond the tolerance, with their errors and the part of
+    /// the closed form that they come from.
     pub fn shortcomings(&self, index: usize, tolerance: f64) -> Vec<Shortcoming> {
         let column = &self.columns[index];
         let one_cosine = || {

@@ -1,4 +1,4 @@
-//! What hits what: a swing released from rest, and an elastic barrier in its way.
+//! The collision: a swing released from rest, and an elastic barrier in its way.
 //!
 //! ```text
 //! x'' + f(x) + gamma F(x - x_c) H(x - x_c) = 0,   x(0) = x_r < x_c,  x'(0) = 0
@@ -20,7 +20,7 @@ use crate::numeric::ode::root::find_root;
 /// to the right of it.
 #[derive(Clone, Copy)]
 pub struct Collision<'a> {
-    /// Where it is released, in the unit of x.
+    /// The position of the release, in the unit of x.
     pub release: f64,
     /// Position x_c of the barrier, in the unit of x.
     pub barrier: f64,
@@ -74,11 +74,11 @@ pub enum CollisionError {
          the barrier stands at {barrier}: raise the amplitude or move the barrier"
     )]
     NeverReaches {
-        /// Where it is released.
+        /// The position of the release.
         release: f64,
         /// The furthest point.
         furthest: f64,
-        /// Where the barrier is.
+        /// The position of the barrier.
         barrier: f64,
     },
     /// The release is at or beyond the barrier.
@@ -87,9 +87,9 @@ pub enum CollisionError {
          barrier"
     )]
     ReleasedBehindBarrier {
-        /// Where it is released.
+        /// The position of the release.
         release: f64,
-        /// Where the barrier is.
+        /// The position of the barrier.
         barrier: f64,
     },
     /// Released inside the barrier, it does not leave it, or does not come back.
@@ -98,11 +98,11 @@ pub enum CollisionError {
          `lindstedt simulate`"
     )]
     Inside {
-        /// Where it is released.
+        /// The position of the release.
         release: f64,
-        /// Where the barrier is.
+        /// The position of the barrier.
         barrier: f64,
-        /// What becomes of it.
+        /// The motion that follows, in words.
         what: &'static str,
     },
     /// At the release, or on the way, the force does not drive the pendulum towards the barrier.
@@ -111,9 +111,10 @@ pub enum CollisionError {
          x = {at}; the amplitude must stay inside the well (below pi for sin x)"
     )]
     OutsideTheWell {
-        /// Where it is released.
+        /// The position of the release.
         release: f64,
-        /// Where the kinetic energy would be negative or the force points the wrong way.
+        /// The position at which the kinetic energy would be negative or the force points the wrong
+        /// way.
         at: f64,
     },
     /// The energy of the swing could not be integrated.
@@ -122,7 +123,7 @@ pub enum CollisionError {
 }
 
 impl CollisionError {
-    /// The same with places as seen from outside: x = origin + sign z.
+    /// Returns the error with positions in the coordinate of the equation: x = origin + sign z.
     pub(super) fn seen_from(self, sign: f64, origin: f64) -> Self {
         let x = |z: f64| origin + sign * z;
         match self {

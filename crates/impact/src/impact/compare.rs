@@ -16,7 +16,7 @@ use crate::verify::Verdict;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ImpactComparison {
-    /// What was asked.
+    /// The problem that was solved.
     pub setup: Setup,
     /// The equation as it is judged.
     pub equation: String,
@@ -24,7 +24,7 @@ pub struct ImpactComparison {
     pub letters: ImpactSymbols,
     /// The equilibrium of the swing, in the unit of x.
     pub equilibrium: f64,
-    /// Where the cycle starts: the release, or the turning point of a motion released inside the
+    /// The start of the cycle: the release, or the turning point of a motion released inside the
     /// barrier.
     pub turning_point: f64,
     /// The rows that have numbers: the paper's readings first, then the methods in the order of

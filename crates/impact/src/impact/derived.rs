@@ -96,7 +96,8 @@ impl Flight {
         }
     }
 
-    /// The same swing with the amplitude, no larger one, that passes the barrier at this speed.
+    /// The swing with the amplitude, no larger than this one, that passes the barrier at this
+    /// speed.
     ///
     /// # Errors
     /// [`ImpactError::WayBack`]; the method has no motion at that amplitude.
@@ -193,7 +194,7 @@ fn turned(swing: &Oscillator) -> Result<Option<Oscillator>, ImpactError> {
     Ok(Some(Oscillator { about, ..Oscillator::from_equation(&equation)? }))
 }
 
-/// How close the printed series of a contact comes to its motion, as a part of the depth.
+/// Largest deviation of the printed series of a contact from its motion, over the depth.
 const SERIES: f64 = 1e-6;
 
 /// The contact of the derived phases.

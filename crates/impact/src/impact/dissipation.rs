@@ -1,5 +1,5 @@
-//! What damps a pendulum and its contact: each damping in every form in which it may be given, and
-//! which form is held fixed.
+//! The damping of a pendulum and of its contact: each damping in every form in which it may be
+//! given, and the form that is held fixed.
 //!
 //! In: a number in one form, and the pendulum in SI units. Out: the number of equation (7), and
 //! from it every other form. With d = L (x - x_c) the depth in m, v the dimensionless speed at a
@@ -25,7 +25,7 @@ use super::parameter::Parameter;
 use super::units::Units;
 use crate::decimal::decimal;
 
-/// What damps the contact, in the form in which it is given and held fixed.
+/// The damping of the contact, in the form in which it is given and held fixed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactDamping {
     /// mu of equation (7), dimensionless.
@@ -78,7 +78,7 @@ impl SpeedUnit {
     }
 }
 
-/// What a damping of the contact is measured by.
+/// The scales of a damping of the contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactScales {
     /// The stiffness gamma of equation (7), positive.
@@ -101,7 +101,7 @@ pub enum DampingError {
     /// A damping below zero, or no number.
     #[error("{key} must be a number and not negative, not {value}")]
     Negative {
-        /// Which.
+        /// The parameter.
         key: Parameter,
         /// The value given.
         value: f64,
@@ -126,7 +126,7 @@ pub enum DampingError {
     /// A damping beyond doubles.
     #[error("{key} = {value:e} makes no finite number of equation (7)")]
     NotFinite {
-        /// Which.
+        /// The parameter.
         key: Parameter,
         /// The value given.
         value: f64,
@@ -197,7 +197,7 @@ impl ContactDamping {
     pub fn mu(self, scales: &ContactScales) -> Result<f64, DampingError> {
         let (key, value) = (self.form(), self.value());
         if let Self::Mu(mu) = self {
-            // What a mu may be says the equation.
+            // The range of mu is checked by the equation.
             return Ok(mu);
         }
         if let Self::Restitution(e) = self {
@@ -227,7 +227,7 @@ impl ContactDamping {
         }
     }
 
-    /// The same damping in the form of another one, whose number does not matter.
+    /// Converts the damping to the form of another one, whose number does not matter.
     ///
     /// # Errors
     /// As [`ContactDamping::mu`].
@@ -334,7 +334,7 @@ impl Dissipation {
         })
     }
 
-    /// What is held fixed, of the dampings that are there: `mu`, `zeta`.
+    /// The quantities that are held fixed, of the dampings that act: `mu`, `zeta`.
     pub fn held_fixed(&self) -> Vec<&'static str> {
         [
             (self.mu != 0.0, self.contact.form()),

@@ -38,7 +38,7 @@ pub enum ImpactError {
     InfinitelyFast {
         /// The force.
         force: String,
-        /// Where.
+        /// The position.
         place: f64,
     },
     /// A release or a barrier so far out that the force of the swing has no digits there.
@@ -128,9 +128,9 @@ pub enum ImpactError {
     /// The derived motion does not touch the barrier.
     #[error("the derived motion does not reach the barrier: it swings from {from} to {to}")]
     NeverReaches {
-        /// Where it starts.
+        /// The start of the range.
         from: f64,
-        /// Where it ends.
+        /// The end of the range.
         to: f64,
     },
     /// The derived motion does not start at the release.
@@ -139,9 +139,9 @@ pub enum ImpactError {
          where a motion all but stops; lower the amplitude, or follow it by `lindstedt simulate`"
     )]
     Start {
-        /// Where it starts.
+        /// The start of the motion.
         start: f64,
-        /// Where it should.
+        /// The position at which it should start.
         release: f64,
     },
     /// Nothing hits the barrier.
@@ -155,7 +155,7 @@ pub enum ImpactError {
     NoReading {
         /// Why not the paper's.
         paper: String,
-        /// What else was tried.
+        /// The other attempts.
         tried: Vec<Attempt>,
     },
 }

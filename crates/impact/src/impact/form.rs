@@ -38,7 +38,7 @@ pub enum Form {
     },
     /// x = centre + Re sum_k Z_k exp(i k frequency s): a motion with all its harmonics.
     Harmonics {
-        /// What does not oscillate.
+        /// The constant part.
         centre: f64,
         /// Angular frequency of the first harmonic.
         frequency: f64,
@@ -47,7 +47,7 @@ pub enum Form {
     },
     /// x = barrier + inward d(s): a contact by the series of its depth.
     Contact {
-        /// Where the barrier is.
+        /// The position of the barrier.
         barrier: f64,
         /// 1 where the depth grows with x, -1 where it grows the other way.
         inward: f64,
@@ -73,7 +73,7 @@ pub enum TimeFunction {
 }
 
 impl Form {
-    /// How close the written series of a contact comes to the whole one, as a part of the depth.
+    /// Largest deviation of the written series of a contact from the whole one, over the depth.
     pub const WRITTEN_CONTACT: f64 = 1e-4;
 
     /// The terms of a sum that are worth writing, in their order, with their coefficients: those
@@ -105,7 +105,7 @@ impl Form {
         terms.filter(|term| size(term) > felt * largest).collect()
     }
 
-    /// What does not oscillate: the point oscillated about, or the place of the barrier.
+    /// The constant part: the centre of the oscillation, or the position of the barrier.
     pub fn centre(&self) -> f64 {
         match *self {
             Self::Cosine { .. } => 0.0,
@@ -146,7 +146,7 @@ impl Form {
         }
     }
 
-    /// The same motion in another coordinate, offset + sign x.
+    /// The motion in another coordinate, offset + sign x.
     pub(super) fn moved(&self, sign: f64, offset: f64) -> Self {
         match self {
             // A cosine swings about zero.

@@ -33,7 +33,7 @@ use crate::numeric::ode::quadrature::nodes_and_weights;
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[error("the {quantity} must be a positive number, not {value}")]
 pub struct NotPositive {
-    /// What it is.
+    /// The name of the quantity.
     pub quantity: &'static str,
     /// The value given.
     pub value: f64,
@@ -142,7 +142,7 @@ pub(super) fn greatest_depth(stiffness: f64, speed: f64) -> f64 {
     power.powf(0.4)
 }
 
-/// How long that contact lasts.
+/// Duration of that contact.
 ///
 /// # Errors
 /// As [`penetration`].

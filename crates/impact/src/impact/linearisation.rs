@@ -29,7 +29,7 @@ use thiserror::Error;
 use crate::numeric::ode::quadrature::{QuadratureError, integrate_smooth, nodes_and_weights};
 use crate::numeric::ode::root::{RootError, find_root};
 
-/// How the line is chosen. The names are those of problem files.
+/// The rule that fits the line. The names are those of problem files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Rule {
     /// `least-squares`: continuous least squares, slope and constant.

@@ -1,4 +1,4 @@
-//! Which material a barrier should be made of: the same swing against barriers that differ in their
+//! The choice of the material of a barrier: the same swing against barriers that differ in their
 //! modulus alone.
 //!
 //! In: a design, what damps it, and materials. Out: for each material the contact, the motion until
@@ -46,7 +46,7 @@ pub fn default_lambda() -> f64 {
     0.1 / (design.gravity * design.length).sqrt()
 }
 
-/// How long the motions of a study are followed where no duration is given, in units of 1/omega.
+/// Duration of the motions of a study if none is given, in units of 1/omega.
 pub const DEFAULT_DURATION: f64 = 500.0;
 
 /// A material of a barrier.
@@ -97,7 +97,7 @@ pub struct MaterialQuestion {
     pub materials: Vec<Material>,
     /// The yield limit of the sphere, Pa, where one is stated.
     pub sphere_yield: Option<f64>,
-    /// How long and how closely the motions are followed.
+    /// Duration and accuracy of the motions.
     pub settings: Settings,
     /// By which method they are followed; the picture shows them by the same.
     pub integrator: Integrator,
@@ -146,7 +146,7 @@ pub enum MaterialsError {
     Simulation(#[from] SimulationError),
 }
 
-/// What becomes of one motion until it rests.
+/// The motion against one barrier until it rests.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionToRest {
     /// When it rests, in units of 1/omega.
@@ -232,7 +232,7 @@ pub struct MaterialRow {
     pub material: Material,
     /// The dimensionless stiffness of its contact, equation (8).
     pub gamma: f64,
-    /// What damps it, in every form.
+    /// Its damping, in every form.
     pub dissipation: Dissipation,
     /// The first contact; nothing where the barrier is not touched, or not left again.
     pub first: Option<FirstContact>,
@@ -283,22 +283,22 @@ impl HeldFixed {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct MaterialStudy {
-    /// What was asked.
+    /// The question that this answers.
     pub question: MaterialQuestion,
     /// The pendulum in SI units.
     pub units: Units,
     /// The equation of the design, at its own modulus.
     pub model: Model,
-    /// Where the motions begin.
+    /// The initial state of the motions.
     pub start: Start,
-    /// What damps the design, in every form.
+    /// The damping of the design, in every form.
     pub dissipation: Dissipation,
     /// The materials, in the order in which they were given.
     pub rows: Vec<MaterialRow>,
     /// The rest time without a barrier, in units of 1/omega.
     pub no_barrier: Result<f64, NoRest>,
-    /// The same materials under every form of the contact damping, the given one first; empty where
-    /// the contact loses nothing, or is not touched.
+    /// The materials under every form of the contact damping, the given one first; empty if the
+    /// contact is lossless or never touched.
     pub held_fixed: Vec<HeldFixed>,
 }
 

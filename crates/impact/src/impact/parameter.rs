@@ -146,7 +146,7 @@ impl Parameter {
         self.row().0
     }
 
-    /// What it belongs to, `damping`: the section of a problem file.
+    /// The group of the parameter, `damping`: the section of a problem file.
     pub const fn group(self) -> &'static str {
         self.row().1
     }
@@ -156,7 +156,7 @@ impl Parameter {
         self.row().2
     }
 
-    /// What it is, in words: `the viscous damping ratio`.
+    /// The meaning of the parameter in words: `the viscous damping ratio`.
     pub const fn meaning(self) -> &'static str {
         self.row().3
     }
@@ -176,9 +176,9 @@ impl fmt::Display for Parameter {
     Parameter::ALL.map(Parameter::name).join(", ")
 )]
 pub struct UnknownParameter {
-    /// What was asked for.
+    /// The name that was given.
     pub name: String,
-    /// What was meant, perhaps.
+    /// The most similar known name.
     pub nearest: Option<&'static str>,
 }
 

@@ -54,16 +54,16 @@ pub struct ImpactProblem<'a> {
     /// F(depth), the elastic force of the barrier per unit of gamma, such as
     /// [`hertz::elastic_force`](super::hertz::elastic_force).
     pub elastic_force: &'a dyn Fn(f64) -> f64,
-    /// How the line of equation (15) is chosen.
+    /// The rule that fits the line of equation (15).
     pub rule: Rule,
 }
 
-/// Which speed of contact is used.
+/// The speed at the touch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ContactSpeed {
-    /// That of the approximate cosine, as in the paper.
+    /// The speed of the approximate cosine, as in the paper.
     Paper,
-    /// That of the energy, exact for the original force.
+    /// The speed by the energy, exact for the original force.
     Energy,
 }
 
@@ -235,7 +235,7 @@ fn check(swing: &ImpactProblem) -> Result<(), ImpactError> {
 }
 
 impl ImpactProblem<'_> {
-    /// The same without the approximations.
+    /// The collision without the approximations.
     pub fn collision(&self) -> Collision<'_> {
         Collision {
             release: -self.amplitude,
@@ -249,8 +249,8 @@ impl ImpactProblem<'_> {
 }
 
 impl ThreePhases {
-    /// The same motion in another coordinate, offset + sign x; a cosine swings about zero, so it
-    /// knows no offset.
+    /// The motion in another coordinate, offset + sign x; a cosine oscillates about zero and has no
+    /// offset.
     pub(super) fn moved(&self, sign: f64, offset: f64) -> Self {
         Self {
             phases: self
@@ -320,7 +320,7 @@ impl MotionPhase {
         self.closed_form_of(Symbol::new("x"))
     }
 
-    /// The same for another letter of the coordinate.
+    /// The closed form with another letter for the coordinate.
     pub fn closed_form_of(&self, coordinate: Symbol) -> String {
         let clock = match self.joined_at() {
             Some(join) => format!("(t - t{join})"),

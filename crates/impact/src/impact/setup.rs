@@ -1,4 +1,4 @@
-//! What an impact is asked with: a swing, a barrier in its way, and which closed forms.
+//! The problem of one impact: a swing, a barrier in its way, and the closed forms asked for.
 //!
 //! In: an equation of the swing with the values of its parameters, a release, a barrier and the law
 //! of its force. Out: the equation that is judged,
@@ -54,7 +54,7 @@ pub struct Setup {
     pub side: Side,
     /// Stiffness gamma of the barrier, positive; dimensionless for a pendulum in units of 1/omega.
     pub stiffness: f64,
-    /// Where gamma comes from, in words.
+    /// The source of gamma, in words.
     pub stiffness_source: String,
     /// The pendulum in SI units, which must agree with `stiffness`; without it the answer is
     /// dimensionless alone.
@@ -69,15 +69,15 @@ pub struct Setup {
     pub order: Option<u32>,
     /// The degrees of an approximant.
     pub degrees: Option<Degrees>,
-    /// What the amplitude of the derived law measures.
+    /// The definition of the amplitude of the derived law.
     pub amplitude_convention: Option<AmplitudeConvention>,
-    /// How the line is fitted in the paper's reading.
+    /// The rule of the line in the paper's version.
     pub rule: Rule,
     /// The law of the contact in the derived column; without say where `loss` is given.
     pub contact_law: ContactLaw,
     /// Whether every law of the contact is to stand in a table.
     pub every_contact_law: bool,
-    /// What the contact loses: then the derived column's is that of Hunt and Crossley.
+    /// The loss in the contact: with it the derived column is that of Hunt and Crossley.
     pub loss: Option<ContactLoss>,
     /// The relative error up to which a closed form passes.
     pub tolerance: f64,
@@ -87,7 +87,7 @@ pub struct Setup {
     pub step_limit: u32,
 }
 
-/// What a contact loses, by the law of Hunt and Crossley.
+/// The loss in a contact, by the law of Hunt and Crossley.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContactLoss {
     /// lambda, positive, in units of time over the unit of x: mu/gamma in equation (7).

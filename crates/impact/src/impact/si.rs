@@ -59,8 +59,8 @@ impl YieldCheck {
 }
 
 impl Impact {
-    /// The same numbers in SI units; nothing where no units are known, or where a number is beyond
-    /// the range of doubles.
+    /// The numbers in SI units; `None` if no units are known, or if a number is beyond the range of
+    /// doubles.
     pub fn si(&self) -> Option<SiImpact> {
         let units = self.setup.units?;
         let gamma = self.setup.stiffness;

@@ -99,7 +99,7 @@ pub fn grid_values(axes: &[Axis], number: usize) -> Vec<f64> {
     values
 }
 
-/// What came of one motion.
+/// The summary of one motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Summary {
     /// Number of contacts.
@@ -132,7 +132,7 @@ impl Summary {
         !matches!(self.stop, SimulationStop::Interrupted { t } if t == 0.0)
     }
 
-    /// What there is to say of a motion.
+    /// Summarises a motion.
     pub fn from_motion(motion: &Simulation) -> Self {
         let largest =
             |value: fn(&ContactRecord) -> f64| motion.impacts.iter().map(value).fold(0.0, f64::max);
@@ -211,7 +211,7 @@ fn summaries(
     motions.iter().enumerate().map(one).collect()
 }
 
-/// The same on so many threads.
+/// The sweep on this number of threads.
 ///
 /// # Errors
 /// As [`sweep`].

@@ -38,10 +38,10 @@ pub struct Attempt {
 pub(super) struct Trial<'a> {
     pub(super) setup: &'a Setup,
     pub(super) equations: &'a ImpactEquations,
-    /// Where the cycle starts, in x: the release, or the turning point of a motion released inside
+    /// The start of the cycle, in x: the release, or the turning point of a motion released inside
     /// the barrier.
     pub(super) turning_point: f64,
-    /// What is judged, in z.
+    /// The collision, in z.
     pub(super) collision: Collision<'a>,
     pub(super) truth: TrueImpact,
     /// The speed at the touch from the energy.
@@ -60,7 +60,7 @@ pub(super) struct Derived {
     error: f64,
 }
 
-/// What a method is asked for: an order, or degrees.
+/// An order or degrees of a method.
 type Rung = (Option<u32>, Option<Degrees>);
 
 /// The highest order of a method that is tried where none is asked for: expansions and balances go
@@ -211,7 +211,7 @@ impl Trial<'_> {
                 continue;
             }
             last = solution.cloned();
-            // What refuses an order refuses those above it; the first may be too low.
+            // A method that refuses an order refuses those above it; the first may be too low.
             let refused = matches!(flight, Err(ImpactError::Refusal(_)))
                 && order.is_none_or(|order| order > 2);
             let found = flight.and_then(|flight| self.with_contact(flight));
@@ -257,7 +257,7 @@ impl Trial<'_> {
         // by its flight.
         let is_exact = self.setup.contact_law == ContactLaw::Exact && self.setup.loss.is_none();
         let numbers = self.number_errors(&phases);
-        // What misses a number is not followed through its phases.
+        // A motion with a wrong number is not compared phase by phase.
         let numbers = worst(if is_exact { &numbers } else { &numbers[..2] });
         let error = match (numbers <= self.setup.tolerance, is_exact) {
             (true, true) => worst(&self.errors(&phases)),
@@ -284,7 +284,7 @@ impl Trial<'_> {
         }
     }
 
-    /// What meets at this speed.
+    /// The contact problem at this speed.
     fn touch(&self, speed: f64) -> Touch<'_> {
         let Collision { barrier, stiffness, restoring_force, elastic_force, .. } = self.collision;
         Touch {
@@ -332,7 +332,7 @@ impl Trial<'_> {
     }
 }
 
-/// That of two with the smaller error.
+/// The one with the smaller error.
 fn closer(one: Option<Derived>, other: Option<Derived>) -> Option<Derived> {
     match (one, other) {
         (Some(one), Some(other)) if other.error < one.error => Some(other),

@@ -44,11 +44,11 @@ impl Elastic {
 /// The modulus E of the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Modulus {
-    /// That of the barrier alone, Pa, as in the paper's equation (3).
+    /// The modulus of the barrier alone, Pa, as in the paper's equation (3).
     BarrierAlone(f64),
-    /// That of an elastic barrier under a rigid sphere, E1/(1 - nu1^2).
+    /// The modulus of an elastic barrier under a rigid sphere, E1/(1 - nu1^2).
     RigidSphere(Elastic),
-    /// That of two elastic bodies.
+    /// The modulus of two elastic bodies.
     Both {
         /// The barrier, E1 and nu1.
         barrier: Elastic,

@@ -1,4 +1,4 @@
-//! What decides the best design: found by moving every variable alone, by designs drawn around it,
+//! The limits of the best design: found by moving every variable alone, by designs drawn around it,
 //! and by the unit of the rest time.
 //!
 //! ```text
@@ -26,7 +26,7 @@ use crate::numeric::ode::root::{BisectionStop, bisect};
 /// A design this much worse, in parts, is as good for an engineer.
 pub const WITHIN: f64 = 0.01;
 
-/// What a variable has to do with the best design.
+/// The role of a variable in the best design.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VariableRole {
     /// Its whole range is as good.
@@ -57,10 +57,10 @@ impl VariableRole {
     }
 }
 
-/// What one variable does at the best design.
+/// The effect of one variable at the best design.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensitivity {
-    /// Which.
+    /// The parameter.
     pub parameter: Parameter,
     /// Its value there.
     pub value: f64,
@@ -73,7 +73,7 @@ pub struct Sensitivity {
     /// The least and the greatest value of the objective on its whole range, the others held,
     /// constraints aside; nothing where the motion does not rest somewhere.
     pub range: Option<[f64; 2]>,
-    /// What follows.
+    /// The role that follows.
     pub role: VariableRole,
 }
 
@@ -93,7 +93,7 @@ pub struct Ends {
     pub best_lengths: [f64; 2],
 }
 
-/// What decides the best design.
+/// The factors that limit the best design.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Decision {
     /// The variables, in their order.
@@ -113,7 +113,7 @@ pub struct Decision {
     pub points: Vec<Vec<f64>>,
     /// The constraints that have no more than 1 % to spare.
     pub active: Vec<String>,
-    /// What the unit of the rest time does, where a rest time is the objective and the length is
+    /// The effect of the unit of the rest time, if a rest time is the objective and the length is
     /// searched.
     pub ends: Option<Ends>,
     /// The objective with every material, the best design otherwise; nothing for one that does not
@@ -160,7 +160,7 @@ impl Decision {
         let mut near: Vec<[f64; 2]> =
             sensitivities.iter().map(|sensitivity| sensitivity.alone).collect();
         near.extend(space.bounds().iter().skip(near.len()));
-        // What is fixed at one value has no room of its own.
+        // A variable fixed at one value has no range of its own.
         for (range, [lower, upper]) in near.iter_mut().zip(space.bounds()) {
             let least = 1e-3 * (upper - lower);
             *range = [
@@ -202,7 +202,7 @@ impl Decision {
 struct Probe<'a> {
     question: &'a OptimizationProblem,
     space: &'a Space,
-    /// How many times fewer must do: some tenfold for designs without closed forms, a hundredfold
+    /// The divisor of the number of designs: about ten for designs without closed forms, a hundred
     /// with a main mass, which has none.
     fewer: usize,
     /// The least objective so far of a design that keeps the constraints.
@@ -231,8 +231,8 @@ impl Probe<'_> {
         [value, kept]
     }
 
-    /// The same point on the surface of the density, where there is one; nothing where that leaves
-    /// the box.
+    /// The point moved to the surface of the density, if there is one; `None` if that leaves the
+    /// box.
     fn on_surface(&self, mut point: Vec<f64>, moved: Option<usize>) -> Option<Vec<f64>> {
         let Some(density) = self.question.density else {
             return Some(point);
@@ -370,7 +370,7 @@ impl Probe<'_> {
         Some((above / below).ln() / (ends[1] / ends[0]).ln()).filter(|slope| slope.is_finite())
     }
 
-    /// How many designs are drawn from the whole box, and from what is as good alone.
+    /// Numbers of designs drawn from the whole box, and from the ranges that are as good alone.
     fn drawn(&self) -> [usize; 2] {
         DRAWN.map(|count| count / self.fewer)
     }

@@ -12,7 +12,7 @@ use crate::impact::{
     SimulationError, Start, Units, course, hertz, simulate,
 };
 
-/// How a design is judged.
+/// The way in which a design is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Route {
     /// By closed forms, and by integration where there are none.
@@ -70,7 +70,7 @@ pub struct EvaluatedDesign {
     pub case: Case,
     /// The equation.
     pub model: Model,
-    /// What its numbers are in SI units.
+    /// The units of its numbers.
     pub units: Units,
     /// The rest time of the pendulum, in units of 1/omega.
     pub rest_time: Result<f64, NoRest>,

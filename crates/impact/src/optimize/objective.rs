@@ -1,4 +1,4 @@
-//! What may be small, or limited: one row each.
+//! Objectives and limits: one row each.
 
 use super::design::EvaluatedDesign;
 
@@ -7,7 +7,7 @@ use super::design::EvaluatedDesign;
 pub enum Objective {
     /// The rest time of the pendulum in seconds.
     RestTime,
-    /// The same in units of 1/omega of its small swings.
+    /// The rest time in units of 1/omega of the small swings.
     DimensionlessRestTime,
     /// The greatest force of a contact.
     PeakForce,
@@ -79,7 +79,7 @@ impl Objective {
         self.row().1
     }
 
-    /// What it is, in words: `the rest time`.
+    /// The meaning in words: `the rest time`.
     pub fn meaning(self) -> &'static str {
         self.row().2
     }

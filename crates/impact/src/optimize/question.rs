@@ -1,4 +1,4 @@
-//! What is asked: which design, of which box, under which constraints, by which search.
+//! The optimisation problem: the box of designs, the constraints and the search.
 
 use std::f64::consts::PI;
 
@@ -26,7 +26,7 @@ pub const DEFAULT_BOX: [(Parameter, f64, f64); 4] = [
 /// A number of the design that is searched.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Variable {
-    /// Which.
+    /// The parameter.
     pub parameter: Parameter,
     /// Its lower limit.
     pub lower: f64,
@@ -37,7 +37,7 @@ pub struct Variable {
 /// A number of the design that must not be larger.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// Which.
+    /// The objective.
     pub objective: Objective,
     /// The largest value.
     pub at_most: f64,
@@ -46,16 +46,16 @@ pub struct Limit {
 /// A search for the best design: the question.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OptimizationProblem {
-    /// What is held fixed, and what the variables do not say.
+    /// The parameters held fixed, and all others that the variables leave open.
     pub case: Case,
-    /// What is searched.
+    /// The variables of the search.
     pub variables: Vec<Variable>,
     /// The materials of the barrier that are tried, in place of its modulus; none where that is
     /// searched or fixed.
     pub materials: Vec<Material>,
-    /// What is to be small; several at once make a front.
+    /// The objectives to be minimised; several at once make a front.
     pub objectives: Vec<Objective>,
-    /// What must not be larger.
+    /// The limits of other quantities.
     pub limits: Vec<Limit>,
     /// The density of the sphere, kg/m^3, where its mass is that of its radius.
     pub density: Option<f64>,
@@ -67,11 +67,11 @@ pub struct OptimizationProblem {
     pub barrier_yield: Option<f64>,
     /// The main mass that carries the pendulum, where its rest counts.
     pub main_mass: Option<MainMass>,
-    /// How long and how closely motions are followed.
+    /// Duration and accuracy of the motions.
     pub settings: Settings,
     /// The genetic algorithm.
     pub genetic: GeneticOptions,
-    /// How often it is run.
+    /// Number of runs.
     pub runs: usize,
     /// The seed of all random numbers.
     pub seed: u64,
@@ -118,7 +118,7 @@ pub enum OptimizeError {
     /// Nothing to be small.
     #[error("[genetic] objective names nothing that is to be small: choose one or more of {}", Objective::ALL.map(Objective::name).join(", "))]
     NoObjective,
-    /// The same twice.
+    /// An objective that is named twice.
     #[error("[genetic] objective names `{0}` twice")]
     SameObjective(&'static str),
     /// No run.
@@ -140,9 +140,9 @@ pub enum OptimizeError {
         "no design in this box comes to rest in the time allowed, {duration} units of 1/omega: {reason}"
     )]
     NoRest {
-        /// How long motions were followed.
+        /// The duration of the motions.
         duration: f64,
-        /// What the design in the middle of the box says.
+        /// The reason at the design in the middle of the box.
         reason: String,
     },
     /// No design that keeps the constraints.
@@ -304,7 +304,7 @@ impl OptimizationProblem {
         [self.sphere_yield, barrier].into_iter().flatten().reduce(f64::min)
     }
 
-    /// What a design is worth.
+    /// Objectives and constraints of a design.
     pub fn evaluation(&self, design: &EvaluatedDesign) -> Evaluation {
         let value = |objective: Objective| objective.value(design).unwrap_or(f64::INFINITY);
         let mut inequalities: Vec<f64> = self

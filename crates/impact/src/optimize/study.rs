@@ -37,8 +37,8 @@ pub struct Found {
 pub struct SearchRun {
     /// Its number, from 0: the stream of its random numbers.
     pub number: usize,
-    /// What it found: the best design, or with several objectives its front; nothing where no
-    /// design rests and keeps the constraints.
+    /// The best design, or with several objectives the front; empty if no design rests and keeps
+    /// the constraints.
     pub found: Vec<Found>,
     /// The best value after the random population and after every generation, infinite while there
     /// is none; with several objectives the size of the front.
@@ -70,7 +70,7 @@ impl Default for StudyObserver<'_> {
     }
 }
 
-/// How a number is spread over the runs.
+/// The distribution of a number over the runs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FiveNumberSummary {
     /// The least.
@@ -121,7 +121,7 @@ pub struct BaselineSearch {
 }
 
 impl BaselineSearch {
-    /// How the values are spread over the runs that found one.
+    /// The distribution of the best values over the runs that found one.
     pub fn spread(&self) -> Option<FiveNumberSummary> {
         let found: Vec<f64> =
             self.values.iter().copied().filter(|value| value.is_finite()).collect();
@@ -149,7 +149,7 @@ pub struct Finalist {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Study {
-    /// What was asked.
+    /// The problem that was solved.
     pub question: OptimizationProblem,
     /// The runs, by their numbers.
     pub runs: Vec<SearchRun>,
@@ -160,7 +160,7 @@ pub struct Study {
     pub finalists: Vec<Finalist>,
     /// The default design under the same assumptions, by integration, in the box or not.
     pub default_design: Option<EvaluatedDesign>,
-    /// What decides the best design; with several objectives nothing.
+    /// The factors that limit the best design; `None` with several objectives.
     pub decision: Option<Decision>,
     /// Other searches with the same number of evaluations; none with several objectives.
     pub rivals: Vec<BaselineSearch>,
@@ -334,7 +334,7 @@ pub fn optimize(
     })
 }
 
-/// The same on so many threads.
+/// The optimisation on this number of threads.
 ///
 /// # Errors
 /// As [`optimize`].
@@ -600,7 +600,7 @@ impl Study {
         self.runs.iter().filter_map(value).collect()
     }
 
-    /// How they are spread.
+    /// The distribution of the values over the runs.
     pub fn spread(&self) -> Option<FiveNumberSummary> {
         FiveNumberSummary::from_values(&self.values())
     }

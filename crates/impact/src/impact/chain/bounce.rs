@@ -72,7 +72,7 @@ const DEEPEST: f64 = 0.3;
 /// A barrier and what counts while it is touched.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ChainBarrier {
-    /// Which.
+    /// The side of the barrier.
     pub side: Side,
     /// Its place, positive towards it from the bottom.
     pub spot: SwingAngle,
@@ -87,7 +87,7 @@ pub(super) struct ChainBarrier {
     alpha: f64,
 }
 
-/// What a contact makes of the motion.
+/// The change of the motion by one contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bounce {
     /// The greatest depth, rad.

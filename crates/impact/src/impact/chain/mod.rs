@@ -137,7 +137,7 @@ pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulat
     Ok(motion)
 }
 
-/// Where the next stretch begins.
+/// The state at the start of the next stretch.
 #[derive(Debug, Clone, Copy)]
 enum StretchStart {
     /// At rest on this side at this spot; the swing and how far it reaches to the barrier ahead,
@@ -153,8 +153,7 @@ struct Leg {
     time: f64,
     area: f64,
     length: f64,
-    /// How much later or earlier damping lets the motion arrive, for the same phase, to the first
-    /// order.
+    /// Delay of the arrival by damping at the same phase, to first order.
     lag: f64,
     /// The part of that which is dry friction's.
     rubbed: f64,
@@ -169,8 +168,8 @@ impl Leg {
     }
 }
 
-/// Which energies are alike from one swing to the next: of those that leave a barrier, and of free
-/// ones.
+/// The stretches whose energies are similar from one swing to the next: those that leave a barrier,
+/// and free ones.
 #[derive(Debug, Clone, Copy)]
 enum StretchKind {
     FromPlace,
@@ -201,7 +200,7 @@ struct Chain<'a> {
     stop: Option<SimulationStop>,
     /// A tenth of the amplitude of the first swing.
     level: f64,
-    /// What of it was integrated, from now on.
+    /// The part of the motion that is integrated, from now on.
     integrated: Option<Simulation>,
 }
 
@@ -319,8 +318,8 @@ impl<'a> Chain<'a> {
         None
     }
 
-    /// How much later than at the energy of the swing, where its phase is this one, the spot is
-    /// passed with another energy.
+    /// Delay of the passage of an angle with another energy, compared with the swing of the
+    /// reference energy at the given phase.
     fn later(
         swing: &UndampedSwing,
         (sine, cosine): (f64, f64),
@@ -332,11 +331,11 @@ impl<'a> Chain<'a> {
         change / (1.0 - 0.5 * swing.energy * sine * sine).sqrt()
     }
 
-    /// How much dry friction delays the passage of a spot with this energy on the way from a
-    /// turning point (direction 1), or hastens the way from there to one (-1), beside the free
-    /// swing of this energy. Friction moves the middle of a linear swing of amplitude a by alpha
-    /// against the motion, so with x = a sin phi there and the speed a cos phi it is arctan((x +
-    /// alpha)/x') - arctan(x/x'); of the pendulum 1/a is [`slowness`].
+    /// Delay by dry friction of the passage of an angle with this energy on the way from a turning
+    /// point (direction 1), or its advance on the way to one (-1), relative to the free swing of
+    /// this energy. Friction shifts the centre of a linear swing of amplitude a by alpha against
+    /// the motion, so with x = a sin phi there and the speed a cos phi it is arctan((x + alpha)/x')
+    /// - arctan(x/x'); for the pendulum 1/a is [`slowness`].
     fn rub_lag(&self, spot: &SwingAngle, energy: f64, direction: f64) -> f64 {
         if self.model.alpha == 0.0 {
             return 0.0;
@@ -598,7 +597,7 @@ impl<'a> Chain<'a> {
         self.stop = Some(SimulationStop::Duration);
     }
 
-    /// What has no closed form: the rest of the motion is followed by Taylor series.
+    /// Follows the rest of the motion, which has no closed form, by Taylor series.
     fn integrate(&mut self) -> Option<StretchStart> {
         let left = Settings { duration: self.settings.duration - self.t, ..*self.settings };
         let [x, velocity] = self.state;
@@ -693,8 +692,8 @@ fn rubbed(turn: f64, alpha: f64) -> f64 {
     next
 }
 
-/// By how much a small constant force delays the quarter of a swing from its turning point to the
-/// bottom, in parts of the force: dJ/dE of J = int |x|/x' dx, which is 1/A of a linear swing.
+/// Delay by a small constant force of the quarter of a swing from its turning point to the bottom,
+/// per unit of the force: dJ/dE of J = int |x|/x' dx, which is 1/A for a linear swing.
 ///
 /// ```text
 /// J = 2 sum c_n^2 k^(2n + 1),   c_n = (2^n n!)^2/(2n + 1)!,   E = 2 k^2
@@ -748,8 +747,8 @@ fn closed(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) -> ClosedFo
 /// Impacts that there is room for from the beginning.
 const MANY: usize = 32;
 
-/// How near the reference energy is to be, in parts of the energy, for one more step without
-/// another elliptic integral.
+/// Relative error of the reference energy up to which one more step needs no further elliptic
+/// integral.
 const NEAR: f64 = 5e-4;
 
 /// The most turns of an iteration that closes in within a few.

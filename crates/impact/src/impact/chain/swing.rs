@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 
 use spec_math::cephes64::{ellpe, ellpk};
 
-/// What a stretch of the swing takes: both counted from the bottom, negative on the left.
+/// Time and action of a stretch of the swing: both counted from the bottom, negative on the left.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Stretch {
     /// Time, in units of 1/omega.
@@ -49,7 +49,7 @@ impl SwingAngle {
         Self { x: 2.0 * half.asin(), half, energy }
     }
 
-    /// The same on the other side.
+    /// The mirror image on the other side.
     pub fn mirrored(&self) -> Self {
         Self { x: -self.x, half: -self.half, ..*self }
     }
@@ -151,8 +151,8 @@ fn symmetric_integrals(x: f64, y: f64) -> (f64, f64) {
 /// m below which the area of a quarter is a series: its first term left out is 0.015 m^4.
 const SMALL: f64 = 1e-3;
 
-/// How near each other the arguments are, in parts of their sum, when the series take over: a
-/// deviation of 0.03 from their mean leaves an error of 1e-9.
+/// Relative distance of the arguments, over their sum, below which the series are used: a deviation
+/// of 0.03 from their mean leaves an error of 1e-9.
 const CLOSE: f64 = 0.015;
 
 /// Far more than any argument needs: 4^-40 is below the resolution of a double.

@@ -159,7 +159,7 @@ impl ExactContact {
     /// The motion as a parabola and odd sines, as many as are needed to stay within `tolerance` of
     /// D, at most 64.
     ///
-    /// What is left is in [`SineSeries::deviation`]: ask it where the tolerance matters.
+    /// The remaining error is [`SineSeries::deviation`]: compare it with the tolerance.
     pub fn sine_series(&self, tolerance: f64) -> SineSeries {
         let duration = self.duration;
         let mut series = SineSeries {
@@ -403,8 +403,8 @@ fn work(force: impl Fn(f64) -> f64, q: f64, energy: f64) -> Result<f64, Quadratu
     integrate_part(|q| 2.0 * q * force(q * q), [0.0, q], 1e-14, energy)
 }
 
-/// The same by pieces in the golden section, none of which ends where a panel that was halved does:
-/// a jump of the force beside such an end lies behind all points of a rule.
+/// The work by pieces in the golden section, none of which ends at the end of a panel that was
+/// halved: a jump of the force beside such an end lies behind all points of a rule.
 fn work_by_sections(
     force: impl Fn(f64) -> f64,
     q: f64,

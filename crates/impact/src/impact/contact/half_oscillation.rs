@@ -27,7 +27,7 @@ use crate::numeric::ode::root::find_root;
 /// Harmonics kept in the motion of iteration and homotopy: to k = 15.
 pub(super) const HARMONICS: usize = 8;
 
-/// What is taken of the perturbation.
+/// The order to which the perturbation is taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum PerturbationOrder {
     /// Homotopy of the first order: one sine.
@@ -194,7 +194,7 @@ fn sum_of_slopes(harmonics: &[f64]) -> f64 {
 /// halving from one.
 fn rising_root(function: impl Fn(f64) -> f64) -> Option<f64> {
     let (mut low, mut high) = (1.0, 1.0);
-    // What is no number lies too far.
+    // A point without a value lies too far.
     let value = |at: f64| {
         let value = function(at);
         if value.is_finite() { value } else { 1.0 }

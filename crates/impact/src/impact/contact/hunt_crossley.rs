@@ -337,7 +337,7 @@ pub(in crate::impact) fn loss(x: f64) -> f64 {
         let step =
             (e * e * excess(-e * x) - constant - loss * (2.0 - loss)) * (1.0 - e * x) / (2.0 * e);
         loss += step;
-        // What is left is of the order of its square.
+        // The remaining error is of the order of the square of the step.
         if step * step <= 1e-17 * loss {
             break;
         }

@@ -26,7 +26,7 @@ use super::{
 };
 use crate::decimal::significant;
 
-/// How the motion in contact is computed. The names are those of tables and problem files.
+/// The method that computes the motion in contact. The names are those of tables and problem files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ContactLaw {
@@ -118,7 +118,7 @@ impl FromStr for ContactLaw {
     }
 }
 
-/// What meets: d'' + f(x_c + d) + gamma F(d) = 0, d(0) = 0, d'(0) = v.
+/// The contact problem: d'' + f(x_c + d) + gamma F(d) = 0, d(0) = 0, d'(0) = v.
 #[derive(Clone, Copy)]
 pub struct Touch<'a> {
     /// The speed v of touch, in the unit of x per time.
@@ -287,7 +287,7 @@ impl ContactMotion {
         self.phase_point_at(time).1
     }
 
-    /// The same motion as a parabola and sines within `tolerance` of D, as far as 64 of them do:
+    /// The motion as a parabola and sines within `tolerance` of D, as far as 64 of them suffice:
     /// elementary functions, whatever the law.
     ///
     /// ```
@@ -358,7 +358,7 @@ impl ContactMotion {
         }
     }
 
-    /// How far it is from another contact, the exact one: value over that value less one.
+    /// Errors relative to another contact, the exact one: value over exact value less one.
     pub fn errors(&self, exact: &Self) -> ContactErrors {
         let deviation = (0..=200).map(|part| {
             let time = exact.duration * f64::from(part) / 200.0;
@@ -392,7 +392,7 @@ pub struct ContactErrors {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ContactRow {
-    /// Which law.
+    /// The law.
     pub law: ContactLaw,
     /// The contact by it and its errors, or why it has none.
     pub outcome: Result<(ContactMotion, ContactErrors), ContactError>,

@@ -22,8 +22,8 @@ pub(in crate::impact) struct LineContact {
 }
 
 impl LineContact {
-    /// What the line drives, per unit of this stiffness, beside a force `at_barrier` that grows
-    /// with `slope`; `None` where that does not oscillate.
+    /// The motion along this line, per unit of this stiffness, beside a force `at_barrier` that
+    /// grows with `slope`; `None` if it does not oscillate.
     pub(in crate::impact) fn new(
         line: LinearContactForce,
         stiffness: f64,
@@ -39,7 +39,7 @@ impl LineContact {
         })
     }
 
-    /// How long it lasts, in the unit of time.
+    /// Duration of the contact, in the unit of time.
     pub(in crate::impact) fn duration(&self) -> f64 {
         2.0 / self.frequency * (self.speed / self.frequency).atan2(self.centre)
     }

@@ -56,7 +56,7 @@ pub enum ContactError {
     /// A quantity that is no number.
     #[error("the {quantity} must be a finite number, not {value}")]
     NotFinite {
-        /// What it is.
+        /// The name of the quantity.
         quantity: &'static str,
         /// The value given.
         value: f64,
@@ -66,7 +66,7 @@ pub enum ContactError {
         "the {quantity} of this contact is beyond the range of double precision: measure length and time in units nearer to it"
     )]
     Range {
-        /// What it is.
+        /// The name of the quantity.
         quantity: &'static str,
     },
     /// A restitution outside its range.
@@ -79,7 +79,7 @@ pub enum ContactError {
         "the {quantity} must be a number and not negative, not {value}: 0 is a contact without loss"
     )]
     Negative {
-        /// What it is.
+        /// The name of the quantity.
         quantity: &'static str,
         /// The value given.
         value: f64,
@@ -94,7 +94,7 @@ pub enum ContactError {
         /// The highest there is.
         highest: u32,
     },
-    /// What acts besides the contact is no small correction to it.
+    /// The forces beside the contact force are not a small correction to it.
     #[error(
         "the force at touch and its slope are no small correction: the last terms of the series are {depth_error:.1e} of the depth \
          and {duration_error:.1e} of the duration; take the exact contact"
@@ -111,7 +111,7 @@ pub enum ContactError {
          hard enough on the way"
     )]
     NeverTurns {
-        /// How deep the search went.
+        /// The depth that the search reached.
         searched: f64,
     },
     /// The force has corners, jumps or waves on the way.

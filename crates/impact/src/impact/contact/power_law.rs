@@ -129,7 +129,7 @@ impl PowerLaw {
         self.phase_point_at(time).1
     }
 
-    /// The same contact with a force `preload` (a, either sign) at touch and of slope `slope` (k)
+    /// The contact with a force `preload` (a, of either sign) at touch and of slope `slope` (k)
     /// beside it, to this order in both together, at most [`HIGHEST_ORDER`].
     ///
     /// # Errors
@@ -273,9 +273,8 @@ impl CorrectedPowerLaw {
         format!("d(s) = {} s ({duration} - s) + {shape}", significant(0.5 * self.preload, digits))
     }
 
-    /// By how much the motion misses the speed of touch, relative to it: a measure of how far its
-    /// shape is from the true one, whose depth differs by less than that times D (as long as |a| D
-    /// < v^2/10).
+    /// Relative error of the speed at touch: a measure of the error of the shape of the motion,
+    /// whose depth is off by less than that times D (as long as |a| D < v^2/10).
     pub fn shape_error(&self) -> f64 {
         (self.velocity(0.0) / self.contact.speed - 1.0).abs()
     }

@@ -94,7 +94,7 @@ pub struct RestTimes {
 }
 
 impl RestTimes {
-    /// How much later the arctangent comes to rest, where both do.
+    /// Rest time by the arctangent less that by Coulomb's law; `None` if one of them has none.
     pub fn difference(&self) -> Option<f64> {
         Some(self.arctangent.ok()? - self.coulomb.ok()?)
     }
@@ -109,9 +109,9 @@ pub struct NearRest {
     pub half_swings: usize,
     /// The state by the arctangent at that time: displacement and velocity.
     pub meanwhile: [f64; 2],
-    /// What the arctangent does to the first cycle.
+    /// The effect of the arctangent on the first cycle.
     pub first_cycle: FirstCycle,
-    /// What it does at rest.
+    /// The motion by the arctangent near rest.
     pub creep: Creep,
     /// Rest times of the default pendulum at its barrier.
     pub rest_times: RestTimes,
@@ -174,7 +174,7 @@ fn followed(model: &Model, x: f64, duration: f64) -> Result<Simulation, Friction
     }
 }
 
-/// Where Coulomb's law stops it for good, and after how many half swings.
+/// The final stop by Coulomb's law, and the number of half swings before it.
 fn stop(alpha: f64, amplitude: f64) -> Result<(TurningPoint, usize), FrictionError> {
     let mut duration = 50.0;
     loop {
@@ -296,7 +296,7 @@ fn rate_of([x0, x1, x2, x3]: [f64; 4], step: f64) -> Option<f64> {
 #[derive(Debug, Clone)]
 struct WithoutInertia {
     alpha: f64,
-    /// Which side of zero it is on, 1 or -1.
+    /// The side of zero, 1 or -1.
     side: f64,
     /// log y, y = sin(pi |sin x|/(2 alpha)), which falls at the rate pi cos(x)/(200 alpha).
     logarithm: Trajectory<Point<[f64; 1]>>,

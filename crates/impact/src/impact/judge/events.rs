@@ -22,7 +22,7 @@ use crate::numeric::ode::{
     self, Event, EventOccurrence, IntegrationError, StopReason, Trajectory, integrate_phases,
 };
 
-/// Where the pendulum is and which way dry friction acts: a phase of the run.
+/// The mode of the hybrid system: the region of the pendulum and the direction of dry friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct HybridMode {
     region: Regime,
@@ -31,7 +31,7 @@ struct HybridMode {
     direction: f64,
 }
 
-/// What an event means.
+/// The meaning of an event.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum JudgeEvent {
     Touch(Side),
@@ -284,7 +284,7 @@ pub(in crate::impact) fn follow(
             index(HybridMode { region, direction }, false)
         }
     };
-    // What lets go of a stuck pendulum varies with the excitation, not with the motion.
+    // The force that releases a stuck pendulum varies with the excitation, not with the motion.
     let watched = model.sticks() && model.beta != 0.0 && model.frequency_ratio > 0.0;
     let maximum_step = if watched { 1.0 / model.frequency_ratio } else { f64::INFINITY };
     let options = ode::IntegrationOptions {
@@ -329,7 +329,7 @@ pub(in crate::impact) fn follow(
     })
 }
 
-/// What the events of the run say of contacts and turning points.
+/// Contacts and turning points from the events of the run.
 fn contacts_and_turns(
     (model, settings): (&Model, &Settings),
     start: Start,

@@ -81,7 +81,7 @@ pub enum TrueImpactError {
          barrier"
     )]
     NotSettled {
-        /// By how much, relative to the quantity that changes most.
+        /// The change, relative to the quantity that changes most.
         change: f64,
     },
     /// The run could not begin.
@@ -223,7 +223,7 @@ fn energy_drift(
     Ok(flight.max(rest) / released.abs())
 }
 
-/// The same, with what may be neglected beside this size.
+/// The options with an absolute tolerance in proportion to this size.
 fn at_scale(options: &ode::IntegrationOptions, size: f64) -> ode::IntegrationOptions {
     ode::IntegrationOptions {
         absolute_tolerance: options
@@ -303,9 +303,9 @@ const ACCURACY: f64 = 5e-5;
 /// The tightest tolerance worth trying in double precision.
 const TIGHTEST: f64 = 1e-14;
 
-/// The same, with its digits assured: a tolerance a hundred times looser changes no quantity by
-/// more than 5e-5 of itself. The first pair compared is that of `options` and a hundredth of it;
-/// where they differ the next one is closer.
+/// The true impact with assured digits: a tolerance a hundred times looser changes no quantity by
+/// more than 5e-5 of itself. The first pair compared is that of `options` and a hundredth of it; if
+/// they differ the next one is tighter.
 ///
 /// # Errors
 /// As [`true_impact`], and [`TrueImpactError::NotSettled`] where double precision does not know six

@@ -7,11 +7,11 @@
 //! max|p''| <= sum k (k - 1) |c_k| h^(k-2)
 //! ```
 //!
-//! Where Bernstein's form says that there is no change of sign, or one, nothing is searched
-//! (`lanes`, for several polynomials side by side). Otherwise an interval on which the line through
-//! the middle stays further from zero than the second bound holds no root; one on which the slope
-//! stays further from zero than the first bound on p'' holds at most one; any other is halved. So
-//! no root is missed, however close two of them lie, down to the rounding of the polynomial itself.
+//! If Bernstein's form shows no change of sign, or one, nothing is searched (`lanes`, for several
+//! polynomials side by side). Otherwise an interval on which the line through the middle stays
+//! further from zero than the second bound holds no root; one on which the slope stays further from
+//! zero than the first bound on p'' holds at most one; any other is halved. So no root is missed,
+//! however close two of them lie, down to the rounding of the polynomial itself.
 
 pub(super) mod lanes;
 
@@ -90,7 +90,7 @@ pub(super) fn sign_changes(coefficients: &[f64], h: f64) -> Roots {
     near_sign_changes(coefficients, h, value(coefficients, h))
 }
 
-/// The same where it is known that p may vanish, and what it is at h.
+/// The roots of a polynomial that may vanish in the interval, with its value at h given.
 pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots {
     let mut found = Roots::new();
     // Leaving zero is no change of sign: p(u)/u^k has the same sign for u > 0.
@@ -99,7 +99,7 @@ pub(super) fn near_sign_changes(coefficients: &[f64], h: f64, end: f64) -> Roots
     let Some(&first) = coefficients.first() else {
         return found;
     };
-    // Where it leaves zero its value at the end is that of p/u^k.
+    // If it leaves zero, its value at the end is that of p/u^k.
     let end = if zeros == 0 { end } else { value(coefficients, h) };
     let [changes] = changes_of_sign(as_lane(coefficients), &[h]);
     if changes == 0.0 && first * end > 0.0 {
@@ -185,7 +185,7 @@ pub(super) fn level_crossing(coefficients: &[f64], level: f64, from: f64, to: f6
     bracketed(coefficients, level, (from, start), (to, end))
 }
 
-/// The same where the values of p - level at both ends are known, and of opposite sign.
+/// The root of p - level between two points with known values of opposite sign.
 pub(super) fn bracketed(
     coefficients: &[f64],
     level: f64,
@@ -197,7 +197,7 @@ pub(super) fn bracketed(
     place
 }
 
-/// The same for any function with one change of sign.
+/// The root of any function with one change of sign.
 pub(super) fn crossing_of(function: impl Fn(f64) -> f64, from: f64, to: f64) -> f64 {
     match find_root(&function, from, to) {
         Ok(root) => root,

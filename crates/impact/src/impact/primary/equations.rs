@@ -24,7 +24,7 @@ use crate::system::System;
 /// The energies that run beside the states: viscous, friction, contact, dashpot, force.
 pub(super) const ACCOUNTS: usize = 5;
 
-/// What the energies say of every case.
+/// The equations of motion of every case, from the energies.
 struct Accelerations {
     /// x'', y'' with `P` for the torque of a contact and `G` for that of friction.
     free: [Expr; 2],
@@ -51,7 +51,7 @@ type PhaseKey = (Option<Side>, f64);
 /// The system of a phase: its states, and behind them the accounts that change in it.
 pub(super) struct PhaseSystem {
     pub(super) system: System,
-    /// Which accounts those are.
+    /// Indices of these accounts.
     pub(super) accounts: Vec<usize>,
 }
 
@@ -133,7 +133,7 @@ impl PrimaryEquations {
         [-torque, power]
     }
 
-    /// What the accounts grow by: viscous, friction, contact, dashpot, force.
+    /// Rates of the accounts: viscous, friction, contact, dashpot, force.
     fn accounts(&self, friction: Expr, contact: Expr) -> [Expr; ACCOUNTS] {
         [own("2*zeta*x'^2"), friction, contact, own("delta*y'^2"), own("f*sin(eta*t)*y'")]
     }
@@ -153,8 +153,8 @@ impl PrimaryEquations {
         right: &[Expr],
         more: &[(&str, f64)],
     ) -> Result<PhaseSystem, PrimaryError> {
-        // What is not there costs nothing: no product with zero is followed, and no account that
-        // stands still.
+        // Terms with a zero factor and accounts that stand still are left out: they would cost
+        // time.
         let absent = self.numbers.iter().filter(|(_, value)| **value == 0.0);
         let absent: BTreeMap<Symbol, Expr> =
             absent.map(|(name, _)| (*name, Expr::zero())).collect();

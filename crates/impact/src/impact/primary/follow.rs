@@ -97,7 +97,7 @@ const IDLE: usize = 8;
 /// The torque or the speed that rounding leaves of zero, in parts of the friction.
 const ROUNDING: f64 = 1e-12;
 
-/// What the pendulum is doing; the direction is that of dry friction.
+/// The state of the pendulum as a mode; the direction is that of dry friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum PrimaryRegime {
     Free(f64),
@@ -120,7 +120,7 @@ struct PrimaryRun<'a> {
     idle: usize,
     path: PrimaryPath,
     impacts: Vec<PrimaryImpact>,
-    /// What the contacts had taken when the open impact began.
+    /// Energy taken by the contacts when the open impact began.
     taken: f64,
     turns: Vec<(f64, f64)>,
     swings: Vec<(f64, f64)>,
@@ -428,7 +428,7 @@ impl<'a> PrimaryRun<'a> {
         ];
         let before = self.state.x;
         let reason = self.glide(direction, &events, None)?;
-        // What the barrier stores on this way it does not give back.
+        // The elastic energy that the barrier stores on this way is not returned.
         let stored = |x: f64| {
             let depth = (side.sign() * (x - place)).max(0.0);
             self.case.model.elastic_energy(depth)

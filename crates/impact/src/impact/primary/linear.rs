@@ -49,7 +49,8 @@ impl Primary {
         let driven = self.force != 0.0;
         let inertia = mass * self.frequency * self.frequency;
         let reactance = self.stiffness - inertia;
-        // What is left of two equal numbers is rounding: resonance without damping has no long run.
+        // The difference of two equal numbers is rounding: resonance without damping has no steady
+        // state.
         let reactance = match reactance.abs() <= 8.0 * f64::EPSILON * inertia {
             true => 0.0,
             false => reactance,

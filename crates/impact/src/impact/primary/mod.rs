@@ -71,10 +71,10 @@ pub struct PrimaryCase {
     pub start: [f64; 4],
 }
 
-/// How closely and how long to follow.
+/// Duration and accuracy of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimarySettings {
-    /// How long, in units of 1/omega.
+    /// Duration, in units of 1/omega.
     pub duration: f64,
     /// Relative error of a step.
     pub tolerance: f64,
@@ -174,7 +174,7 @@ pub enum PrimaryStop {
 /// Two bodies in motion.
 #[derive(Clone, Debug)]
 pub struct PrimaryMotion {
-    /// What was followed.
+    /// The case.
     pub case: PrimaryCase,
     /// When it ended.
     pub end: f64,
@@ -186,7 +186,7 @@ pub struct PrimaryMotion {
     pub turns: Vec<(f64, f64)>,
     /// Turning points of the pendulum: time and angle.
     pub swings: Vec<(f64, f64)>,
-    /// What became of the energy.
+    /// The energy balance.
     pub energy: PrimaryEnergy,
     path: PrimaryPath,
 }
@@ -198,9 +198,9 @@ pub enum PrimaryError {
     /// A number of the main mass that it cannot have.
     #[error("the {name} of the main mass must be {wanted}, not {value}")]
     Number {
-        /// Which.
+        /// The name of the parameter.
         name: &'static str,
-        /// What it may be.
+        /// The admissible values.
         wanted: &'static str,
         /// The value given.
         value: f64,

@@ -18,7 +18,7 @@ pub struct PrimaryState {
     pub speed: f64,
 }
 
-/// What the states of a piece are.
+/// The states of a segment of the motion.
 #[derive(Clone, Debug)]
 pub(super) enum PrimarySegment {
     /// (x, x', y, y') in t.

@@ -1,4 +1,4 @@
-//! Where the energy goes: the work of each force that is not conservative, integrated along the
+//! The energy balance: the work of each force that is not conservative, integrated along the
 //! motion.
 //!
 //! ```text
@@ -70,8 +70,8 @@ impl Simulation {
         total
     }
 
-    /// The same, knot by knot, and between knots that lie further apart than `longest`, in units of
-    /// 1/omega, at points that do not.
+    /// Energy and works knot by knot, and, between knots that lie further apart than `longest`, in
+    /// units of 1/omega, at points in between.
     pub fn energy_points(&self, longest: f64, mut each: impl FnMut(EnergyPoint)) {
         let model = &self.model;
         let start = model.energy(self.start.x, self.start.velocity);

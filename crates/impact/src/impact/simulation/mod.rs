@@ -51,7 +51,7 @@ impl Integrator {
     }
 }
 
-/// How long and how closely to follow a motion.
+/// Duration and accuracy of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Time to follow it for, in units of 1/omega.
@@ -133,7 +133,7 @@ impl SimulationStop {
 }
 
 impl SimulationStop {
-    /// The same so much later.
+    /// The reason with its time shifted.
     pub(super) fn later(self, time: f64) -> Self {
         match self {
             Self::Duration | Self::RestEnergy | Self::AtRest => self,
@@ -200,7 +200,7 @@ impl fmt::Display for SimulationStop {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ContactRecord {
-    /// Which barrier.
+    /// The side of the barrier.
     pub side: Side,
     /// When it is touched.
     pub entry_time: f64,
@@ -237,7 +237,7 @@ impl ContactRecord {
         }
     }
 
-    /// The same so much later.
+    /// The contact with its times shifted.
     pub(super) fn later(&self, time: f64) -> Self {
         Self {
             entry_time: self.entry_time + time,
@@ -265,15 +265,15 @@ impl ContactRecord {
     }
 }
 
-/// How far or how fast a motion goes, about; zero for one that hangs at rest.
+/// The size of a motion, about, in displacement or speed; zero for a pendulum that hangs at rest.
 pub(super) fn size(model: &Model, start: Start) -> f64 {
     let stored = model.depth(start.x).map_or(0.0, |(_, depth)| model.elastic_energy(depth));
     let released = (2.0 * stored).sqrt();
     start.x.abs().max(start.velocity.abs()).max(released).max(model.beta.abs())
 }
 
-/// The same accuracy for a motion of this size: the absolute tolerance is that of a motion of size
-/// 1, and a tiny one would be lost in it.
+/// Settings of the same accuracy for a motion of this size: the absolute tolerance is that of a
+/// motion of size 1, and a tiny one would be lost in it.
 pub(super) fn scaled(settings: &Settings, model: &Model, start: Start) -> Settings {
     let size = size(model, start);
     let scale = if size > 0.0 { size.min(1.0) } else { 1.0 };
@@ -323,7 +323,7 @@ pub(super) fn enter(
 pub struct TurningPoint {
     /// When.
     pub t: f64,
-    /// Where, rad.
+    /// The position, rad.
     pub x: f64,
 }
 
@@ -331,11 +331,11 @@ pub struct TurningPoint {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Simulation {
-    /// What was followed.
+    /// The model.
     pub model: Model,
     /// From where.
     pub start: Start,
-    /// How.
+    /// The settings of the run.
     pub settings: Settings,
     /// By which method.
     pub integrator: Integrator,
@@ -355,8 +355,8 @@ pub struct Simulation {
     pub stop: SimulationStop,
     /// Steps taken.
     pub steps: usize,
-    /// Where the envelope does not tell the rest, and no path or that of a chain: when |x| has
-    /// fallen to a tenth of the first swing.
+    /// The time at which |x| has fallen to a tenth of the first swing, if the envelope does not
+    /// determine the rest and there is no path or that of a chain.
     pub(super) fall: Option<f64>,
 }
 
@@ -377,7 +377,7 @@ pub struct ContactDeviation {
     pub speed_out: Option<f64>,
 }
 
-/// How two motions differ.
+/// The differences of two motions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionDifference {
     /// The largest difference in x, rad.

@@ -11,7 +11,7 @@ use crate::impact::polynomial::{crossing_of, value, value_and_slope};
 use crate::numeric::ode::Trajectory;
 use crate::numeric::ode::quadrature::nodes_and_weights;
 
-/// What the pendulum is doing.
+/// The mode of the pendulum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Regime {
     /// Swinging freely.
@@ -39,11 +39,11 @@ impl Regime {
 /// A stretch of time in one regime, from knot to knot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathSegment {
-    /// Where it begins.
+    /// Time of its start.
     pub start: f64,
-    /// Where it ends.
+    /// Time of its end.
     pub end: f64,
-    /// What happens there.
+    /// The mode of the pendulum in it.
     pub regime: Regime,
     form: Representation,
 }
@@ -58,7 +58,7 @@ impl PathSegment {
     }
 }
 
-/// How x and x' are kept.
+/// The representation of x and x'.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Representation {
     /// Coefficients of x or w, x' and t - start, so many of each, from this place of the pool on;
@@ -92,7 +92,7 @@ pub(in crate::impact) struct QuadratureNode {
     pub(in crate::impact) t: f64,
     pub(in crate::impact) x: f64,
     pub(in crate::impact) velocity: f64,
-    /// How far inside the barrier, more exactly than x tells.
+    /// Depth inside the barrier, with more digits than x has.
     pub(in crate::impact) depth: f64,
     /// dt at this point, for an integral over time.
     pub(in crate::impact) weight: f64,

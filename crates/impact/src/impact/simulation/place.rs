@@ -1,5 +1,4 @@
-//! Where a motion settles: at the bottom of its turn, or held above it by a barrier that stands in
-//! the way.
+//! The rest position of a motion: the bottom of its turn, or held above it by a barrier in the way.
 //!
 //! ```text
 //! bottom:   2 pi n, the nearest
@@ -15,7 +14,7 @@ use crate::numeric::ode::root::find_root;
 /// A place of rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::impact) struct RestPoint {
-    /// Where, rad.
+    /// The position, rad.
     pub x: f64,
     /// The lowest place of this turn, rad.
     bottom: f64,
@@ -41,7 +40,7 @@ impl RestPoint {
         Self { x: barrier + side.sign() * depth, bottom, held: Some(side) }
     }
 
-    /// How far above the bottom the pendulum is held, rad.
+    /// Height of the rest position above the bottom, rad.
     pub fn height(&self) -> f64 {
         (self.x - self.bottom).abs()
     }

@@ -13,10 +13,10 @@
 //! pendulum above the bottom, or where it has turned over; A_0 is less by how far above the bottom
 //! that is.
 //!
-//! Where the line to the next turning point is at the level before the motion itself, as where one
-//! swing takes nearly everything, or just after a turning point, the fall of |x| from the turning
-//! point is the rest: the later of the two, so that neither makes it jump. A motion that creeps has
-//! none but that.
+//! If the line to the next turning point reaches the level before the motion itself does, as when
+//! one swing takes nearly everything, or just after a turning point, the fall of |x| from the
+//! turning point is the rest: the later of the two, so that neither makes it jump. A creeping
+//! motion has none but that.
 //!
 //! A barrier turns the motion early on its side: how far it gets there says where the barrier
 //! stands and nothing of the swing. On the other side every swing shows its whole energy, impacts
@@ -77,7 +77,7 @@ pub enum NoRest {
     BrokeOff,
 }
 
-/// How the turning points tell the rest.
+/// The information of the turning points about the rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum RestByTurningPoints {
     /// The envelope goes through the level between these two.
@@ -117,7 +117,7 @@ impl Simulation {
         first_swing(&self.model, self.start)
     }
 
-    /// Where it settles.
+    /// The rest position at which the motion settles.
     pub(super) fn rest_point(&self) -> RestPoint {
         RestPoint::near(&self.model, self.end_x)
     }
@@ -128,7 +128,7 @@ impl Simulation {
         self.envelope_from(self.first_swing())
     }
 
-    /// The same from this first swing; only the points that are known to belong to it.
+    /// The envelope from this first swing; only the points that are known to belong to it.
     fn envelope_from(&self, amplitude: f64) -> Vec<TurningPoint> {
         let mut envelope = vec![TurningPoint { t: 0.0, x: amplitude }];
         let place = self.rest_point();
@@ -185,7 +185,7 @@ impl Simulation {
         (swing - self.rest_point().height()).max(0.0)
     }
 
-    /// What the turning points say of the rest.
+    /// Determines the rest from the turning points.
     fn rest_by_turns(&self, level: f64) -> Result<RestByTurningPoints, NoRest> {
         let envelope = self.envelope();
         let Some(index) = envelope.iter().rposition(|turn| turn.x.abs() > level) else {
@@ -198,9 +198,9 @@ impl Simulation {
         }
     }
 
-    /// Where no turning point of the envelope follows `above`: a motion that has not turned for a
-    /// whole period of the linear swing creeps, and is its own envelope; any other has to be
-    /// followed further.
+    /// Decides the case without a turning point of the envelope after `above`: a motion that has
+    /// not turned for a whole period of the linear swing creeps, and is its own envelope; any other
+    /// has to be followed further.
     fn creeping(&self, above: TurningPoint, level: f64) -> Result<RestByTurningPoints, NoRest> {
         if self.model.beta != 0.0 || self.last_swing() > level {
             return Err(NoRest::StaysAbove);

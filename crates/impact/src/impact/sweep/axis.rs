@@ -16,7 +16,7 @@ use thiserror::Error;
 use super::MOST_MOTIONS;
 use crate::spelling::nearest;
 
-/// How the values of an axis follow each other.
+/// The spacing of the values of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Spacing {
     /// By equal steps.
@@ -64,7 +64,7 @@ pub enum AxisError {
     Spacing {
         /// The value given.
         name: String,
-        /// What was meant, perhaps.
+        /// The most similar known name.
         nearest: Option<&'static str>,
     },
     /// A value that is no finite number.
@@ -203,7 +203,7 @@ impl Axis {
         &self.name
     }
 
-    /// How the values follow each other.
+    /// The spacing of the values.
     pub fn spacing(&self) -> Spacing {
         self.spacing
     }

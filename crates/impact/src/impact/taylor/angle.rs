@@ -73,7 +73,7 @@ pub(super) fn sines_and_cosines<const L: usize>(angles: &[f64; L]) -> ([f64; L],
     (sines, cosines)
 }
 
-/// Those of one angle, the same to the last bit.
+/// Sine and cosine of one angle, bit for bit those of [`sines_and_cosines`].
 pub(super) fn sine_and_cosine(angle: f64) -> (f64, f64) {
     let ([sine], [cosine]) = sines_and_cosines(&[angle]);
     (sine, cosine)

@@ -68,7 +68,7 @@ impl Runner {
             None => (side.sign() * end.sine, end.cosine),
             Some(_) => self.angle_at(side),
         };
-        // What is stored in the barrier comes on top.
+        // The energy stored in the barrier comes on top.
         if self.is_at_rest_energy(velocity, cosine) {
             return false;
         }
@@ -183,8 +183,8 @@ impl Runner {
         (h, None, deepest)
     }
 
-    /// Where in a step that ends at `end` the barrier would begin to pull: gamma + mu v stays
-    /// positive.
+    /// The point in a step that ends at `end` at which the barrier would begin to pull: gamma + mu
+    /// v stays positive.
     fn detachment(&self, v: &[f64], end: f64) -> Option<f64> {
         let Model { gamma, mu, .. } = self.model;
         if mu <= 0.0 || v[0] - variation(v, end) >= -gamma / mu {
@@ -266,8 +266,8 @@ impl Runner {
         let reached = hertz::greatest_depth(self.model.gamma, speed).max(w * w);
         let fastest = (speed * speed + 2.0 * self.model.elastic_energy(w * w)).sqrt();
         self.hertz = [reached.sqrt(), fastest];
-        // That of the other forces: dw/ds = v/2, dv/ds = w F. At a barrier near plumb there is next
-        // to none.
+        // The time scale of the other forces: dw/ds = v/2, dv/ds = w F. At a barrier near the
+        // bottom they are almost zero.
         let others = self.sine.abs() + self.model.alpha + self.model.beta.abs();
         let unit = (reached.sqrt() / fastest).min((2.0 / others).sqrt());
         self.unit = if unit.is_finite() && unit > 0.0 { unit } else { 1.0 };

@@ -20,15 +20,15 @@ pub(super) struct StepPoint {
     pub(super) time: f64,
 }
 
-/// What happens in a step of one motion.
+/// The events in a step of one motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StepEvents {
     pub(super) turn: Option<StepPoint>,
-    /// Where a bound is crossed, and whether it is the upper one.
+    /// The point at which a bound is crossed, and whether it is the upper one.
     pub(super) crossing: Option<(StepPoint, bool)>,
 }
 
-/// That of several.
+/// The events in a step of several motions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Courses<const L: usize> {
     plain: [bool; L],
@@ -96,7 +96,7 @@ pub(super) fn courses<const L: usize>(
 ) {
     (courses.plain, courses.turns) = ([true; L], [false; L]);
     let (place, velocity) = (&series.place[..=order], &series.velocity[..=order]);
-    // Where the stretch that may cross a bound begins, and from where to where it goes.
+    // Start and end of the part of the step that may cross a bound.
     let (mut from, mut start) = ([0.0; L], inputs.place);
     let (mut to, mut goal) = (*lengths, ends.place);
     let may_turn: [bool; L] = std::array::from_fn(|lane| {

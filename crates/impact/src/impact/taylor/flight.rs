@@ -140,7 +140,8 @@ impl Runner {
         }
     }
 
-    /// What ends a free flight before `h`, and where. Turning points on the way are noted.
+    /// The event that ends a free flight before `h`, and its time. Turning points on the way are
+    /// recorded.
     fn flight_event(
         &mut self,
         [x, v, time]: [&[f64]; 3],
@@ -191,8 +192,8 @@ impl Runner {
         (h, None)
     }
 
-    /// What ends the flight away from a barrier that is still behind: back in place, or as fast as
-    /// the barrier.
+    /// The event that ends the flight away from a barrier that is still recovering: the pendulum
+    /// has passed its rest position, or is no faster than the barrier.
     fn detached_event(
         &mut self,
         side: Side,
@@ -218,8 +219,8 @@ impl Runner {
         (catch, catches.as_slice().first().map(|_| StepEvent::Reattach))
     }
 
-    /// How far a motion that moves into the barrier from rest on it, and does so at least until
-    /// `to`, may go before the contact force counts.
+    /// The step length up to which the contact force is negligible, for a motion that moves into
+    /// the barrier from rest on it at least until `to`.
     fn onset(&self, side: Side, [x, v, time]: [&[f64]; 3], to: f64) -> f64 {
         let mut u = to;
         // Each time the part of the force shrinks by 4^4 or more.
@@ -244,7 +245,7 @@ impl Runner {
     }
 }
 
-/// How far x has risen since the start of the step: to more digits than x has.
+/// The change of x since the start of the step, with more digits than x has.
 fn rise(x: &[f64], u: f64) -> f64 {
     match x.split_first() {
         Some((_, rest)) => u * value(rest, u),

@@ -30,7 +30,7 @@ struct LaneExpansion<'a> {
 }
 
 impl WithSimd for LaneExpansion<'_> {
-    /// How far they reach.
+    /// The reach of the series.
     type Output = [f64; LANES];
 
     #[inline(always)]

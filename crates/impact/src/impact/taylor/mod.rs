@@ -79,7 +79,7 @@ const FEW: usize = 8;
 /// The coefficients of a step of one motion: x or w, v, t.
 type Loaded = [[f64; HIGHEST_ORDER + 1]; 3];
 
-/// Which series is wanted.
+/// The equation of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum StepEquation {
     Flight,
@@ -123,7 +123,7 @@ pub(super) struct Runner {
     path: SimulationPath,
 }
 
-/// What ends a step before its time.
+/// The event that ends a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum StepEvent {
     Turn,
@@ -256,7 +256,7 @@ impl Runner {
         runner
     }
 
-    /// What came of it.
+    /// Returns the simulation at the end of the run.
     pub(super) fn finish(self, start: Start) -> Simulation {
         let (end_time, end_x, end_velocity) = self.now();
         let mut simulation = Simulation {
@@ -358,7 +358,7 @@ impl Runner {
         };
     }
 
-    /// How large the motion is now, and what the first term left out of a step may be.
+    /// The size of the motion now, and the bound of the first term left out of a step.
     fn allowance(&self) -> (f64, f64) {
         let tolerance = &self.settings;
         let place = match self.regime {
@@ -370,8 +370,8 @@ impl Runner {
         (size, allowed)
     }
 
-    /// How far the step goes, in its unit, where the series reaches so far: it ends there if
-    /// nothing happens before.
+    /// The length of the step in its unit, if the series reaches so far: it ends there if nothing
+    /// happens before.
     fn reach(&mut self, proposed: f64) -> f64 {
         self.proposed = proposed;
         let longest = match self.regime {
@@ -488,7 +488,7 @@ impl Runner {
     }
 }
 
-/// Where the velocity changes sign.
+/// Sign changes of the velocity.
 fn turning_points(v: &[f64], h: f64, end: StepEndState) -> Roots {
     // A motion at the edge of underflow has come to rest.
     if v[0].abs() > end.variation || end.variation < VANISHING {

@@ -322,8 +322,8 @@ mod tests {
         }
     }
 
-    /// What stands in this file is what follows from equation (7) as an expression, coefficient by
-    /// coefficient.
+    /// The recurrences of this file are compared with the series of equation (7) as an expression,
+    /// coefficient by coefficient.
     #[test]
     fn the_series_are_those_of_the_equation() {
         let acceleration = parse_expression(EQUATION).expect("equation (7)");

@@ -1,4 +1,4 @@
-//! What the series of a step start from, where they are kept, and their values at its end.
+//! Initial values and storage of the series of a step, and their values at its end.
 //!
 //! Times are counted in a unit of choice, so that no coefficient over- or underflows, and stretched
 //! within a step (`stretch`). `L` motions go through the same operations side by side; each gets
@@ -15,14 +15,14 @@ pub(super) const HIGHEST_ORDER: usize = 30;
 /// Coefficients of the time in flight.
 pub(super) const TIME_TERMS: usize = 4;
 
-/// How many of the last coefficients decide on the length of a step: a series may have gaps. At
-/// touch v is a series in s^5, for v' = -gamma w^4 and w' = v/2.
+/// Number of last coefficients that decide on the length of a step: a series may have gaps. At
+/// touch v is a series in s^5, because v' = -gamma w^4 and w' = v/2.
 pub(super) const LAST: usize = 5;
 
 /// Coefficients of a series, those of `L` motions side by side.
 pub(super) type LaneSeries<const L: usize> = [[f64; L]; HIGHEST_ORDER + 1];
 
-/// Which terms of equation (7) are on in at least one of the motions.
+/// The terms of equation (7) that act in at least one of the motions.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Terms {
     pub(super) arctangent: bool,
@@ -40,8 +40,8 @@ impl Terms {
     }
 }
 
-/// What the series of `L` motions start from: where they are now, and their parameters. In contact
-/// everything is seen in the mirror of its side.
+/// Initial values of the series of `L` motions: their states and parameters. In contact everything
+/// is mirrored to the right side.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct Inputs<const L: usize> {
@@ -67,7 +67,7 @@ pub(super) struct Inputs<const L: usize> {
     pub(super) eta: [f64; L],
     pub(super) gamma: [f64; L],
     pub(super) mu: [f64; L],
-    /// How large the motion is, and what the first term left out of a step may be.
+    /// The size of the motion, and the bound of the first term left out of a step.
     pub(super) size: [f64; L],
     pub(super) allowed: [f64; L],
     /// Between which x or w stays in this phase.
@@ -105,7 +105,7 @@ impl<const L: usize> Inputs<L> {
 /// Series that no one reads but the equations.
 const SCRATCH: usize = 18;
 
-/// What a step is made of: two or three series, all but the first two scratch outside contact. No
+/// The series of a step: two or three of them, all but the first two scratch outside contact. No
 /// coefficient of eight lanes lies across two lines of the cache.
 #[repr(align(64))]
 pub(super) struct SeriesCoefficients<const L: usize> {
@@ -115,9 +115,9 @@ pub(super) struct SeriesCoefficients<const L: usize> {
     /// Time since the start of the step.
     pub(super) time: LaneSeries<L>,
     pub(super) scratch: [LaneSeries<L>; SCRATCH],
-    /// What is known of the next coefficients of products, and of sines and cosines. They are kept
-    /// here because as variables of the function they make eight motions side by side slower by 8
-    /// %.
+    /// The known parts of the next coefficients of products, and of sines and cosines. They are
+    /// kept here because as variables of the function they make eight motions side by side slower
+    /// by 8 %.
     pub(super) ahead: [[f64; L]; SCRATCH],
     pub(super) ahead_of_waves: [[[f64; L]; 2]; 2],
 }
@@ -147,7 +147,7 @@ pub(super) struct Ends<const L: usize> {
     pub(super) cosine: [f64; L],
 }
 
-/// Those of one motion.
+/// The values of one motion at the end of a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepEndState {
     pub(super) place: f64,

@@ -1,4 +1,4 @@
-//! How long a step may be, from the last coefficients of a series.
+//! The length of a step, from the last coefficients of a series.
 
 use super::kernels::INVERSE;
 use super::series::{LAST, LaneSeries};

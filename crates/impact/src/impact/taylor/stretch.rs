@@ -41,7 +41,7 @@ pub(super) fn in_contact<const L: usize>(inputs: &Inputs<L>) -> [[f64; L]; 2] {
         let (w, v) = (root[lane] / largest[lane], velocity[lane] / fastest[lane]);
         let (w, v) = (if w < 1.0 { w } else { 1.0 }, if v < 1.0 { v } else { 1.0 });
         let v = if v > -1.0 { v } else { -1.0 };
-        // Where it is in s: -1 at the touch, 0 where it is deepest, 1 at the release.
+        // The position in s: -1 at the touch, 0 at the greatest depth, 1 at the release.
         let place = -v * (1.0 - 0.8 * w + 0.12 * (w * w) * (w * w) * w);
         let inside = (1.0 - place * place) * (1.0 - place * place);
         p[lane] = if fits { 0.64 * place * inside * units } else { 0.0 };
@@ -67,8 +67,8 @@ pub(super) fn stretched<const L: usize>(
     result
 }
 
-/// The same of a series that is not kept: from its coefficient n and the two before it, the last
-/// one first.
+/// The next coefficient of a series that is not kept: from its coefficient n and the two before it,
+/// the last one first.
 #[inline(always)]
 pub(super) fn stretched_next<const L: usize>(
     [p, q]: &[[f64; L]; 2],

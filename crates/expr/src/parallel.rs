@@ -1,13 +1,13 @@
 //! Independent pieces of work on all threads of the current pool; one after the other without the
 //! feature `parallel`.
 //!
-//! What comes back is in the order of the pieces, whatever the number of threads.
+//! Results are in the order of the items, whatever the number of threads.
 
 use std::sync::{Mutex, PoisonError};
 
 use crate::symbol::letters::ResultSymbols;
 
-/// What `work` makes of each item, in their order.
+/// Applies `work` to each item in parallel and returns the results in order.
 pub fn par_map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> Vec<T> {
     let results: Vec<Mutex<Option<T>>> = items.iter().map(|_| Mutex::new(None)).collect();
     run(items.len(), &|number| {
@@ -37,7 +37,7 @@ fn run(count: usize, work: &(dyn Fn(usize) + Sync)) {
     (0..count).for_each(work);
 }
 
-/// How many threads there are.
+/// Number of threads.
 pub fn threads() -> usize {
     #[cfg(feature = "parallel")]
     return rayon::current_num_threads();

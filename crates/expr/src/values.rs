@@ -37,7 +37,7 @@ pub enum ValueError {
         name: Symbol,
         /// The value as typed.
         value: String,
-        /// What is in it.
+        /// The symbol in it.
         symbol: Symbol,
     },
     /// It is not finite.

@@ -111,7 +111,7 @@ impl Mul for Bound {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        // What a product with an unknown size is, is not known, whatever the other.
+        // A product with an unknown size is unknown, whatever the other factor.
         match (self == Self::ZERO || other == Self::ZERO, self.0 + other.0 < f64::INFINITY) {
             (_, false) => Self::UNKNOWN,
             (true, true) => Self::ZERO,

@@ -44,7 +44,7 @@ impl Integer {
         Self(self.0.pow(exponent as usize))
     }
 
-    /// How often a number that is not zero can be halved.
+    /// Number of times that the integer can be halved; `None` for zero.
     pub fn halvings(&self) -> Option<usize> {
         self.0.trailing_zeros()
     }
@@ -86,7 +86,7 @@ impl fmt::Debug for Integer {
     }
 }
 
-/// What is no integer.
+/// The text is not an integer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no integer")]
 pub struct ParseIntegerError;

@@ -267,7 +267,7 @@ impl<K: Number> Polynomial<K> {
         result
     }
 
-    /// The same polynomial over other coefficients.
+    /// Returns the polynomial with a function applied to every coefficient.
     pub fn map<L: Number>(&self, mut change: impl FnMut(&K) -> L) -> Polynomial<L> {
         let mut result = Polynomial::zero();
         for (monomial, coefficient) in &self.terms {
@@ -542,7 +542,7 @@ impl<R: Ring> Ring for Polynomials<R> {
 }
 
 impl<R: Ring> Polynomials<R> {
-    /// What a factor made zero is left out: zero itself, or a multiple of a prime.
+    /// Removes terms whose coefficient a factor made zero: zero itself, or a multiple of a prime.
     fn prune(&self, element: &mut Polynomial<R::Element>) {
         element.terms.retain(|_, coefficient| !self.0.is_certainly_zero(coefficient));
     }

@@ -208,7 +208,7 @@ fn fractions(polynomial: &[Rational]) -> Vec<Rational> {
     for q in divisors(highest) {
         let inverse = power_modulo_prime(q, PRIME - 2);
         for &p in numerators.iter().filter(|p| p.gcd(&q).is_one()) {
-            // What is zero is zero modulo a prime as well, and that is soon seen.
+            // A root is a root modulo a prime as well, and that is quickly tested.
             let x = times_modulo_prime(p, inverse);
             let vanishes =
                 residues.iter().rev().fold(0, |sum, &c| (times_modulo_prime(sum, x) + c) % PRIME);

@@ -1,4 +1,4 @@
-//! What a derivation asks of its coefficients.
+//! The arithmetic that a derivation needs of its coefficients.
 //!
 //! A series and a perturbation method are written once, over any [`Ring`]. A ring is a value, and
 //! its elements know nothing of it: what the arithmetic needs to know beside them, a prime or a

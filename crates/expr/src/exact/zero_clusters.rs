@@ -20,8 +20,8 @@ pub struct Cluster {
     pub place: BigFloat,
     /// One or two.
     pub count: usize,
-    /// How far two zeros are from their middle, over the place; positive where they are conjugate,
-    /// negative where they are real.
+    /// Distance of two zeros from their middle, over the size of that; positive if they are
+    /// conjugate, negative if they are real.
     pub distance: f64,
 }
 
@@ -88,8 +88,7 @@ struct ClusterSearch<'a> {
 struct About {
     coefficients: Vec<BigFloat>,
     sizes: Vec<f64>,
-    /// What rounding may have added to all terms together, within the largest disc that is asked
-    /// for.
+    /// Bound of the rounding error of all terms together, within the largest disc that is needed.
     noise: f64,
     /// The logarithm of the place, beyond which no disc reaches.
     largest: f64,

@@ -176,10 +176,10 @@ impl NodeBudget {
     }
 }
 
-/// How many products of two terms the power of a sum takes, one multiplication after the other,
-/// where that is known beforehand: if every term but one has a symbol of its own, no two products
-/// of `m` of the terms are alike, and there are `C(m + n - 1, m)` of them for `n` terms. Zero where
-/// some may be alike; no longer counted where there are more than `enough`.
+/// Number of products of two terms in the power of a sum by repeated multiplication, if it is known
+/// beforehand: if every term but one has a symbol of its own, no two products of `m` of the terms
+/// are alike, and there are `C(m + n - 1, m)` of them for `n` terms. Zero if some may be alike; the
+/// count stops beyond `enough`.
 fn products_of_power(terms: &[Expr], times: u32, enough: usize) -> usize {
     let mut shared = 0;
     for term in terms {
@@ -245,7 +245,7 @@ mod tests {
     use super::*;
     use crate::expr::parse_expression;
 
-    /// What is foretold of a power is what it takes.
+    /// The predicted number of products of a power is the number it takes.
     #[test]
     fn a_power_takes_the_products_that_are_foretold() {
         for (text, times, known) in [

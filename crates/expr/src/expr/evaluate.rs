@@ -181,7 +181,7 @@ fn integer_power(base: f64, exponent: u32) -> f64 {
     result * square
 }
 
-/// Where a value will stand, before it is known how many constants there are.
+/// The location of a value before the number of constants is known.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ValueLocation {
     Argument(usize),
@@ -253,7 +253,7 @@ impl Compiler<'_> {
         Ok(slot)
     }
 
-    /// By how many bits the numbers in an expression make it large, those of the sums in it
+    /// Number of bits that the numbers in an expression add to its size, those of the sums in it
     /// included.
     fn size(&self, expr: &Expr) -> i64 {
         let of = |part: &Expr| self.sizes.get(part).copied().unwrap_or(0);
@@ -276,8 +276,8 @@ impl Compiler<'_> {
     /// up for them before it, are beyond double precision; none for other bases and exponents.
     fn shift(&self, base: &Expr, exponent: Option<&Rational>) -> Option<Shift> {
         const LONG: u64 = 200;
-        /// What is larger is no number of anybody's equation, and beyond double precision whatever
-        /// stands before it.
+        /// No equation has larger numbers, and they are beyond double precision whatever their
+        /// factor.
         const LONGEST: u64 = 100_000;
         let size = match base.node() {
             Node::Sum(_) => u64::try_from(self.sizes.get(base).copied()?).ok()?,

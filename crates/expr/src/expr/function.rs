@@ -102,7 +102,7 @@ impl Function {
         self.entry().name
     }
 
-    /// How many arguments it takes: 1 or 2.
+    /// Number of arguments: 1 or 2.
     pub fn argument_count(self) -> usize {
         match self.entry().value {
             Value::One(_) => 1,
@@ -174,7 +174,7 @@ impl Function {
     }
 }
 
-/// What the crate knows of one function.
+/// The properties of one function.
 struct FunctionDefinition {
     function: Function,
     name: &'static str,
@@ -647,7 +647,7 @@ mod tests {
         );
     }
 
-    /// What simplification claims must be what the numbers say.
+    /// Simplified values must agree with numerical ones.
     #[test]
     fn exact_values_agree_with_the_numbers() {
         let points = ["0", "1", "-1", "1/2", "-2", "pi", "pi/2", "-3*pi/2", "2*pi", "5*pi/2"];

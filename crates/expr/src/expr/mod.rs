@@ -17,8 +17,8 @@
 //! - a point where the original is undefined may become defined (`x/x = 1`), never the other way
 //!   round.
 //!
-//! What has no value (`1/0`, `log(0)`, `0^0`, `sqrt(-1)`) is an [`ExprError`], not a silent
-//! infinity.
+//! An expression without a value (`1/0`, `log(0)`, `0^0`, `sqrt(-1)`) is an [`ExprError`], not a
+//! silent infinity.
 //!
 //! ```
 //! # use lindstedt_expr as lindstedt;
@@ -134,9 +134,9 @@ pub enum ExprError {
     WrongArguments {
         /// The function's name.
         function: &'static str,
-        /// How many arguments it takes.
+        /// The number of arguments it takes.
         expected: usize,
-        /// How many it was given.
+        /// The number of arguments given.
         given: usize,
     },
     /// Writing the result out would take more products than allowed.
@@ -235,11 +235,11 @@ impl Expr {
         Self::function(Function::Cos, vec![self.clone()])
     }
 
-    /// The same kind of node over other children, in the order of [`Expr::children`], put into
-    /// normal form again. A leaf is returned as it is.
+    /// Returns a node of this kind with other children, in the order of [`Expr::children`], in
+    /// normal form. A leaf is returned as it is.
     ///
     /// # Errors
-    /// Those of [`Expr::power`] and [`Expr::function`].
+    /// The errors of [`Expr::power`] and [`Expr::function`].
     pub fn with_children(&self, children: &[Self]) -> Result<Self, ExprError> {
         match (self.node(), children) {
             (Node::Number(_) | Node::Pi | Node::Symbol(_), _) => Ok(self.clone()),

@@ -378,7 +378,7 @@ fn integer_root(base: Integer, exponent: Rational) -> Option<(Rational, Option<E
         }
     }
     if inside != base {
-        // What is left may be a perfect power: 72^(1/3) = 2*9^(1/3) = 2*3^(2/3).
+        // The remaining number may be a perfect power: 72^(1/3) = 2*9^(1/3) = 2*3^(2/3).
         let (more, root) = integer_root(inside, broken)?;
         return Some((outside * more, root));
     }

@@ -7,7 +7,7 @@ use std::convert::Infallible;
 use super::{CompiledFunction, Expr, Function, Node};
 use crate::symbol::Symbol;
 
-/// What is known of the value of a part.
+/// The known size of the value of a part.
 #[derive(Clone)]
 enum Magnitude {
     Finite(f64),

@@ -56,9 +56,9 @@ const MOST_WORK: u64 = 500_000;
 /// An equation of motion as it was written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Equation {
-    /// What stands left of the equals sign.
+    /// The left side.
     pub left: Expr,
-    /// What stands right of it; 0 where there is none.
+    /// The right side; 0 if there is no equals sign.
     pub right: Expr,
     /// The dependent variable: the letter that carries primes, `x` if none does.
     pub coordinate: Symbol,
@@ -724,7 +724,7 @@ mod tests {
         );
         assert_eq!(shown(""), "the text is empty\n  an example: `x'' + sin(x) = 0`");
         assert_eq!(shown("x +"), "something is missing after `+`\n  x +\n    ^");
-        // What a terminal would obey or reorder is not shown.
+        // Characters that a terminal would obey or reorder are not shown.
         assert_eq!(shown("x\u{1b}[31m"), "a control character, U+001B\n  x?[31m\n   ^");
         assert_eq!(shown("\u{202e}x"), "the character U+202E is not understood\n  ?x\n  ^");
         let long = shown(&format!("{}2x{}", "x + ".repeat(1_000), " + x".repeat(1_000)));

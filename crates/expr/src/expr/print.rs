@@ -148,7 +148,7 @@ enum PrintItem {
     Expr(Expr, PrintContext),
 }
 
-/// What surrounds an expression, and with it which expressions need parentheses.
+/// The context of an expression, which decides whether it needs parentheses.
 #[derive(Clone, Copy, PartialEq)]
 enum PrintContext {
     /// Alone.

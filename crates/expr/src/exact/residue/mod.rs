@@ -40,7 +40,7 @@ use super::Integer;
 
 /// Work that is written once for every arithmetic.
 pub trait Work {
-    /// What comes out.
+    /// The result of the work.
     type Output;
 
     /// Does it.

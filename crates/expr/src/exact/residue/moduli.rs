@@ -1,7 +1,7 @@
 //! Residues modulo eight primes side by side, or eight modulo one.
 //!
-//! The same operations as those of a [`Modulus`], eight at a time: a whole computation runs modulo
-//! eight primes at once, and no number ever moves from one place to another. What is here is
+//! The operations of a [`Modulus`], eight at a time: a whole computation runs modulo eight primes
+//! at once, and no number ever moves from one lane to another. The functions of this module are
 //! inlined into functions that are compiled for the processor, in which closures are not: hence
 //! loops.
 
@@ -20,7 +20,7 @@ pub struct Moduli {
 }
 
 impl Moduli {
-    /// The same prime eight times.
+    /// One prime in all eight lanes.
     #[inline(always)]
     pub fn all(modulus: &Modulus) -> Self {
         Self {
@@ -55,7 +55,7 @@ impl Moduli {
 /// The arithmetic modulo eight primes; residues are in Montgomery's form.
 #[derive(Clone, Copy, Debug)]
 pub struct Residues<A> {
-    /// What sums products.
+    /// The arithmetic of sums of products.
     pub arithmetic: A,
     /// The primes.
     pub moduli: Moduli,
@@ -92,7 +92,7 @@ impl<A: Arithmetic> Residues<A> {
         self.arithmetic.product(&left, &right, &self.moduli)
     }
 
-    /// What stands in a sum of products.
+    /// Reduces a sum of products.
     #[inline(always)]
     pub fn reduce(&self, sum: A::Sum) -> Lanes {
         self.arithmetic.reduce(sum, &self.moduli)

@@ -114,7 +114,7 @@ impl Narrow {
         v._mm256_min_epu32(residue, v._mm256_add_epi64(residue, four.prime))
     }
 
-    /// What Montgomery's step takes away from the high part.
+    /// The number that Montgomery's step subtracts from the high part.
     #[inline(always)]
     fn taken(self, low: Register, four: FourPrimes) -> Register {
         let v = self.0.avx2;

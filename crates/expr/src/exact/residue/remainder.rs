@@ -59,7 +59,7 @@ impl<A: Arithmetic> Remainders<A> {
         }
     }
 
-    /// What plain residues are multiplied by before they are [lifted](Self::lift), times `factor`.
+    /// Weights of plain residues before they are [lifted](Self::lift), times `factor`.
     pub fn weights<'a>(
         &'a self,
         factor: impl Fn(&Modulus) -> u64 + 'a,

@@ -12,7 +12,7 @@ pub struct Product {
     pub left: usize,
     /// The other; the same for a square, which costs half.
     pub right: usize,
-    /// Where the product is written.
+    /// Index of the table of the product.
     pub to: usize,
     /// The highest order that is wanted.
     pub needed: usize,
@@ -25,9 +25,9 @@ pub const TOGETHER: usize = 8;
 /// Order `order` of every product, `sum_i left_i right_(order-i)` at each point; a product may be a
 /// factor of those after it. The orders come one after the other, from zero on.
 ///
-/// What is already there of a product at the orders that follow is kept in its own table, which may
-/// be one of the latest orders alone: [`TOGETHER`] of them and those that are asked for later.
-/// Cost: a multiplication for each pair of orders and each point, half of them for a square.
+/// The known part of a product at the orders that follow is kept in its own table, which may hold
+/// only the latest orders: [`TOGETHER`] of them and those that are asked for later. Cost: a
+/// multiplication for each pair of orders and each point, half of them for a square.
 #[inline(always)]
 pub fn convolve<A: Arithmetic>(
     residues: &Residues<A>,
@@ -230,7 +230,7 @@ pub(super) fn multiples<A: Arithmetic>(arithmetic: A, factors: &[u64], row: &[La
 /// One series of a [mixture], at one order.
 #[derive(Clone, Copy, Debug)]
 pub struct MixtureTerm {
-    /// What it is multiplied by.
+    /// The factor of the series.
     pub factor: Lanes,
     /// Its place among the tables.
     pub table: usize,

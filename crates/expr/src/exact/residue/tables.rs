@@ -8,13 +8,13 @@ pub struct Tables<'m> {
     rows: usize,
     /// From a row to the next of the same table.
     stride: usize,
-    /// Where the rows of each table begin behind those of the tables before it, and their length.
+    /// Start of the rows of each table behind those of the tables before it, and their length.
     places: Vec<(usize, usize)>,
     entries: &'m mut [Lanes],
 }
 
 impl<'m> Tables<'m> {
-    /// How many entries tables with rows of these lengths have.
+    /// Number of entries of tables with rows of these lengths.
     pub fn room(rows: usize, lengths: &[usize]) -> usize {
         rows * lengths.iter().sum::<usize>()
     }
@@ -30,14 +30,14 @@ impl<'m> Tables<'m> {
         Self { rows, stride, places, entries }
     }
 
-    /// How many rows each table has.
+    /// Number of rows of each table.
     #[inline(always)]
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// Where an order stands in a table: in rows too short for all of them, instead of one before
-    /// it.
+    /// Index of an order in the rows of a table; in rows too short for all orders it replaces an
+    /// earlier one.
     #[inline(always)]
     pub fn offset(&self, table: usize, order: usize) -> usize {
         let length = self.places[table].1;

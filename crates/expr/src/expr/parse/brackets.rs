@@ -84,7 +84,7 @@ fn opened<'a>(
     let (before, after) = (&text[whole.start..first.start], &text[last.end..whole.end]);
     let scale = parse_expression(&format!("{before}1{after}")).ok()?;
     let scale = if negative { -scale } else { scale };
-    // What stands around the bracket multiplies it, and so does what stands around the term in its
+    // The factor around the bracket multiplies it, and so does the factor around the term in its
     // turn.
     let (scale, outer) = match &term.around {
         Some(outer) => (&scale * &outer.scale, (&*outer.opening, &*outer.closing, outer.negative)),

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::lexer::visible;
 
-/// What is wrong with a text, where, and what to write instead.
+/// A syntax error: the message, the position, and the text to write instead.
 ///
 /// `Display` shows the line with a caret under the place:
 ///
@@ -16,11 +16,11 @@ use super::lexer::visible;
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParseError {
-    /// What is wrong, in one line.
+    /// The error in one line.
     pub message: String,
     /// The bytes of the text that are meant.
     pub span: Range<usize>,
-    /// What to write instead.
+    /// Advice on what to write instead; `None` if there is none.
     pub help: Option<String>,
     /// The line of the text, cut to what fits, and a line with carets.
     excerpt: [String; 2],

@@ -192,7 +192,7 @@ impl<'a> Lexer<'a> {
     }
 }
 
-/// What to write for a character of a typeset formula.
+/// Advice on what to write for a character of a typeset formula; `None` for any other.
 pub(super) fn ascii_spelling(letter: char) -> Option<&'static str> {
     Some(match letter {
         '\u{2212}' | '\u{2013}' | '\u{2014}' | '\u{2010}' | '\u{2011}' => "try `-`",

@@ -1,4 +1,4 @@
-//! What people write by mistake, and what to write instead.
+//! Frequent mistakes, and the text to write instead.
 
 use std::ops::Range;
 

@@ -93,7 +93,7 @@ impl<R: Ring> Convolutions<R> {
         self.nodes.iter().filter_map(move |entry| entry.known.get(order))
     }
 
-    /// How many series there are, the leaves among them.
+    /// Number of series, the leaves included.
     pub fn count(&self) -> usize {
         self.nodes.len()
     }

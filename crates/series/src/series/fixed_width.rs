@@ -1,9 +1,9 @@
 //! Short Fourier series: numerators of two machine words over one denominator, without symbols and
 //! without memory for each number.
 //!
-//! What an operation can grow to is bounded before it is done, from the largest numerators of its
-//! arguments. Where that is more than two words hold there is no result, so that none is ever
-//! wrong, and no addition or multiplication has to look for overflow.
+//! The growth of an operation is bounded before it is done, from the largest numerators of its
+//! arguments. If the bound is more than two words, there is no result, so that none is ever wrong,
+//! and no addition or multiplication has to look for overflow.
 
 use num_integer::Integer as _;
 
@@ -25,7 +25,7 @@ pub struct ShortSeries {
     largest: f64,
 }
 
-/// Which harmonics stand side by side.
+/// The harmonics that a series stores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HarmonicParity {
     /// `0, 1, 2, ...`
@@ -46,7 +46,7 @@ impl HarmonicParity {
         }
     }
 
-    /// Those of a product.
+    /// The harmonics of a product.
     pub fn times(self, other: Self) -> Self {
         match (self, other) {
             (Self::All, _) | (_, Self::All) => Self::All,
@@ -85,7 +85,7 @@ impl ShortSeries {
         self.denominator
     }
 
-    /// Which harmonics stand side by side.
+    /// The harmonics that are stored.
     pub fn harmonics(&self) -> HarmonicParity {
         self.harmonics
     }
@@ -180,7 +180,7 @@ impl ShortSeries {
             let harmonic = i128::from(u32::try_from(self.harmonics.harmonic(index)).ok()?);
             Some(harmonic * harmonic - 1)
         };
-        // What is left of each divisor when it has taken from its numerator what it can.
+        // The rest of each divisor after its numerator has been reduced by it.
         let mut left = Vec::with_capacity(self.numerators.len());
         let mut numerators = Vec::with_capacity(self.numerators.len());
         let mut common = 1_i128;
@@ -323,7 +323,7 @@ fn sum_of_products<'a>(
             (HarmonicParity::Even, HarmonicParity::Odd) => (right, left),
             _ => (left, right),
         };
-        // Where both factors are words, their product is a single instruction.
+        // If both factors are words, their product is a single instruction.
         let largest = (factor as f64).abs() * first.largest;
         let words = largest.max(second.largest) < (1_u64 << 62) as f64;
         let sums = &mut sums[..];
@@ -387,7 +387,7 @@ mod tests {
     use super::*;
     use crate::exact::{Integer, Integers};
 
-    /// The same series with numbers of any length.
+    /// The series with integers of any length.
     fn long(series: &ShortSeries) -> FourierSeries<Integers> {
         let mut coefficients = vec![];
         for (index, numerator) in series.numerators.iter().enumerate() {

@@ -305,7 +305,7 @@ impl<R: Ring> FourierSeries<R> {
         self.constant_of(Some(&sum))
     }
 
-    /// The same series over another ring.
+    /// Converts the series to another ring.
     pub fn map<S: Ring>(
         &self,
         ring: S,
@@ -366,7 +366,7 @@ impl<R: Ring> FourierSeries<R> {
     }
 }
 
-/// What brings one term of a sum to the common denominator of all, times its weight.
+/// The factor that brings one term of a sum to the common denominator of all, times its weight.
 enum Factor {
     /// The weight alone, where the term stands over the common denominator already.
     Small(i64),

@@ -24,7 +24,7 @@ impl Guard {
     pub fn new(argument: &Expr, values: &BTreeMap<Symbol, f64>) -> Self {
         let is_number = |expr: &Expr| expr.symbols().iter().all(|name| values.contains_key(name));
         let number = |expr: &Expr| expr.evaluate(values).ok().filter(|value| value.is_finite());
-        // What is too long to be written out is compared as it stands.
+        // An argument too long to be written out is compared as it stands.
         let written_out = argument.expand().unwrap_or_else(|_| argument.clone());
         let mut terms = BTreeMap::new();
         for term in written_out.terms() {

@@ -95,7 +95,7 @@ impl Recurrences {
         Ok(place)
     }
 
-    /// What computes the series of all that was added.
+    /// Returns the tape that computes the series of all outputs.
     pub fn into_tape(mut self) -> Tape {
         self.program.keep_only(&self.outputs);
         Tape::new(self.program)
@@ -211,7 +211,7 @@ impl Recurrences {
                 _ => terms.push((self.constant(1.0), *place)),
             }
         }
-        // What was computed last is needed last.
+        // The latest result is needed last.
         terms.sort_by_key(|(_, place)| *place);
         self.emit(Operation::Sum(terms.into()))
     }
@@ -506,7 +506,7 @@ mod tests {
         assert_eq!(numeric_taylor(&high, x, 0.0, 1.0, 2), Some(vec![0.0, 1.0, 0.0]));
     }
 
-    /// What occurs twice is computed once, and sine and cosine come together.
+    /// A part that occurs twice is computed once, and sine and cosine come together.
     #[test]
     fn each_part_is_computed_once() {
         let count = |texts: &[&str]| {

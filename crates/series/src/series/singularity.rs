@@ -41,7 +41,7 @@ use crate::parallel::par_map;
 pub struct Estimate {
     /// The estimate, rounded to the digits that its error leaves.
     pub value: Rational,
-    /// How far it may be off, what it was rounded by included.
+    /// Bound of the error, rounding included.
     pub error: f64,
 }
 
@@ -100,11 +100,11 @@ pub fn nearest(coefficients: &[Rational]) -> Option<Singularity> {
 const BITS_AT_LEAST: usize = 256;
 const BITS_EACH: usize = 6;
 
-/// What the sizes of the coefficients say.
+/// The growth of the coefficients with the order.
 struct Growth {
     /// The radius lies about here, times `2^unit`.
     radius: f64,
-    /// How far it may be from there: a factor, as a logarithm.
+    /// Uncertainty of that: a factor, as a logarithm.
     margin: f64,
     /// The variable is measured in `2^unit`.
     unit: i64,
@@ -194,9 +194,9 @@ pub fn is_entire(coefficients: &[Rational]) -> bool {
 }
 
 fn steepens_evenly(coefficients: &[Rational]) -> bool {
-    /// How much steeper they must fall over one doubling of the power: an order of two has 0.35.
+    /// Least increase of the slope over one doubling of the power: an order of two has 0.35.
     const STEEPER: f64 = 0.28;
-    /// How far that may be from the doubling before, as a factor.
+    /// Largest ratio of that to the doubling before.
     const EVENLY: f64 = 2.0;
     // The largest of each half: those of a pair go up and down.
     let slope = |from: usize, to: usize| {
@@ -220,7 +220,7 @@ fn steepens_evenly(coefficients: &[Rational]) -> bool {
     }
 }
 
-/// Which equation an approximant solves.
+/// The equation that an approximant solves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ApproximantKind {
     Quadratic,
@@ -233,7 +233,7 @@ const KINDS: [ApproximantKind; 3] =
     [ApproximantKind::Quadratic, ApproximantKind::Differential, ApproximantKind::OfInverseRoot];
 
 impl ApproximantKind {
-    /// How many equations so many coefficients give.
+    /// Number of equations for this many coefficients.
     fn length(self, coefficients: usize) -> usize {
         match self {
             Self::Quadratic => coefficients,
@@ -262,8 +262,7 @@ impl Complex {
         &(&self.re * &self.re) + &(&self.im * &self.im)
     }
 
-    /// How far away another number is; in doubles, which reach down to where nothing matters any
-    /// more.
+    /// Distance to another number, as a double.
     fn distance(&self, other: &Self) -> f64 {
         (self - other).squared_size().sqrt().map_or(0.0, |size| size.to_f64())
     }
@@ -333,7 +332,8 @@ impl Field for Floats {
     }
 }
 
-/// What is zero at a singularity, and what its exponent is made of.
+/// The polynomials of an approximant: one that vanishes at a singularity, and those of its
+/// exponent.
 struct Approximant {
     /// D or P.
     zero: Vec<BigFloat>,
@@ -527,8 +527,7 @@ fn followed(
                 some.map(|(_, zero)| distance(zero, &end)).fold(0.0, f64::max)
             };
             let (recent, before) = (farthest(0, window), farthest(window + 1, 2 * window));
-            // What converges slowly is farther away than its last steps by how much longer the way
-            // is.
+            // A slowly converging sequence is farther away than its last steps.
             if 8.0 * recent <= before { FAST * recent } else { SLOW * recent }
         };
         let exponent = end.exponent.map(|value| {
@@ -566,7 +565,7 @@ fn followed(
 const SLOW: f64 = 8.0;
 const FAST: f64 = 4.0;
 
-/// How far a zero may move between approximants, relatively.
+/// Relative change of a zero between approximants up to which it is the same.
 const MOVES: f64 = 0.05;
 
 impl Approximant {
@@ -716,8 +715,8 @@ fn singularity(found: Vec<PersistentZero>, growth: &Growth, bits: usize) -> Opti
     /// The factor on the error there.
     const SLOWEST: f64 = 10.0;
     let size_of = |own: &PersistentZero| own.place.to_f64().norm();
-    // By how much the coefficients grow faster than those of the singularity, over what that may be
-    // off: as a power of their number.
+    // Excess of the growth of the coefficients over that by the singularity, over its uncertainty:
+    // as a power of their number.
     let excess = |own: &PersistentZero| {
         let power = own.power_of_function()? + 1.0;
         Some((growth.power(size_of(own))? + power) / (1.25 + 0.25 * power.abs()))
@@ -731,7 +730,7 @@ fn singularity(found: Vec<PersistentZero>, growth: &Growth, bits: usize) -> Opti
         .collect();
     let singular =
         |own: &PersistentZero| !own.is_regular(&zeros) && own.error <= WORST * size_of(own);
-    // What would make larger coefficients than there are is none.
+    // A zero that would make larger coefficients than there are is not a singularity.
     let found: Vec<(PersistentZero, f64)> = found
         .into_iter()
         .filter(singular)
@@ -754,8 +753,8 @@ fn singularity(found: Vec<PersistentZero>, growth: &Growth, bits: usize) -> Opti
     };
     let exponent = exponent_by(&found, ApproximantKind::OfInverseRoot);
     let power = exponent_by(&found, ApproximantKind::Differential);
-    // What is no square root the quadratic approximants do not meet, nor those of omega^2 what is a
-    // logarithm of the period.
+    // A singularity other than a square root is not seen by quadratic approximants, nor a logarithm
+    // of the period by those of omega^2.
     if [exponent, power]
         .into_iter()
         .flatten()

@@ -174,7 +174,7 @@ impl Program {
         self.operations.len()
     }
 
-    /// What is at a place.
+    /// The operation at an index.
     pub(super) fn operation(&self, place: usize) -> &Operation {
         &self.operations[place]
     }
@@ -297,7 +297,7 @@ impl Tape {
         changed
     }
 
-    /// The same operations for several motions, all of which begin as this one.
+    /// Returns a tape of the same operations for several motions, all of which start as this one.
     pub fn side_by_side<const L: usize>(&self) -> Tape<L> {
         Tape {
             program: self.program.clone(),
@@ -448,7 +448,8 @@ fn compute<const L: usize>(
                     }
                 }
             }
-            // What is zero altogether, as behind a closed corner, has zero for its roots.
+            // A series that vanishes identically, as behind a closed corner, has zero for its
+            // roots.
             per_lane(|lane| match vanishes[lane] {
                 true => 0.0,
                 false => sum[lane] / (n as f64 * base[0][lane]),

@@ -174,8 +174,7 @@ type TruncatedSeries = Vec<Expr>;
 #[derive(Clone)]
 struct Laurent {
     pole: usize,
-    /// How many of the coefficients are right: those behind them are zeros in place of what is not
-    /// known.
+    /// Number of known coefficients: those behind them are zeros in place of unknown ones.
     known: usize,
     coefficients: TruncatedSeries,
 }
@@ -199,7 +198,7 @@ impl TaylorExpansion<'_> {
             |child: &Laurent| child.pole == 0 && child.coefficients[1..].iter().all(Expr::is_zero);
         let is_power =
             |expr: &Expr| matches!(expr.node(), Node::Power(..)) && self.depends_on_variables(expr);
-        // What vanishes so far may be no constant at a greater length.
+        // A base that vanishes to this length may not be a constant at a greater length.
         let may_vanish = is_power(expression)
             && children.first().is_some_and(|base| base.coefficients[0].is_zero());
         if known == self.length

@@ -26,7 +26,7 @@ use crate::exact::residue::{Arithmetic, Lanes, Residues};
 /// Below, the sums are as fast as another halving.
 const LEAF: usize = 12;
 
-/// How many points there are, and how they are come by.
+/// Number and symmetry of the points, and the transformation to them.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
     /// Odd harmonics alone, at points on a quarter of the period; otherwise all, on half of it.
@@ -79,7 +79,7 @@ pub enum Wave {
 }
 
 impl Wave {
-    /// What the derivative consists of.
+    /// The kind of series of the derivative.
     pub fn other(self) -> Self {
         match self {
             Self::Cosine => Self::Sine,
@@ -190,7 +190,7 @@ impl Waves {
         residues.arithmetic.vectorize(work);
     }
 
-    /// What is divided by, point by point, so that cosines of multiples of `phi` remain.
+    /// The divisors, point by point, that leave cosines of multiples of `phi`.
     fn over(&self, wave: Wave) -> Option<&[Lanes]> {
         match (self.grid.half_wave, wave) {
             (_, Wave::Sine) => Some(&self.over_sine),

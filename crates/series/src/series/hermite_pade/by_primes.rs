@@ -50,7 +50,7 @@ impl Field for PrimeField {
     }
 }
 
-/// What a prime sees: the coefficients over the first of them, plain residues.
+/// The coefficients modulo one prime: plain residues, over the first of them.
 struct CoefficientImage {
     modulus: Modulus,
     numbers: Vec<u64>,
@@ -191,7 +191,7 @@ fn lifted<A: Arithmetic>(arithmetic: A, images: &[CoefficientImage]) -> Option<V
             return None;
         }
         lifted = None;
-        // What was found before is over the shorter denominator.
+        // The earlier numerators are over the shorter denominator.
         numerators.iter_mut().for_each(|numerator: &mut Integer| *numerator *= &more);
         denominator *= more;
         over = weights(&denominator);

@@ -25,7 +25,7 @@ pub struct CatalogEntry {
     pub title: &'static str,
     /// The equation of motion.
     pub equation: &'static str,
-    /// Where it is studied.
+    /// The publication that studies it.
     pub source: &'static str,
     /// The published law, for comparison.
     pub published: Option<Published>,

@@ -16,23 +16,25 @@ use crate::symbol::Symbol;
 pub struct Claim {
     /// Its name, one of its own in a file.
     pub id: String,
-    /// Where it is printed.
+    /// The place in the publication.
     pub place: String,
-    /// What is claimed, in words.
+    /// The claim in words.
     pub says: String,
-    /// How it is computed.
+    /// The computation of the claimed quantity.
     pub question: ClaimComputation,
-    /// What is printed: one entry, or the rows of a table.
+    /// The printed text: one entry, or the rows of a table.
     pub entries: Vec<PrintedEntry>,
-    /// What may be supposed: for each subject its alternatives, of which at most one is.
+    /// The suppositions that may be made: for each subject its alternatives, of which at most one
+    /// holds.
     pub suppositions: Vec<Vec<Supposition>>,
     /// A number that the publication does not print, to be solved for.
     pub unknown: Option<Unknown>,
-    /// What the publication does not print and the claim cannot be computed without, in words.
+    /// Quantities that the publication does not print and the claim cannot be computed without, in
+    /// words.
     pub needs: Vec<String>,
     /// The verdict that is known already; without it a claim is expected to be reproduced.
     pub expected: Option<Verdict>,
-    /// What a reader should know beside it.
+    /// A note for the reader.
     pub note: Option<String>,
 }
 
@@ -43,26 +45,26 @@ pub struct PrintedEntry {
     pub values: BTreeMap<Symbol, Expr>,
     /// As it is printed.
     pub printed: String,
-    /// How that is read, where it is printed in words.
+    /// The reading of an entry printed in words.
     pub read_as: Option<String>,
-    /// What that says.
+    /// The statement that it makes.
     pub stated: PrintedStatement,
 }
 
-/// What a printed text says.
+/// The statement of a printed text.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PrintedStatement {
     /// A number.
     Number(Printed),
     /// A formula.
     Formula(Expr),
-    /// How the numbers of all entries follow each other.
+    /// The order of the numbers of all entries.
     Trend(Trend),
     /// No more than the claim itself says.
     Words,
 }
 
-/// How numbers follow each other.
+/// The order of a sequence of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trend {
     /// Each is smaller than the one before: `falls`.
@@ -111,28 +113,28 @@ impl Trend {
     }
 }
 
-/// How a claim is computed.
+/// The computation of a claimed quantity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClaimComputation {
-    /// What is computed.
+    /// The quantity.
     pub quantity: ClaimQuantity,
     /// The equation of motion, for what is derived from one.
     pub equation: Option<Oscillator>,
     /// Method, order and the like.
     pub options: Options,
-    /// How the line of equation (15) is fitted.
+    /// The rule of the line of equation (15).
     pub rule: Rule,
     /// Values of names, which may use each other.
     pub values: BTreeMap<Symbol, Expr>,
-    /// What stands for pi.
+    /// The value that stands for pi.
     pub pi: Option<Expr>,
-    /// How digits come about.
+    /// The rule by which digits are cut or rounded.
     pub rounding: Rounding,
     /// The relative error that is allowed, in place of digits; of a trend, what counts as the same.
     pub tolerance: Option<f64>,
 }
 
-/// What is computed.
+/// The quantity that is computed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ClaimQuantity {
     /// A number: a formula in values and in what the program computes, [`NAMES`](super::NAMES).
@@ -168,9 +170,9 @@ pub enum ClaimQuantity {
         /// The generalised force.
         force: Expr,
     },
-    /// How a formula changes from entry to entry.
+    /// The change of a formula from entry to entry.
     Trend(Expr),
-    /// How many coordinates an equation has: letters with two primes.
+    /// Number of coordinates of an equation: letters with two primes.
     Coordinates(Expr),
     /// Options that are to go together.
     Settings(Vec<(String, String)>),
@@ -291,7 +293,7 @@ impl ClaimQuantity {
     }
 }
 
-/// What is found of a claim.
+/// The verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// To every printed digit.

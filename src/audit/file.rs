@@ -35,7 +35,7 @@ use values::{
     symbol, table, tolerance, verdict,
 };
 
-/// What is wrong, and where.
+/// An error in the file and its position.
 struct Mistake {
     span: Range<usize>,
     what: String,
@@ -139,7 +139,7 @@ struct Row {
     read_as: Option<Text>,
 }
 
-/// What may be supposed, in lists of alternatives.
+/// The suppositions that may be made, in lists of alternatives.
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Suppose {
@@ -223,7 +223,7 @@ fn claim(section: &Section, shared: &BTreeMap<Symbol, Expr>) -> ReadResult<Claim
     Ok(claim)
 }
 
-/// What is computed.
+/// Reads the quantity of a claim.
 fn quantity(section: &Section, kind: &str) -> ReadResult<ClaimQuantity> {
     let needed = |key: &str, text: &Option<Text>| -> ReadResult<Text> {
         match text {
@@ -325,7 +325,7 @@ fn settings(section: &Section) -> ReadResult<Vec<(String, String)>> {
     settings.get_ref().iter().map(one).collect()
 }
 
-/// What is printed.
+/// Reads the printed entries of a claim.
 fn entries(section: &Section, kind: &str) -> ReadResult<Vec<PrintedEntry>> {
     let id = section.id.get_ref();
     let several = section.entries.as_ref();
@@ -419,7 +419,7 @@ fn no_number<T>(section: &Section) -> ReadResult<T> {
     )
 }
 
-/// What a printed text says, for this quantity.
+/// Reads the statement of a printed text about this quantity.
 fn stated(kind: &str, text: &Text) -> ReadResult<PrintedStatement> {
     match kind {
         "" | "options" => Ok(PrintedStatement::Words),

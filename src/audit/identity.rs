@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use crate::expr::{CompiledFunction, Expr, ExprError};
 use crate::symbol::Symbol;
 
-/// How two expressions differ.
+/// The difference of two expressions.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct TermDifference {
     /// The terms of the first that the second does not have.

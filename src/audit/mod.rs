@@ -59,7 +59,7 @@ use unknown::Trial;
 pub struct Claims {
     /// The publication.
     pub title: String,
-    /// What it claims, in the order in which it is printed.
+    /// Its claims, in the order in which they are printed.
     pub claims: Vec<Claim>,
 }
 
@@ -72,7 +72,7 @@ pub struct Audit {
     pub findings: Vec<ClaimFinding>,
 }
 
-/// What is found of a claim.
+/// The result for one claim.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ClaimFinding {
@@ -80,11 +80,11 @@ pub struct ClaimFinding {
     pub claim: Claim,
     /// The verdict.
     pub verdict: Verdict,
-    /// What was tried, the claim alone first; the last one reproduces, where one does.
+    /// The attempts, that of the claim alone first; the last one reproduces the claim if any does.
     pub tried: Vec<ClaimAttempt>,
-    /// What the claim asks of its unknown, where that was solved for.
+    /// The value of the unknown that the claim requires, if it was solved for.
     pub demand: Option<RequiredValue>,
-    /// What is not printed and needed, where that decides.
+    /// Quantities that are needed and not printed, if that decides.
     pub missing: Vec<String>,
     /// Why the verdict is what it is, sentence by sentence.
     pub evidence: Vec<String>,
@@ -93,13 +93,13 @@ pub struct ClaimFinding {
 /// A claim computed under some suppositions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClaimAttempt {
-    /// What is supposed, nothing for the claim alone.
+    /// The suppositions; empty for the claim alone.
     pub supposing: Vec<Supposition>,
-    /// The same in words, and the value of an unknown that was solved for.
+    /// The suppositions in words, and the value of an unknown that was solved for.
     pub words: Vec<String>,
-    /// What is computed for each entry, or what it lacks.
+    /// The computed value of each entry, or the reason why there is none.
     pub computed: Vec<Result<Computed, NotComputable>>,
-    /// Which entries are reproduced.
+    /// Whether each entry is reproduced.
     pub reproduced: Vec<bool>,
 }
 
@@ -109,14 +109,14 @@ impl ClaimAttempt {
         self.reproduced.iter().all(|entry| *entry)
     }
 
-    /// What is supposed, in a line.
+    /// The suppositions in one line.
     fn in_a_line(&self) -> String {
         self.words.join(" and ")
     }
 }
 
 impl ClaimFinding {
-    /// What is supposed where the claim is reproduced under an assumption; empty where nothing is.
+    /// The assumption under which the claim is reproduced; empty if there is none.
     pub fn assumption(&self) -> String {
         if self.verdict != Verdict::UnderAssumption {
             return String::new();
@@ -124,7 +124,7 @@ impl ClaimFinding {
         self.shown().map(ClaimAttempt::in_a_line).unwrap_or_default()
     }
 
-    /// What is to be shown of what was tried: what reproduces, or the claim alone.
+    /// The attempt to be shown: one that reproduces the claim, or that of the claim alone.
     pub fn shown(&self) -> Option<&ClaimAttempt> {
         let best = self.tried.iter().find(|tried| tried.is_reproduced());
         best.or(self.tried.first())
@@ -141,7 +141,7 @@ impl ClaimFinding {
 }
 
 impl Audit {
-    /// How many claims have this verdict.
+    /// Number of claims with this verdict.
     pub fn count(&self, verdict: Verdict) -> usize {
         self.findings.iter().filter(|finding| finding.verdict == verdict).count()
     }
@@ -196,7 +196,7 @@ fn judge(claim: Claim) -> ClaimFinding {
     let mut demand = None;
     let is_reproduced = tried.last().is_some_and(ClaimAttempt::is_reproduced);
     if let (Some(unknown), false) = (claim.unknown, is_reproduced) {
-        // What is supposed of the unknown itself leaves nothing to solve for.
+        // If a supposition gives the unknown a value, there is nothing to solve for.
         let supplies = |one: &&Supposition| match one {
             Supposition::Values(values) => values.iter().any(|(name, _)| *name == unknown.name),
             _ => false,
@@ -230,7 +230,7 @@ fn judge(claim: Claim) -> ClaimFinding {
     finding(claim, tried, demand, vec![])
 }
 
-/// What a claim would need of its unknown, where that is more than it may be.
+/// The value of the unknown that a claim requires, in words, if it lies outside of its range.
 fn outside_words(
     demand: &RequiredValue,
     question: &ClaimComputation,
@@ -252,7 +252,7 @@ fn outside_words(
 fn attempt(claim: &Claim, chosen: &[&Supposition]) -> ClaimAttempt {
     let question = claim.question.supposing(chosen);
     let evaluator = Evaluator::new(&question);
-    // What is not printed must be supposed before anything can be computed.
+    // Quantities that are not printed must be supposed before anything can be computed.
     let supplied =
         chosen.iter().any(|one| !matches!(one, Supposition::Rounding(_) | Supposition::Pi(_)));
     if !claim.needs.is_empty() && !supplied {
@@ -271,8 +271,8 @@ fn attempt(claim: &Claim, chosen: &[&Supposition]) -> ClaimAttempt {
     compare(claim, &question, &evaluator, chosen, None)
 }
 
-/// What is supposed in words, with the numbers of what follows from the values of the claim, and
-/// the value of an unknown.
+/// The suppositions in words, with the numbers that follow from the values of the claim, and the
+/// value of an unknown.
 fn words(
     question: &ClaimComputation,
     chosen: &[&Supposition],
@@ -382,7 +382,7 @@ fn finding(
                 Ok(_) => {}
             }
         }
-        // What is solved for is not missing.
+        // An unknown that is solved for is not missing.
         if let Some(unknown) = claim.unknown {
             missing.remove(unknown.name.name());
         }
@@ -419,7 +419,7 @@ fn finding(
     ClaimFinding { missing: missing.into_iter().collect(), evidence, claim, verdict, tried, demand }
 }
 
-/// What is computed in place of what is printed.
+/// The computed values beside the printed ones, in words.
 fn against(claim: &Claim, tried: &ClaimAttempt) -> Vec<String> {
     let several = claim.entries.len() > 1;
     if several && tried.reproduced.iter().any(|entry| *entry) {
@@ -493,7 +493,7 @@ fn formula_versus(printed: Result<Expr, String>, formula: &Expr) -> Vec<String> 
 /// The coefficient of a term that does not occur, in words.
 pub(crate) const ABSENT: &str = "0, no such term";
 
-/// What is computed for all entries.
+/// The computed values of all entries.
 fn numbers_of(claim: &Claim, tried: &ClaimAttempt) -> String {
     let words = claim.entries.iter().zip(&tried.computed).map(|(entry, found)| match found {
         Ok(Computed::Number(number)) => match &entry.stated {
@@ -513,7 +513,7 @@ fn numbers_of(claim: &Claim, tried: &ClaimAttempt) -> String {
 /// Suppositions that are told of at most.
 const TOLD: usize = 8;
 
-/// What comes of the other things that were tried: a sentence each.
+/// The results of the other attempts, a sentence each.
 fn others(claim: &Claim, tried: &[ClaimAttempt]) -> Vec<String> {
     let entries = claim.entries.len();
     let is_trend = matches!(

@@ -9,7 +9,7 @@ use crate::exact::Rational;
 use crate::exact::rational::to_f64;
 use crate::expr::parse_expression;
 
-/// How digits come about.
+/// The rule by which digits are cut or rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Rounding {
     /// To the nearest: `rounded`.
@@ -40,7 +40,7 @@ impl Rounding {
     }
 }
 
-/// What a printed number says of the true one.
+/// The relation of a printed number to the true one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relation {
     /// It is this one.
@@ -54,7 +54,7 @@ pub enum Relation {
 /// A number as it is printed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Printed {
-    /// What it says.
+    /// The relation to the true number.
     pub relation: Relation,
     /// Whether a bound belongs to what is allowed.
     with_bound: bool,
@@ -147,7 +147,7 @@ impl Printed {
         self.digits.split_once('.').map_or(0, |(_, part)| part.len())
     }
 
-    /// How many digits it has that say something.
+    /// Number of significant digits.
     pub fn significant_digits(&self) -> usize {
         let digits = self.digits.bytes().filter(u8::is_ascii_digit);
         digits.skip_while(|digit| *digit == b'0').count()
@@ -182,7 +182,8 @@ impl Printed {
         }
     }
 
-    /// The same of a fraction: one that is printed as a fraction must be it, exactly.
+    /// Whether a fraction reproduces the printed number: one that is printed as a fraction must be
+    /// equal to it.
     pub fn is_reproduced_exactly_by(
         &self,
         number: &Rational,
@@ -212,7 +213,7 @@ impl Printed {
             && (zeros || (number < 0.0) == (self.value < 0.0))
     }
 
-    /// Where a number must cross to be printed so: the middle of what is printed.
+    /// The middle of the interval of numbers that are printed so.
     pub(super) fn middle(&self, rounding: Rounding) -> f64 {
         let unit = self.scale * 10_f64.powi(-(self.decimals() as i32));
         match rounding {

@@ -1,4 +1,4 @@
-//! What a claim may be about: the names that formulas may use, and the program that computes them.
+//! The quantities of a claim: the names that formulas may use, and the program that computes them.
 //!
 //! In: a [`ClaimComputation`] and the values of an entry. Out: what is computed, or what it lacks.
 //! The numbers come from where every other command has them: laws from
@@ -28,8 +28,8 @@ use crate::symbol::Symbol;
 use crate::values::Values;
 use crate::verify::{DEFAULT_TOLERANCE, VerificationScope, judge_to, needed_values};
 
-/// What the program computes by name, beside the values that a file gives: the name, what it needs,
-/// what it is.
+/// The quantities that the program computes by name, beside the values that a file gives: the name,
+/// its arguments, its meaning.
 pub const NAMES: [(&str, &str, &str); 29] = [
     ("frequency", "equation, its parameters, A", "omega by the method"),
     ("true_frequency", "equation, its parameters, A", "omega of the true motion"),
@@ -82,7 +82,7 @@ pub const NAMES: [(&str, &str, &str); 29] = [
     ),
 ];
 
-/// What is computed.
+/// The result of a computation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Computed {
     /// A number.
@@ -93,7 +93,7 @@ pub enum Computed {
     Absent,
     /// A formula.
     Formula(Expr),
-    /// What options have against each other.
+    /// The rules that options break.
     Conflicts(Vec<String>),
 }
 
@@ -130,7 +130,7 @@ impl<'a> Evaluator<'a> {
         Self { question, law: OnceCell::new(), swing: OnceCell::new() }
     }
 
-    /// What is computed with the values of an entry, and of an unknown where one is tried.
+    /// Computes the quantity with the values of an entry, and of an unknown if one is tried.
     pub(super) fn compute(
         &self,
         entry: &BTreeMap<Symbol, Expr>,
@@ -280,7 +280,7 @@ struct EvaluationScope<'a, 'b> {
     evaluator: &'b Evaluator<'a>,
     values: BTreeMap<Symbol, Expr>,
     known: BTreeMap<Symbol, f64>,
-    /// What is being worked out, to see circles.
+    /// The names under evaluation, to detect circular definitions.
     open: Vec<Symbol>,
     impact: Option<Box<Impact>>,
 }
@@ -341,7 +341,7 @@ impl EvaluationScope<'_, '_> {
         Ok(value)
     }
 
-    /// What the program computes under this name.
+    /// Computes the quantity of this name.
     fn computed(&mut self, name: &str) -> Result<f64, NotComputable> {
         match name {
             "frequency" => self.frequency(),
@@ -436,7 +436,7 @@ impl EvaluationScope<'_, '_> {
     /// The three phases of an impact with a line for the barrier.
     fn phases(&mut self, name: &str, speed: ContactSpeed) -> Result<ThreePhases, NotComputable> {
         let (equation, law) = self.evaluator.swing()?;
-        // How stiff the barrier is says nothing of the way to it.
+        // The stiffness of the barrier does not matter for the motion before the impact.
         let hits = NAMES.iter().any(|(known, needs, _)| *known == name && needs.contains("gamma"));
         let needed: Vec<Symbol> = ["A", "xc", "gamma"][..if hits { 3 } else { 2 }]
             .iter()
@@ -556,10 +556,10 @@ fn motion(parts: [&Expr; 3], definitions: &BTreeMap<Symbol, Expr>) -> Result<Exp
     Expr::divide(left, &inertia).and_then(|left| left.expand()).map_err(words)
 }
 
-/// How long a motion is followed to its rest, in units of 1/omega.
+/// The longest time for which a motion is followed to its rest, in units of 1/omega.
 const LONGEST: f64 = 2000.0;
 
-/// How long a main mass is followed.
+/// The longest time for which a main mass is followed.
 const LONGEST_OF_A_MAIN_MASS: f64 = 1000.0;
 
 /// The numbers of an impact in the order of [`ThreePhases::quantities`].

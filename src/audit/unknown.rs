@@ -23,11 +23,11 @@ pub struct RequiredValue {
 
 /// Points of the grid inside of the range, and beyond it on either side.
 const POINTS: usize = 120;
-/// How far beyond a range of positive numbers is looked for what a claim would need, as a factor.
+/// The factor by which the search for a required value goes beyond a range of positive numbers.
 const BEYOND: f64 = 1e15;
 
-/// What is asked of one value of the unknown: whether all that is printed comes out, and by how
-/// much each number of it differs from what is printed; no number where there is none.
+/// The result for one value of the unknown: whether all printed numbers are reproduced, and the
+/// difference of each of them from the printed one; empty if there are none.
 pub(super) struct Trial {
     pub(super) reproduces: bool,
     pub(super) differences: Vec<f64>,
@@ -137,7 +137,7 @@ fn nearest(known: f64, range: [f64; 2], try_value: &dyn Fn(f64) -> Trial) -> f64
     find_root(difference, range[0], range[1]).unwrap_or(known)
 }
 
-/// What all of these ranges have in common.
+/// The intersection of all of these ranges; `None` if it is empty.
 pub(super) fn in_common(ranges: &[[f64; 2]]) -> Option<[f64; 2]> {
     let low = ranges.iter().map(|range| range[0]).fold(f64::NEG_INFINITY, f64::max);
     let high = ranges.iter().map(|range| range[1]).fold(f64::INFINITY, f64::min);

@@ -12,13 +12,13 @@ use super::{Common, Failure, Format, Outcome, text_writer};
 
 /// A result, and how it is written in each format.
 pub(super) struct Answer<'a> {
-    /// What it says.
+    /// The answer.
     pub(super) document: &'a Document<'a>,
-    /// How many characters a line of its text has at most.
+    /// The largest width of a line of text, in characters.
     pub(super) width: usize,
     /// Its picture, drawn when it is asked for; none where a kind of result has none.
     pub(super) picture: Option<Draw<'a>>,
-    /// What no document is made into: JSON, tables of comma-separated values, programs.
+    /// Writes the formats that are not made of a document: JSON, comma-separated values, programs.
     pub(super) other: &'a dyn Fn(Format) -> Result<String, Failure>,
 }
 

@@ -207,7 +207,7 @@ fn check(arguments: &CheckArguments) -> Result<Outcome, Failure> {
     };
     let text = read_at_most(file, LARGEST_CERTIFICATE)?;
     let unread = |error: &dyn std::fmt::Display| refused(&format!("no certificate: {error}"));
-    // Which of the two kinds it is; the rest is read when that is known.
+    // The kind of certificate is read first, and then the rest.
     let EquationAlone { ode } = serde_json::from_str(&text).map_err(|error| unread(&error))?;
     let tolerance = tolerance(&arguments.common);
     let (motion, damped);

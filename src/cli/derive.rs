@@ -110,7 +110,7 @@ fn ratio(text: &str) -> Result<(u32, u32), String> {
     Ok((above / common, below / common))
 }
 
-/// What stands after `--order`.
+/// Parses the argument of `--order`.
 fn order(text: &str) -> Result<Order, String> {
     let number = |text: &str| {
         let text = text.trim();
@@ -327,7 +327,7 @@ fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) ->
     }
 }
 
-/// How long to wait for what there is, once the time is up: an expansion that has begun has orders.
+/// The grace period after a timeout: an expansion that has begun has orders to show.
 pub(super) fn patience() -> Duration {
     match PROGRESS.read() {
         (_, 0) => Duration::ZERO,
@@ -372,7 +372,7 @@ pub(super) fn refused(oscillator: &Oscillator, refusal: &Refusal) -> Failure {
     Failure::advised(&format!("{refusal}{shown}"), refusal.help())
 }
 
-/// What a problem says to this command.
+/// Reads the equation and the choices of a problem for this command.
 pub(super) fn formula(problem: &Problem, reader: Reader) -> Result<FormulaProblem<'_>, Failure> {
     problem.formula(reader).map_err(|error| Failure::refused(&error, error.help()))
 }
@@ -482,7 +482,7 @@ fn as_meant(values: &Values, oscillator: &Oscillator) -> Result<Values, Failure>
     Ok(meant)
 }
 
-/// Where the equilibrium in symbols is not that of the numbers given, the equation with those
+/// If the equilibrium in symbols is not that at the given numbers, returns the equation with those
 /// numbers in it.
 fn with_known_equilibrium(
     oscillator: Oscillator,

@@ -1,4 +1,4 @@
-//! Where results go: checked before the work begins, replaced as a whole when it is done.
+//! The output files: checked before the work begins, replaced as a whole when it is done.
 //!
 //! A file is written under another name beside its place and then renamed, so that a full disk or
 //! an interrupt leaves the old one. `-` is standard output.
@@ -16,8 +16,8 @@ pub(super) fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// How many characters a line of the result should have at most: the width of the terminal that
-/// shows it, or what `COLUMNS` says; 120 in a file or a pipe.
+/// The largest number of characters in a line of the result: the width of the terminal that shows
+/// it, or the value of `COLUMNS`; 120 in a file or a pipe.
 pub(super) fn width(output: Option<&Path>) -> usize {
     const OF_FILES: usize = 120;
     const NARROWEST: usize = 40;
@@ -93,7 +93,7 @@ pub(super) fn check(common: &Common, input: Option<&Path>) -> Result<(), Failure
 /// Writes a result to its place.
 ///
 /// # Errors
-/// What the operating system says, with the name of the place. A closed pipe is none.
+/// The error of the operating system, with the name of the file. A closed pipe is not an error.
 pub(super) fn write(path: Option<&Path>, result: Writer) -> Result<(), String> {
     match path.filter(|path| !is_standard(path)) {
         Some(path) => replace(path, result),

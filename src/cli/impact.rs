@@ -103,7 +103,7 @@ fn run(arguments: &ImpactArguments) -> Result<Outcome, Failure> {
     })
 }
 
-/// What is proved of the impact, and with it of its closed forms.
+/// Encloses the numbers of an impact, and with them the errors of its closed forms.
 fn proved(setup: Setup, common: &Common) -> Result<Outcome, Failure> {
     let foreign = [
         ("an equation of its own", setup.swing.is_some()),

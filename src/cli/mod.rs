@@ -237,7 +237,7 @@ fn no_verdict(tolerance: clap::Arg) -> clap::Arg {
     tolerance.hide(true)
 }
 
-/// What a result is written in.
+/// The format of a result.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 enum Format {
     #[default]
@@ -251,7 +251,7 @@ enum Format {
 }
 
 impl Format {
-    /// Those of every command that has a result.
+    /// The formats of every command that has a result.
     const OF_ALL: [Self; 4] = [Self::Text, Self::Latex, Self::Json, Self::Html];
 
     /// All of them.
@@ -260,7 +260,7 @@ impl Format {
         Self::OF_ALL.into_iter().chain([Self::Svg, Self::Csv]).chain(programs)
     }
 
-    /// That of files whose names end so; none for `txt` and everything unknown.
+    /// The format of files with this ending; `None` for `txt` and unknown endings.
     fn of_ending(ending: &str) -> Option<Self> {
         Some(match ending.to_ascii_lowercase().as_str() {
             "tex" => Self::Latex,
@@ -277,7 +277,7 @@ impl Format {
         })
     }
 
-    /// How a file is made whose name ends so, of a kind that is not written here.
+    /// Advice for a file with this ending, of a kind that is not written here.
     fn instead_of(ending: &str) -> Option<&'static str> {
         Some(match ending.to_ascii_lowercase().as_str() {
             "pdf" => "write .html and print it, or .tex",
@@ -408,11 +408,12 @@ fn text_writer(text: String) -> Writer {
     Box::new(move |to| to.write_all(text.as_bytes()))
 }
 
-/// What a command hands back.
+/// The result of a command.
 struct Outcome {
     /// The result.
     result: Writer,
-    /// Where a picture goes, and the picture or why there is none: the result stands without it.
+    /// The path of a picture, and the picture or the reason why there is none: the result is valid
+    /// without it.
     picture: Option<(PathBuf, Result<String, Failure>)>,
     /// Said on standard error.
     note: Option<String>,
@@ -491,7 +492,7 @@ fn by_ending(failure: Failure, common: &Common) -> Failure {
     }
 }
 
-/// What came of the work; nothing where it broke.
+/// The result of the work; `None` if it panicked.
 type Worked = Option<Result<Outcome, Failure>>;
 
 /// Exit code and message of work that ends without a result.
@@ -560,7 +561,7 @@ static STOP: AtomicBool = AtomicBool::new(false);
 /// The exit code of a program ended by an interrupt, by the convention of shells.
 const INTERRUPTED: u8 = 130;
 
-/// What reaches the main thread.
+/// A message to the main thread.
 enum Message {
     /// The work is done; nothing where it broke.
     Done(Worked),

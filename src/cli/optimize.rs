@@ -55,7 +55,7 @@ pub struct OptimizeArguments {
     pub common: Common,
 }
 
-/// How much a search may take.
+/// The budget of a search.
 #[derive(Clone, Copy, PartialEq)]
 enum SearchBudget {
     Evaluations(usize),

@@ -10,7 +10,7 @@ use lindstedt::problem::{Problem, ProblemError};
 use super::files::is_standard;
 use super::{Failure, read};
 
-/// What a PROBLEM says. A name that ends in `.toml`, or a file that exists, is a file.
+/// Reads a PROBLEM argument. A name that ends in `.toml`, or a file that exists, is a file.
 ///
 /// # Errors
 /// A file that cannot be read or is no problem; a single word that is neither an equation nor a
@@ -28,7 +28,7 @@ pub(super) fn path(text: &str) -> Option<&Path> {
     (is_standard(path) || text.ends_with(".toml") || path.is_file()).then_some(path)
 }
 
-/// What a file says, or standard input for `-`, which may also hold a bare equation or a name.
+/// Reads a problem file, or standard input for `-`, which may also hold a bare equation or a name.
 ///
 /// # Errors
 /// See [`problem`].

@@ -7,13 +7,13 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use lindstedt::Counter;
 
-/// How far the work has come.
+/// The progress of the work.
 pub(super) static PROGRESS: Counter = Counter::new();
 
 /// Set by `--quiet`.
 pub(super) static QUIET: AtomicBool = AtomicBool::new(false);
 
-/// What stands beside the bar of a sweep.
+/// The text beside the progress bar of a sweep.
 pub(super) const MOTIONS: &str = "{bar:40} {pos}/{len} motions, {eta} left";
 
 /// A bar of so much work; `template` says what stands beside it.

@@ -131,7 +131,7 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     })
 }
 
-/// How the steady states are to be found.
+/// Parses the name of a method for steady states.
 fn method(name: Option<&str>) -> Result<Method, Failure> {
     let (balance, scales) = (Method::HarmonicBalance, Method::MultipleScales);
     let Some(name) = name else { return Ok(balance) };

@@ -302,7 +302,7 @@ fn settings(arguments: &SimulateArguments, asked: &Simulate) -> Settings {
     }
 }
 
-/// How long a chain is followed to rest, in units of 1/omega.
+/// The longest time for which a chain is followed to rest, in units of 1/omega.
 const LONGEST_CHAIN: f64 = 1e4;
 
 /// Without `--tolerance`: how far the rest time of a chain may be from that by integration, in
@@ -447,7 +447,7 @@ fn many(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Fai
     })
 }
 
-/// What a sweep leaves no place for.
+/// Refuses options that a sweep cannot take.
 fn check_sweep(arguments: &SimulateArguments) -> Result<(), Failure> {
     if arguments.sweep.len() > 2 && arguments.common.draws() {
         return Err(Failure::Usage(

@@ -84,7 +84,7 @@ pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcom
 /// The motion by power series, and by Runge-Kutta beside it.
 ///
 /// # Errors
-/// Where the series come to an end that Runge-Kutta passes: there is nothing to compare it with.
+/// The series end at a point that Runge-Kutta passes: there is nothing to compare.
 fn by_both(course: &TrajectoryRequest) -> Result<[Trajectory; 2], Failure> {
     let by = |integrator: Integrator| course.clone().follow_by(integrator);
     let end = match by(Integrator::Taylor) {
@@ -278,7 +278,7 @@ fn many(course: &TrajectoryRequest, asked: &SimulateArguments) -> Result<Outcome
     Ok(Outcome { partial: note.is_some(), note, ..answer.outcome(common)? })
 }
 
-/// What is missing of so many motions, where anything is.
+/// The part that is missing of this number of motions, in words; `None` if nothing is.
 fn stopped_early(motions: &[SweptMotion], all: usize) -> Option<String> {
     let kept = "stopped early, what there is is kept";
     let interrupted = motions.iter().filter(|motion| motion.reason == PathEnd::Interrupted).count();

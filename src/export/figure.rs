@@ -2,10 +2,10 @@
 //! checks of the data, the house style, and three figures ready made, [`impact_figure`],
 //! [`motion_figure`] and [`backbone_figure`].
 //!
-//! The same numbers give the same bytes. Colours are those of Okabe and Ito, *Color Universal
-//! Design* (2008). Curves are thinned to about 2000 points; an axis whose values agree to 1e-9
-//! shows a constant. A point that is not finite is an error, never a silent gap. On a logarithmic
-//! axis negative values are an error, and zeros, where an error curve meets its reference, are left
+//! Equal numbers give equal bytes. Colours are those of Okabe and Ito, *Color Universal Design*
+//! (2008). Curves are thinned to about 2000 points; an axis whose values agree to 1e-9 shows a
+//! constant. A point that is not finite is an error, never a silent gap. On a logarithmic axis
+//! negative values are an error, and zeros, at which an error curve meets its reference, are left
 //! out. Without the feature `plot` every figure is [`FigureError::LeftOut`].
 //!
 //! ```
@@ -120,7 +120,7 @@ pub enum GuideLine<'a> {
     Y(f64, &'a str),
 }
 
-/// How an axis is divided.
+/// The scale of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scale {
     /// Equal steps are equal distances.
@@ -138,7 +138,7 @@ pub struct Panel<'a> {
     /// Quantity and, last and in parentheses, unit: `time t (s)`. Very large or small numbers are
     /// divided by a power of ten, which is named there: `time t (10⁻⁶ s)`.
     pub x_label: &'a str,
-    /// The same for the ordinate.
+    /// Quantity and unit of the ordinate, likewise.
     pub y_label: &'a str,
     /// Division of the abscissa.
     pub x_scale: Scale,
@@ -194,7 +194,7 @@ pub struct ImpactMotion<'a> {
     pub contact: &'a [(f64, f64)],
 }
 
-/// What [`impact_figure`] draws.
+/// The data of [`impact_figure`].
 #[derive(Clone, Copy, Debug)]
 pub struct ImpactFigure<'a> {
     /// Barrier on the left, in the unit of x.
@@ -266,7 +266,7 @@ pub fn impact_figure(data: &ImpactFigure) -> Result<String, FigureError> {
     figure(&panels, data.caption)
 }
 
-/// What [`motion_figure`] draws.
+/// The data of [`motion_figure`].
 #[derive(Clone, Copy, Debug)]
 pub struct MotionFigure<'a> {
     /// Name of the coordinate: `x`.
@@ -429,8 +429,8 @@ pub fn figure(panels: &[Panel], caption: &str) -> Result<String, FigureError> {
     arranged(panels, caption, true)
 }
 
-/// How far a curve is from the truth, in per cent, at the amplitudes that both have: either may
-/// begin later than the other.
+/// Relative difference of a curve and the truth, in per cent, at the amplitudes that both have:
+/// either may begin later than the other.
 fn errors_in_percent(formula: &[(f64, f64)], truth: &[(f64, f64)]) -> Vec<(f64, f64)> {
     /// Errors in per cent below which rounding of truth and formula shows.
     const LEAST_ERROR: f64 = 1e-10;

@@ -18,16 +18,16 @@ use crate::report::{Block, Document, MethodRow};
 use crate::solution::Solution;
 use crate::verify::comparison::Refused;
 
-/// What a page has beside its document.
+/// The parts of a page beside its document.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct HtmlPage<'a> {
-    /// What a browser shows as its title.
+    /// The title that a browser shows.
     pub title: &'a str,
     /// A picture as SVG, or why there is none.
     pub picture: Option<Result<&'a str, &'a str>>,
     /// The answer whose derivation can be unfolded, and whether it is unfolded from the start.
     pub derivation: Option<(&'a Solution, bool)>,
-    /// What made the page: the command that can be typed again.
+    /// The command that made the page and can be typed again.
     pub made_by: &'a str,
 }
 
@@ -122,7 +122,7 @@ fn scaled(picture: &str) -> String {
     }
 }
 
-/// What has been written, and the equations that wait for the end of their display.
+/// The text written so far, and the equations that wait for the end of their display.
 struct Body<'a> {
     typesetter: &'a Typesetter,
     text: String,
@@ -296,7 +296,7 @@ impl Body<'_> {
     }
 }
 
-/// What is said beside an equation.
+/// The remark beside an equation.
 fn aside<'a>(block: &Block<'a>) -> Option<&'a str> {
     match block {
         Block::Value { source, .. } => *source,

@@ -98,7 +98,7 @@ pub fn typed(text: &str) -> String {
 /// ```
 pub fn solution(solution: &Solution, verification: Option<&Verification>) -> String {
     let _letters = solution.letters().in_force();
-    // What a verdict is reached on is said with the tolerance that is usual.
+    // A verdict is reported with the default tolerance.
     document(&report::solution(solution, verification, DEFAULT_TOLERANCE))
 }
 
@@ -168,7 +168,7 @@ fn in_one_line(verdicts: &[(PhaseReading, Verdict)]) -> String {
     format!("verdict: {}", each.join(", "))
 }
 
-/// What has been written, and what waits for the end or for the next table.
+/// The text written so far, and the parts that wait for the end or for the next table.
 #[derive(Default)]
 struct LatexPage {
     text: String,
@@ -178,7 +178,7 @@ struct LatexPage {
     rows: Vec<String>,
 }
 
-/// How a block is set.
+/// The typesetting of a block.
 pub(super) enum Setting {
     /// Rows of `align*`.
     Equations(Vec<String>),
@@ -188,7 +188,7 @@ pub(super) enum Setting {
     Words,
 }
 
-/// How a block is set, here and wherever formulas are handed on as LaTeX.
+/// Typesets a block, here and wherever formulas are handed on as LaTeX.
 pub(super) fn setting(block: &Block) -> Setting {
     let equation_of =
         |left: String, right: String| Setting::Equations(vec![format!("{left} &= {right}")]);
@@ -372,7 +372,7 @@ fn motion(solution: &Solution) -> Vec<String> {
     lines
 }
 
-/// What the angle of a motion is.
+/// The phase of a motion.
 fn angle(solution: &Solution) -> String {
     let Some(slow) = solution.slow() else {
         return format!("{} t", symbol(FREQUENCY));

@@ -15,7 +15,7 @@ use crate::report::{PrimaryReport, PrimarySweepReport};
 /// The points of a curve.
 const POINTS: u32 = 2000;
 
-/// How many swings of the locked main mass are drawn large.
+/// Number of swings of the locked main mass that are drawn large.
 const FIRST_SWINGS: f64 = 6.0;
 
 /// The times of a table: those asked for, or equal steps and every touch and release.

@@ -139,7 +139,7 @@ fn pieces(height: Ordinate, points: &[SteadyMotion], stable: bool) -> Vec<Points
     pieces
 }
 
-/// What stands where branches change.
+/// The marks of bifurcations.
 const MARKS: [(BifurcationKind, &str, CurveStyle); 6] = [
     (BifurcationKind::Fold, "fold", CurveStyle::MARKED_POINTS),
     (BifurcationKind::BranchPoint, "branch point", CurveStyle::SECOND_MARKED_POINTS),

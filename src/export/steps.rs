@@ -22,8 +22,7 @@ fn is_homotopy(solution: &Solution) -> bool {
     solution.method.counts() == Counts::PowersOfBookkeeping
 }
 
-/// What the orders `y_n` are multiplied by: the amplitude, or that of a limit cycle before its
-/// corrections.
+/// The factor of the orders `y_n`: the amplitude, or that of a limit cycle before its corrections.
 fn unit(solution: &Solution) -> Symbol {
     let leading = solution.steps.first().and_then(|step| step.amplitude.as_ref());
     leading.map_or(solution.amplitude.symbol(), |condition| condition.unknown)

@@ -78,7 +78,7 @@ pub fn document(document: &Document, width: usize) -> String {
     sections.join("\n")
 }
 
-/// What the blocks of a document have in common.
+/// The common layout of the blocks of a document.
 struct TextLayout {
     width: usize,
     /// The longest name of a method, beside which words stand.
@@ -189,7 +189,7 @@ fn motion(solution: &Solution) -> String {
     lines.join("\n")
 }
 
-/// What the angle of a motion is.
+/// The phase of a motion.
 fn angle(solution: &Solution) -> String {
     let Some(slow) = solution.slow() else {
         return format!("{FREQUENCY}*t");
@@ -208,7 +208,7 @@ fn angle(solution: &Solution) -> String {
     }
 }
 
-/// How a motion that is not periodic was followed, name by name.
+/// The comparison of a motion that is not periodic, line by line.
 fn followed(followed: &Followed) -> Vec<(&'static str, String)> {
     let mut lines =
         vec![("followed to", format!("t = {}: {}", decimal(followed.until), followed.reason))];
@@ -239,7 +239,7 @@ fn judged(
     facts.into_iter().fold(heading + "\n", |text, fact| text + &line(fact))
 }
 
-/// What was judged where, and each number with its name.
+/// The conditions and the numbers of a verification.
 pub(super) fn judgement(
     verification: &Verification,
     series_of_omega: Option<f64>,

@@ -6,8 +6,8 @@
 //! barrier alone, as in the paper, unless `[barrier] poisson` is given: then that of a rigid sphere
 //! on it, or with `[sphere] modulus` and `[sphere] poisson` that of both bodies.
 //!
-//! Where gamma is given it wins: the moduli have no say, and there are units where mass, length and
-//! gravity are all given.
+//! A given gamma takes precedence: the moduli are then not used, and there are units if mass,
+//! length and gravity are all given.
 
 use super::{Problem, ProblemError, refused};
 use crate::impact::hertz::StiffnessDesign;

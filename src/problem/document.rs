@@ -57,9 +57,9 @@ pub struct Problem {
     pub units: BTreeMap<String, String>,
     /// The materials of a study, or those a search chooses from.
     pub material: Vec<MaterialSection>,
-    /// What a search for the best design may vary, and what it must keep.
+    /// The variables of a search for the best design, and its limits.
     pub limits: LimitsSection,
-    /// How it searches.
+    /// The options of its genetic algorithm.
     pub genetic: GeneticSection,
     /// The keys that are given, as [`keys`](super::keys) names them: what is absent has its
     /// default.
@@ -103,7 +103,7 @@ impl Order {
 
 fn degrees<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Degrees, D::Error> {
     let list = Vec::<u32>::deserialize(deserializer)?;
-    // What an order is is said by the type.
+    // The meaning of an order is given by its type.
     Degrees::from_list(&list).ok_or_else(|| D::Error::custom("no degrees"))
 }
 
@@ -173,11 +173,11 @@ pub struct MaterialSection {
     pub yield_limit: Option<f64>,
     /// Its own damping in equation (7), dimensionless.
     pub mu: Option<f64>,
-    /// The same over gamma, dimensionless.
+    /// mu/gamma, dimensionless, in place of mu.
     pub mu_over_gamma: Option<f64>,
-    /// The same by Hunt and Crossley, s/m.
+    /// The contact damping of Hunt and Crossley, s/m, in place of mu.
     pub lambda: Option<f64>,
-    /// The same by its coefficient of restitution.
+    /// The coefficient of restitution, in place of mu.
     pub restitution: Option<f64>,
     /// The speed at which that holds, m/s; without it that of the first touch without damping.
     pub at_speed: Option<f64>,
@@ -192,11 +192,11 @@ pub struct MaterialSection {
 pub struct LimitsSection {
     /// Lower and upper limit of the mass, kg.
     pub mass: Option<Range>,
-    /// Those of the radius of the sphere, m.
+    /// Lower and upper limit of the radius of the sphere, m.
     pub radius: Option<Range>,
-    /// Those of the length, m.
+    /// Lower and upper limit of the length, m.
     pub length: Option<Range>,
-    /// Those of the modulus of the barrier, Pa.
+    /// Lower and upper limit of the modulus of the barrier, Pa.
     pub modulus: Option<Range>,
     /// The density of the sphere, kg/m^3: its mass is then that of its radius.
     pub density: Option<f64>,
@@ -235,7 +235,7 @@ impl TryFrom<Vec<f64>> for Range {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct GeneticSection {
-    /// What is to be small: one name, or a list of them for a front.
+    /// The objective: one name, or a list of them for a front.
     pub objective: Option<Objectives>,
     /// Individuals.
     pub population: Option<u32>,
@@ -247,7 +247,7 @@ pub struct GeneticSection {
     pub crossover_fraction: Option<f64>,
     /// `heuristic`, `scattered` or `one-point`.
     pub crossover: Option<String>,
-    /// How far beyond the better parent a heuristic child lies.
+    /// Extrapolation of a heuristic child beyond the better parent.
     pub crossover_ratio: Option<f64>,
     /// `adaptive-feasible` or `bit-flip`.
     pub mutation: Option<String>,
@@ -261,9 +261,9 @@ pub struct GeneticSection {
     pub penalty: Option<String>,
     /// The weight that an augmented Lagrangian begins with.
     pub initial_penalty: Option<f64>,
-    /// What that is multiplied by.
+    /// The factor by which that weight grows.
     pub penalty_factor: Option<f64>,
-    /// How far the mass may be from that of the density, in parts.
+    /// Largest deviation of the mass from that of the density, relative.
     pub constraint_tolerance: Option<f64>,
     /// Over so many generations the best value is watched.
     pub stall_generations: Option<u32>,
@@ -336,9 +336,9 @@ pub struct PrimarySection {
     pub stiffness: Option<f64>,
     /// The coefficient of its dashpot, N s/m; none without it.
     pub damping: Option<f64>,
-    /// Where it begins, m.
+    /// The initial displacement, m.
     pub displacement: Option<f64>,
-    /// How fast it begins, m/s.
+    /// The initial speed, m/s.
     pub speed: Option<f64>,
     /// The amplitude of a harmonic force on it, N.
     pub force: Option<f64>,

@@ -1,5 +1,5 @@
-//! What `derive`, `compare` and `response` read of a problem file: an equation, and how and where
-//! to solve it.
+//! The input of `derive`, `compare` and `response` from a problem file: an equation, its method and
+//! its values.
 
 use super::{Order, Problem, ProblemError, Reader, refused};
 use crate::expr::parse_expression;
@@ -89,8 +89,8 @@ impl Problem {
         Ok(values)
     }
 
-    /// Those of [`Problem::exact_values`] that the equation of motion takes: not of a letter that
-    /// stands in the energies of the file and cancels, as a mass does.
+    /// The values of [`Problem::exact_values`] that occur in the equation of motion: not that of a
+    /// letter that stands in the energies of the file and cancels, as a mass does.
     ///
     /// # Errors
     /// As there.

@@ -1,4 +1,5 @@
-//! What `impact` reads of a problem file: an undamped swing and its barrier, released from rest.
+//! The input of `impact` from a problem file: an undamped swing and its barrier, released from
+//! rest.
 
 use super::{Barrier, BarrierSide, Order, Problem, ProblemError, Reader, refused};
 use crate::expr::{Expr, parse_expression};
@@ -131,7 +132,7 @@ struct ImpactValues {
 }
 
 impl ImpactValues {
-    /// What the values of a problem say; what they leave out stands under its key.
+    /// Reads the values of a problem; those that they leave out stand under their keys.
     ///
     /// # Errors
     /// A number under both, and for an equation of its own one under neither.
@@ -261,7 +262,7 @@ fn convention(problem: &Problem) -> Result<Option<AmplitudeConvention>, ProblemE
     AmplitudeConvention::from_name(name).map(Some).ok_or_else(unknown)
 }
 
-/// What stands for a table in place of the name of a law or a rule.
+/// The word for a table of all laws in place of the name of one.
 const EVERY_LAW: &str = "all";
 
 /// The rule that replaces the elastic force by a line.
@@ -272,7 +273,7 @@ fn linearisation(problem: &Problem) -> Result<Rule, UnknownRule> {
     }
 }
 
-/// What the contact loses.
+/// The loss in the contact.
 fn loss(problem: &Problem, stiffness: f64) -> Result<Option<ContactLoss>, ProblemError> {
     let contact = &problem.contact;
     let losses = [

@@ -1,5 +1,4 @@
-//! Which command reads which key of a problem file: a key that would change nothing is refused by
-//! name.
+//! The keys of a problem file that each command reads: a key without effect is refused by name.
 
 use std::fmt;
 
@@ -68,7 +67,7 @@ fn readers(section: &str, key: &str) -> &'static [Reader] {
         ("", "amplitude") => &[Derive, Impact],
         ("", "about") => &[Derive, Compare, Impact],
         ("", "[values]") => &[Derive, Compare, Impact, Lagrange, Trajectory, Stability, Response],
-        // What reads an equation of motion reads a mechanism with it.
+        // A command that reads an equation of motion reads a mechanism as well.
         ("lagrangian", _) | ("", "[units]") => {
             &[Derive, Compare, Impact, Trajectory, Lagrange, Response]
         }

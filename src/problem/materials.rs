@@ -1,4 +1,4 @@
-//! What `materials` reads of a problem file: a design, what damps it, and `[[material]]`, the
+//! The input of `materials` from a problem file: a design, its damping, and `[[material]]`, the
 //! barriers that are tried.
 //!
 //! In: a [`Problem`]. Out: a [`MaterialQuestion`]. A material has the modulus of its contact by the
@@ -67,8 +67,8 @@ impl Problem {
         })
     }
 
-    /// The same file as it describes the design alone, whose barrier is the modulus at which a
-    /// damping is what is given.
+    /// Returns the file as a description of the design alone, whose barrier has the modulus at
+    /// which the damping is the given one.
     pub(super) fn for_design(&self) -> Self {
         Self {
             sphere: SphereSection { modulus: None, poisson: None, ..self.sphere },

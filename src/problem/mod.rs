@@ -67,7 +67,7 @@ impl ProblemError {
         Self { message: message.to_string(), help: None }
     }
 
-    /// The same with a way forward.
+    /// Returns the error with advice.
     #[must_use]
     pub(crate) fn with_help(self, help: impl Into<Option<String>>) -> Self {
         Self { help: help.into(), ..self }
@@ -178,7 +178,7 @@ impl Problem {
         }
     }
 
-    /// Where the stiffness of the contact comes from, with this design.
+    /// The source of the stiffness of the contact, with this design.
     fn stiffness_source(&self, design: &StiffnessDesign) -> &'static str {
         if self.contact.gamma.is_none() {
             return match *design == StiffnessDesign::default() {

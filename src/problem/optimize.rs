@@ -1,5 +1,5 @@
-//! What `optimize` reads of a problem file: a pendulum and what damps it, `[limits]`, `[genetic]`,
-//! and `[[material]]` to choose from.
+//! The input of `optimize` from a problem file: a pendulum and its damping, `[limits]`,
+//! `[genetic]`, and `[[material]]` to choose from.
 //!
 //! In: a [`Problem`]. Out: an [`OptimizationProblem`]. A quantity of the paper's Table 4 varies
 //! between its limits there unless `[limits]` has others; given in `[design]`, or by its own name,
@@ -99,7 +99,7 @@ impl Problem {
         Ok(question)
     }
 
-    /// What varies.
+    /// Reads the variables.
     fn boundaries(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let limits = &self.limits;
         self.check_materials()?;
@@ -141,7 +141,7 @@ impl Problem {
         Ok(())
     }
 
-    /// What must be kept.
+    /// Reads the limits.
     fn kept(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let limits = &self.limits;
         let of = [
@@ -189,7 +189,7 @@ impl Problem {
         }
     }
 
-    /// What carries the pendulum, where its rest counts.
+    /// Reads the main mass that carries the pendulum, if its rest is an objective or limited.
     fn carried(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let limited = question.limits.iter().map(|limit| limit.objective);
         let counts =
@@ -226,7 +226,7 @@ impl Problem {
         Ok(())
     }
 
-    /// How it is searched.
+    /// Reads the options of the search.
     fn search_options(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let section = &self.genetic;
         let names = match &section.objective {
@@ -273,7 +273,7 @@ impl Problem {
         Ok(())
     }
 
-    /// How designs are written as genes, crossed and changed.
+    /// Reads coding, crossover and mutation.
     fn operators(&self, options: &mut GeneticOptions) -> Result<(), ProblemError> {
         let section = &self.genetic;
         let bits = section.bits.unwrap_or(DEFAULT_BITS);
@@ -314,7 +314,7 @@ impl Problem {
         Ok(())
     }
 
-    /// What a design pays that breaks a constraint.
+    /// Reads the penalty of a violated constraint.
     fn penalty(&self, question: &mut OptimizationProblem) -> Result<(), ProblemError> {
         let section = &self.genetic;
         let constrained =
@@ -366,7 +366,7 @@ impl Problem {
 /// Bits of a number, where they are not given.
 const DEFAULT_BITS: u32 = 16;
 
-/// How often a bit is turned over, where it is not given.
+/// The default probability of a bit flip.
 const DEFAULT_RATE: f64 = 0.01;
 
 /// Runs of a search for a front, where they are not given.
@@ -375,7 +375,7 @@ const SEVERAL_RUNS: usize = 10;
 /// Generations of one, where they are not given.
 const SEVERAL_GENERATIONS: usize = 100;
 
-/// What says nothing to a search for a front.
+/// The keys without effect in a search for a front.
 const ONE_OBJECTIVE: [&str; 14] = [
     "elite",
     "crossover_fraction",

@@ -1,4 +1,4 @@
-//! What `simulate` reads of a file with a main mass, `[primary]`.
+//! The input of `simulate` from a file with a main mass, `[primary]`.
 
 use super::document::{Pendulum, PrimarySection};
 use super::simulate::without;
@@ -12,14 +12,14 @@ use crate::impact::{Parameter, Start, Units};
 pub struct PrimaryProblem {
     /// Both bodies and where they begin.
     pub case: PrimaryCase,
-    /// How long and how closely.
+    /// Duration and accuracy.
     pub settings: PrimarySettings,
-    /// What a number is in SI units.
+    /// The units of the numbers.
     pub units: Units,
 }
 
-/// How long both are followed where the file does not say, in units of 1/omega: until the main mass
-/// would have rested with the damper locked and without, within reason.
+/// The default duration, in units of 1/omega: until the main mass would have come to rest with the
+/// damper locked and without, within reason.
 fn long_enough(primary: &Primary) -> f64 {
     const USUAL: f64 = 300.0;
     const LONGEST: f64 = 3000.0;

@@ -1,9 +1,10 @@
-//! What `simulate` reads of a problem file: a case of equation (7), and how closely to follow it.
+//! The input of `simulate` from a problem file: a case of equation (7), and the accuracy of its
+//! integration.
 
 use super::{Barrier, BarrierSide, Problem, ProblemError, Reader, Run, refused};
 use crate::impact::{Case, ContactDamping, Friction, Parameter, Settings, Side, Units};
 
-/// What a problem file says of a motion.
+/// The motion that a problem file describes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simulate {
     /// The pendulum, its barrier, its start.
@@ -12,9 +13,9 @@ pub struct Simulate {
     pub settings: Settings,
     /// Whether the file says for how long.
     pub duration_given: bool,
-    /// Where gamma comes from.
+    /// The source of gamma.
     pub gamma_source: &'static str,
-    /// Where mu comes from.
+    /// The source of mu.
     pub mu_source: &'static str,
     /// The pendulum in SI units, where they are known.
     pub units: Option<Units>,
@@ -47,8 +48,8 @@ impl TryFrom<&Problem> for Simulate {
 }
 
 impl Problem {
-    /// What this file says of motions whose `swept` parameters get other values later, as if it
-    /// gave them too.
+    /// Reads the motion of this file, in which the `swept` parameters will get other values later,
+    /// as if the file gave them too.
     ///
     /// # Errors
     /// [`ProblemError`] names the section and the key. Whether the numbers make a motion is seen

@@ -1,4 +1,4 @@
-//! What `simulate` reads of a file with an equation or a mechanism of its own.
+//! The input of `simulate` from a file with an equation or a mechanism of its own.
 
 use super::mechanism::no_mechanism;
 use super::{Problem, ProblemError, Reader};

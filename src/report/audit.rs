@@ -86,7 +86,7 @@ fn shortened(text: &str) -> String {
     }
 }
 
-/// What is printed, in one line.
+/// The printed text, in one line.
 pub(crate) fn printed(finding: &ClaimFinding) -> String {
     let entries = &finding.claim.entries;
     match &entries[..] {
@@ -96,7 +96,7 @@ pub(crate) fn printed(finding: &ClaimFinding) -> String {
     }
 }
 
-/// What is computed, in one line; empty where nothing is.
+/// The computed value, in one line; empty if there is none.
 pub(crate) fn computed(finding: &ClaimFinding) -> String {
     let Some(shown) = finding.shown() else {
         return String::new();
@@ -119,14 +119,14 @@ pub(crate) fn computed(finding: &ClaimFinding) -> String {
     }
 }
 
-/// What a claim would need of an unknown number that may not be so.
+/// The value of an unknown that a claim requires and that it cannot have, in words.
 fn demanded(finding: &ClaimFinding) -> Option<String> {
     let demand = finding.demand?;
     Some(format!("needs {} = {}", demand.unknown.name, significant(demand.value, 3)))
 }
 
-/// What is computed for an entry, with two digits more than are printed; in the unit of what is
-/// printed; nothing where it lacks something.
+/// The computed value of an entry, with two digits more than are printed, in the unit of the
+/// printed number; `None` if it cannot be computed.
 pub(crate) fn entry(finding: &ClaimFinding, tried: &ClaimAttempt, index: usize) -> Option<String> {
     let alike = |number: f64| match finding.claim.entries.get(index).map(|entry| &entry.stated) {
         Some(PrintedStatement::Number(printed)) => printed.alike(number, 6),

@@ -76,7 +76,8 @@ impl AnyCertificate<'_> {
         }
     }
 
-    /// What is proved to be periodic, with the letters of the coordinate and of the frequency.
+    /// The statement of the proved periodicity, with the letters of the coordinate and of the
+    /// frequency.
     fn motion(&self, letter: Symbol, omega: &str) -> String {
         match self {
             Self::Motion(certificate) => format!(
@@ -161,9 +162,9 @@ pub struct CertificateReport<'a> {
     pub question: Option<(&'a Solution, &'a Values)>,
     /// The certificate.
     pub certificate: AnyCertificate<'a>,
-    /// What it proves.
+    /// The proved motion and its errors.
     pub certified: &'a Certified,
-    /// How far the formula is proved to hold, where that was asked for.
+    /// The range in which the formula is proved to hold, if it was asked for.
     pub validity: Option<&'a Validity>,
     /// The error of the frequency, of a driven motion that of the amplitude, up to which the
     /// formula passes.
@@ -313,7 +314,8 @@ fn of_range(validity: &Validity, report: &CertificateReport) -> Vec<(&'static st
         true => significant_fraction(value, 6),
         false => value.to_string(),
     };
-    // What is not proved is not said: six digits, the last one towards the inside of the range.
+    // Only proved amplitudes are printed: six digits, the last one rounded towards the inside of
+    // the range.
     let inside = [&neighbours(&validity.from, 6)[1], &neighbours(&validity.to, 6)[0]];
     let [from, to] = match inside[0] <= inside[1] {
         true => inside.map(|end| significant_fraction(end, 6)),

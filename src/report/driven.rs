@@ -222,7 +222,7 @@ fn judged<'a>(verification: &Verification, solution: &Solution, tolerance: f64) 
     blocks
 }
 
-/// What is said of steady motions that the truncation alone makes.
+/// A remark on steady motions that the truncation alone makes; `None` if there are none.
 fn left_out(count: usize) -> Option<String> {
     let motions = match count {
         0 => return None,
@@ -234,7 +234,7 @@ fn left_out(count: usize) -> Option<String> {
     ))
 }
 
-/// How good the formula of the judged motion is: what it leaves of the equation, and the order of
+/// The quality of the formula of the judged motion: its residual in the equation, and the order of
 /// its error.
 fn quality(verification: &Verification) -> Option<String> {
     let residual = verification.residual?;

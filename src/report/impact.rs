@@ -68,7 +68,7 @@ fn is_minus_amplitude(setup: &Setup, equilibrium: f64) -> bool {
     equilibrium == 0.0 && setup.side == Side::Right
 }
 
-/// Where a flight begins and ends, in words.
+/// The turning point of the flights, in words.
 fn release(impact: &Impact) -> String {
     match is_minus_amplitude(&impact.setup, impact.equilibrium) {
         true => "-A".to_owned(),
@@ -252,7 +252,7 @@ fn derived<'a>(impact: &Impact, column: &'a JudgedPhases, flight: &'a Flight) ->
     blocks
 }
 
-/// What is to be said of a contact that is not the exact one.
+/// Remarks on a contact that is not the exact one.
 fn law_of_contact<'a>(impact: &Impact, contact: &DerivedContact) -> Vec<Block<'a>> {
     let lines = match contact {
         DerivedContact::Elastic(contact) if contact.law == ContactLaw::Exact => vec![],
@@ -509,7 +509,7 @@ fn formulas<'a>(impact: &Impact, si: &SiImpact) -> Vec<Block<'a>> {
     blocks
 }
 
-/// How the contact time that the paper prints stands beside every reading.
+/// The contact time that the paper prints, compared with every version.
 fn printed(impact: &Impact, over_the_printed: &ImpactQuantity, tolerance: f64) -> String {
     let readings = impact.columns.iter().map(|column| column.reading.name());
     let each: Vec<(&str, f64)> = std::iter::once(("Runge-Kutta", over_the_printed.runge_kutta))

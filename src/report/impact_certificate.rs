@@ -1,4 +1,4 @@
-//! What is proved of an impact, and with it of its closed forms.
+//! The proved enclosures of an impact, and with them the errors of its closed forms.
 
 use super::certificate::{enclosed, percent, rounded_percent};
 use super::{Block, Document};
@@ -13,7 +13,7 @@ use crate::verify::Verdict;
 pub struct ImpactCertificateReport<'a> {
     /// The impact with its closed forms.
     pub impact: &'a Impact,
-    /// What is proved.
+    /// The enclosures.
     pub enclosure: &'a ImpactEnclosure,
     /// A, xc and gamma as they were taken.
     pub exact: [&'a Rational; 3],

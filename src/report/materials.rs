@@ -321,7 +321,7 @@ pub(super) fn percent(part: f64) -> String {
     }
 }
 
-/// What the numbers of a study say, in sentences.
+/// The results of a study of materials, in sentences.
 pub fn material_sentences(study: &MaterialStudy) -> Vec<String> {
     let mut sentences = Vec::new();
     let groups: [(&[Parameter], bool); 2] = [
@@ -338,7 +338,7 @@ pub fn material_sentences(study: &MaterialStudy) -> Vec<String> {
     sentences
 }
 
-/// What holding one of these forms fixed does to the rest times.
+/// The effect of holding one of these forms fixed on the rest times.
 fn what_it_does(study: &MaterialStudy, held: &[&HeldFixed], ratio_changes: bool) -> Option<String> {
     let names: Vec<&str> = held.iter().map(|held| held.damping.form().name()).collect();
     let names = match names.split_last()? {
@@ -417,7 +417,7 @@ fn what_the_modulus_changes(study: &MaterialStudy) -> Option<String> {
     ))
 }
 
-/// What a barrier is good for at all.
+/// The benefit of a barrier at all.
 fn baseline(study: &MaterialStudy) -> Option<String> {
     if study.rows.iter().all(|row| row.course.impacts.is_empty()) {
         return None;

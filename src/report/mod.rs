@@ -1,5 +1,5 @@
-//! What a report says, before any format says how: one file for each kind of result, which makes a
-//! [`Document`] of it.
+//! The content of a report, before any format lays it out: one file for each kind of result, which
+//! makes a [`Document`] of it.
 //!
 //! In come results: a [`Solution`] with its [`Verification`], a
 //! [`Comparison`](crate::verify::comparison::Comparison), an [`Impact`](crate::impact::Impact), a
@@ -76,7 +76,7 @@ pub struct Document<'a> {
 pub enum Block<'a> {
     /// The equation of motion that the report is about.
     Question(&'a Equation),
-    /// The same in its own words, where it has no normal form.
+    /// The equation as it was typed, if it has no normal form.
     QuestionAsTyped(&'a str),
     /// Who derived the answer, and what its amplitude measures.
     Title {
@@ -87,13 +87,13 @@ pub enum Block<'a> {
     },
     /// The beginning of a section, or a sentence of its own.
     Heading(String),
-    /// What a reader should know of the result.
+    /// A note on the result.
     Note(String),
     /// A note of second rank, such as a list of the other limit cycles.
     Remark(String),
     /// A sentence that follows from the numbers; it is broken where a line ends.
     Sentence(String),
-    /// What only the longest format has room for.
+    /// A detail for the longest format only.
     Detail(String),
     /// A law: omega^2 or omega, or zero of a relation between omega and the amplitude.
     Law {
@@ -128,16 +128,16 @@ pub enum Block<'a> {
         name: Symbol,
         /// Its number.
         value: f64,
-        /// Where that comes from.
+        /// The source of the value.
         source: Option<&'a str>,
     },
     /// A formula judged at given values.
     Judged {
-        /// What the judge found.
+        /// The verification.
         verification: &'a Verification,
         /// The error of the series of omega, where it stands beside omega^2 and differs.
         series_of_omega: Option<f64>,
-        /// Where hbar was chosen by the least squared residual, its name.
+        /// The name of hbar, if it was chosen by the least squared residual.
         hbar: Symbol,
         /// The error up to which it passes.
         tolerance: f64,
@@ -162,7 +162,7 @@ pub enum Block<'a> {
     },
     /// Names with what is said of each.
     Entries {
-        /// What they have in common.
+        /// The common heading.
         heading: &'static str,
         /// The names and the words.
         entries: Vec<(String, String)>,
@@ -171,22 +171,22 @@ pub enum Block<'a> {
     Facts(Vec<(&'static str, String)>),
     /// A table of numbers as they are to be written, and words; an empty cell says nothing.
     Table {
-        /// What stands above each column.
+        /// The heading of each column.
         head: Vec<Heading>,
         /// A cell for each column.
         rows: Vec<Vec<String>>,
     },
     /// The methods that do not apply.
     Refused(&'a [Refused]),
-    /// Where the true motion is periodic.
+    /// The ranges in which the true motion is periodic.
     TrueMotion(&'a [String]),
-    /// What closes a report.
+    /// The last line of a report.
     Closing(String),
     /// The phases that follow.
     Reading {
-        /// How they are read.
+        /// The version of the phases.
         reading: PhaseReading,
-        /// What that means, in a line.
+        /// Its meaning, in a line.
         words: String,
     },
     /// The line that replaces the force of the barrier.
@@ -195,7 +195,7 @@ pub enum Block<'a> {
         fitted: FittedLine,
         /// The place of the barrier.
         barrier: f64,
-        /// How it was fitted.
+        /// The rule of the fit.
         rule: Rule,
         /// The letters of the equation.
         letters: ImpactSymbols,
@@ -254,7 +254,7 @@ pub enum Block<'a> {
         value: f64,
         /// The unit, as it is typed.
         unit: &'static str,
-        /// What it is, in words.
+        /// Its description in words.
         words: &'static str,
     },
     /// The numbers of an impact in SI units, with what of the paper's stands beside them.
@@ -279,7 +279,7 @@ impl Block<'_> {
     }
 }
 
-/// What stands above a column.
+/// The heading of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Heading {
     /// In plain letters.

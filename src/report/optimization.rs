@@ -71,7 +71,7 @@ fn name_of(study: &Study, index: usize) -> &'static str {
     variable.map_or("material", |variable| variable.parameter.name())
 }
 
-/// What a design has for a variable.
+/// The value of a variable in a design.
 fn value_of(study: &Study, design: &EvaluatedDesign, index: usize) -> String {
     match study.question.variables.get(index) {
         Some(variable) => cell(design.case.get(variable.parameter)),
@@ -241,7 +241,7 @@ fn held_fixed<'a>(question: &OptimizationProblem) -> Vec<Block<'a>> {
     blocks
 }
 
-/// How it was searched.
+/// The options of the search.
 fn options(study: &Study) -> Vec<String> {
     let question = &study.question;
     let GeneticOptions {

@@ -17,7 +17,7 @@ const MOST_IMPACTS: usize = 12;
 pub struct PrimaryReport<'a> {
     /// The motion.
     pub motion: &'a PrimaryMotion,
-    /// What a number is in SI units.
+    /// The units of the numbers.
     pub units: &'a Units,
     /// The times at which states are asked for, in units of 1/omega.
     pub samples: &'a [f64],

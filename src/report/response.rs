@@ -80,7 +80,7 @@ fn question(response: &ResponseDiagram) -> Vec<Block<'static>> {
     blocks
 }
 
-/// How branches are found.
+/// The method that finds the branches.
 fn method(response: &ResponseDiagram) -> &'static str {
     match response.by_map {
         true => "the map of a period from jump to jump of the force",
@@ -88,7 +88,7 @@ fn method(response: &ResponseDiagram) -> &'static str {
     }
 }
 
-/// What is computed and listed of motions without drive.
+/// The quantities that are computed and listed of motions without drive.
 fn self_excited(response: &ResponseDiagram) -> [Block<'static>; 2] {
     let (name, [low, high]) = (response.question.parameter, response.question.range);
     let frequency = &response.frequency;
@@ -236,7 +236,7 @@ fn end_in_words(
     })
 }
 
-/// Where dry friction holds the motion on its way.
+/// The parts of a branch on which dry friction holds the motion for a time.
 fn sticking(response: &ResponseDiagram, branch: &Branch) -> Option<Block<'static>> {
     /// Stretches that are listed.
     const MOST: usize = 4;
@@ -284,7 +284,7 @@ fn extent_in_words(response: &ResponseDiagram, branch: &Branch) -> String {
     )
 }
 
-/// What a kind of bifurcation means, in words.
+/// The name of a kind of bifurcation.
 pub fn bifurcation_in_words(kind: BifurcationKind) -> &'static str {
     match kind {
         BifurcationKind::Fold => "fold",

@@ -45,7 +45,7 @@ pub fn solution<'a>(
         None => shown.into_iter().flat_map(|law| law_blocks(solution, law)).collect(),
     };
     let mut sections = vec![vec![Block::Question(&solution.equation)], vec![title], laws];
-    // Where the motion is left out, so is its amplitude.
+    // If the motion is left out, so is its amplitude.
     let cycle = solution.limit_cycle.as_ref();
     if let Some(cycle) = cycle.filter(|_| !solution.displacement.is_zero()) {
         let amplitude = Block::CycleAmplitude {
@@ -266,7 +266,7 @@ fn judged<'a>(solution: &Solution, verification: &'a Verification, tolerance: f6
     }
 }
 
-/// Where an equation has several limit cycles: all of them, to leading order.
+/// The limit cycles of an equation that has several of them, to leading order.
 fn other_cycles(cycle: &LimitCycle, solution: &Solution) -> Vec<String> {
     if cycle.cycles.len() < 2 {
         return vec![];

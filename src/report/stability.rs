@@ -15,7 +15,7 @@ use crate::values::Values;
 pub struct StabilityReport<'a> {
     /// The curves.
     pub curves: &'a TransitionCurves,
-    /// Where they are judged, and what came of it, a curve each; nothing without values.
+    /// The given values and the verdict on each curve; `None` without values.
     pub judged: Option<(&'a Values, &'a [JudgedCurve])>,
     /// The error up to which a curve passes.
     pub tolerance: f64,
@@ -68,7 +68,7 @@ pub fn stability<'a>(report: &StabilityReport<'a>) -> Document<'a> {
     Document { sections }
 }
 
-/// Which curves a number has, and the motion that exists on them.
+/// The curves of a number, and the motion that exists on them.
 fn of_number(curves: &TransitionCurves, tongue: usize) -> String {
     let names = curves.curves.iter().filter(|curve| curve.tongue == tongue);
     let names: Vec<&str> = names.map(|curve| curve.name.as_str()).collect();

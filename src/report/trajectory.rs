@@ -30,7 +30,7 @@ pub const TRUSTED: f64 = 1e-6;
 pub struct TrajectoryReport<'a> {
     /// The motion.
     pub motion: &'a Trajectory,
-    /// The same by the other integrator, where it is judged.
+    /// The motion by the other integrator, if it is judged.
     pub judge: Option<&'a Trajectory>,
     /// The times at which states are asked for.
     pub samples: &'a [f64],
@@ -178,7 +178,7 @@ fn on_section<'a>(motion: &Trajectory, section: &PoincareSection) -> Vec<Block<'
     blocks
 }
 
-/// Where a motion is looked at, in words.
+/// The section in words.
 pub(crate) fn section_in_words(section: &PoincareSection) -> String {
     match section {
         PoincareSection::Every(period) => format!("Section every {period}"),
@@ -233,9 +233,9 @@ pub fn motion_sweep<'a>(sweep: &MotionSweep<'a>) -> Document<'a> {
 /// Many motions to be reported.
 #[derive(Clone, Copy, Debug)]
 pub struct MotionSweep<'a> {
-    /// What they have in common.
+    /// The common initial value problem.
     pub course: &'a TrajectoryRequest,
-    /// What is varied.
+    /// The names of the varied parameters.
     pub names: &'a [Symbol],
     /// The motions, the last name varying fastest.
     pub motions: &'a [SweptMotion],

@@ -1,4 +1,4 @@
-//! Which keys a claim of each kind takes: one that would say nothing is refused by name.
+//! The keys of a claim of each kind: a key without effect is refused by name.
 
 use super::{ReadResult, Section, Text, helped, mistake};
 use crate::audit::quantity::{NAMES, is_a_name};

@@ -1,5 +1,5 @@
-//! What the program of an answer consists of, whatever the language: `angular_frequency` by the law
-//! that is judged, `displacement` and its derivative `velocity`, and what is said of them.
+//! The program of an answer in any language: `angular_frequency` by the law that is judged,
+//! `displacement` and its derivative `velocity`, and comments on them.
 
 use std::collections::BTreeSet;
 
@@ -92,7 +92,7 @@ pub(super) fn of_solution(
     Ok(Program { header, routines })
 }
 
-/// What a report says of the answer, without the formulas.
+/// The report of the answer without its formulas.
 fn header(solution: &Solution, verification: Option<&Verification>, tolerance: f64) -> Vec<String> {
     let document = report::solution(solution, verification, tolerance);
     let is_formula = |block: &Block| {
@@ -217,7 +217,7 @@ fn ordered(solution: &Solution, polynomial: &Polynomial) -> Value {
     Value::Sum(sum.terms().map(term).collect())
 }
 
-/// What the symbols of a formula are: the definitions behind them, and the arguments, the amplitude
+/// Resolves the symbols of a formula: the definitions behind them, and the arguments, the amplitude
 /// first.
 fn resolved<'a>(
     solution: &'a Solution,
@@ -314,7 +314,7 @@ fn frequency(
     }
 }
 
-/// The same of what is known in numbers alone.
+/// The routine of a frequency that is known in numbers alone.
 fn constant_frequency(verification: &Verification) -> Result<Routine, NoCode> {
     let no_motion = || NoCode::NoMotion(verification.reason.as_ref().map(ToString::to_string));
     let frequency = verification.frequency.ok_or_else(no_motion)?;
@@ -366,7 +366,7 @@ fn terms(harmonics: Vec<Harmonic>, theta: Symbol) -> Vec<Value> {
     terms
 }
 
-/// What a function of the motion does before its result, and of what it is one.
+/// The statements of a function of the motion before its result, and its arguments.
 struct FunctionPrologue {
     arguments: Vec<Symbol>,
     body: Vec<Statement>,
@@ -401,7 +401,7 @@ fn motion(
         }
         body.extend(variables(definitions.clone()));
         body.push(Statement::Variable(names.omega, Value::Call(FREQUENCY, of_frequency.to_vec())));
-        // Where a definition stands in a motion, it stands there over omega^2.
+        // A definition enters the motion over omega^2.
         let scale = Expr::product([names.omega, names.amplitude].map(Expr::from));
         body.extend(digits(names, definitions.iter().map(|own| &own.meaning), names.omega, &scale));
         body.push(match sign {
@@ -416,7 +416,7 @@ fn motion(
         |(_, cosine, sine): &(usize, Polynomial, Polynomial)| [cosine.symbols(), sine.symbols()];
     let all: BTreeSet<Symbol> = harmonics.iter().flat_map(symbols).flatten().collect();
     let beginnings = match sign {
-        // What lets the turned motion begin at its amplitude is made of all harmonics.
+        // The shift that lets the turned motion begin at its amplitude contains all harmonics.
         Sign::HalfPeriod => {
             let all = &all | &solution.equilibrium.symbols();
             [beginning(all.clone()), beginning(all)]
@@ -567,7 +567,8 @@ fn both(
     [displacement, velocity]
 }
 
-/// How a motion whose formula is written for the size of the amplitude is that of a negative one.
+/// The transformation of a motion to negative amplitudes, if its formula holds for the size of the
+/// amplitude.
 enum Sign {
     /// By the formula itself.
     Any,
@@ -644,7 +645,7 @@ fn digits<'a>(
     value: Symbol,
     scale: &Expr,
 ) -> Vec<Statement> {
-    /// What terms may be larger than their sum.
+    /// Largest ratio of a term to the sum.
     const LARGEST: i64 = 1_000_000_000;
     let is_infinite = |term: &&Expr| term.substitute(names.amplitude, &Expr::zero()).is_err();
     let size = |formula: Expr| Expr::function(Function::Absolute, vec![formula]).ok();
@@ -671,8 +672,8 @@ fn digits<'a>(
     ]
 }
 
-/// What a program does not look at and the numbers of an answer do: whether there is a motion, and
-/// whether the force is defined all along it.
+/// Conditions that a program does not check and a numerical answer does: whether there is a motion,
+/// and whether the force is defined all along it.
 fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
     let in_parts = |part: &Expr| match part.node() {
         Node::Function(function, _) => {
@@ -705,7 +706,7 @@ fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
     })
 }
 
-/// What is said of a formula that has no value at rest.
+/// A remark on a formula that has no value at rest; `None` if it has one.
 fn at_rest(solution: &Solution, law: &Law) -> Option<String> {
     let amplitude = solution.amplitude.symbol();
     let limit = law.expression.substitute(amplitude, &Expr::zero());

@@ -54,8 +54,8 @@ fn function(function: Function) -> &'static str {
     }
 }
 
-/// What is imported: `pow` of the module is a `ValueError` where the built-in one would be a
-/// complex number.
+/// The imports: `pow` of the module raises a `ValueError` for a negative base, while the built-in
+/// one returns a complex number.
 fn beginning(used: &UsedRoutines) -> String {
     const MODULE: [&str; 18] = [
         "acos", "asin", "asinh", "atan", "ceil", "copysign", "cos", "cosh", "exp", "gamma", "log",

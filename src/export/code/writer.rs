@@ -70,7 +70,7 @@ fn functions(program: &Program) -> BTreeSet<Function> {
         _ => None,
     };
     let mut functions: BTreeSet<Function> = nodes.filter_map(function).collect();
-    // What all three are computed by stands with the first of them.
+    // The computation of all three functions is in the first of them.
     if [Function::JacobiCn, Function::JacobiDn].iter().any(|function| functions.contains(function))
     {
         functions.insert(Function::JacobiSn);
@@ -116,7 +116,7 @@ fn names(
     names
 }
 
-/// How tightly an expression holds together.
+/// The precedence of an expression.
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 enum Precedence {
     Sum,
@@ -135,7 +135,7 @@ struct CodeFragment {
     level: Precedence,
     /// Whether it is made of numbers written out alone.
     literal: bool,
-    /// What stands below the line where this is a factor of a fraction.
+    /// The denominator, if this is a factor of a fraction.
     below: Option<Box<CodeFragment>>,
 }
 

@@ -122,8 +122,8 @@ fn drawn(panel: &Panel, columns: usize) -> Result<(Vec<Plot>, Layout), FigureErr
 }
 
 impl Scale {
-    /// Where a value lies on an axis. A logarithmic axis is drawn as a linear one of exponents,
-    /// because the library's own ends at 1e-10.
+    /// The coordinate of a value on an axis. A logarithmic axis is drawn as a linear one of
+    /// exponents, because that of the plotting library ends at 1e-10.
     fn position(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
@@ -339,7 +339,7 @@ mod tests {
         figure(&[Panel { y_scale, ..panel }], "<svg>")
     }
 
-    /// What is drawn in the style of [`one`].
+    /// The paths of a figure that are drawn in the style of the formula.
     fn path(svg: &str) -> Vec<&str> {
         let drawn = |line: &&str| line.contains("<path") && line.contains(CurveStyle::FORMULA.0);
         svg.lines().filter(drawn).collect()

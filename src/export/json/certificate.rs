@@ -75,7 +75,7 @@ pub struct CertificateDocument {
     pub formula: Option<CertificateFormula>,
 }
 
-/// What `ode` has.
+/// The form of the equation in `ode`.
 const EQUATION: &str = "x''+f(x)=0";
 
 /// A force.
@@ -324,7 +324,7 @@ impl CertificateFormula {
     }
 }
 
-/// What is claimed, from below and from above.
+/// Reads the lower and the upper bound of a claim.
 pub(super) fn range(ends: &[String; 2], key: &str) -> Result<[Rational; 2], JsonError> {
     Ok([decimal(&ends[0], key)?, decimal(&ends[1], key)?])
 }

@@ -18,11 +18,11 @@ use super::{DocumentKind, JsonError, unexpected};
 use crate::certificate::{DampedCertificate, Drive, JudgedFormula};
 use crate::exact::Rational;
 
-/// What `ode` of a certificate of a limit cycle has.
+/// The form of the equation in `ode` of a certificate of a limit cycle.
 pub const EQUATION_OF_CYCLES: &str = "x''+g(x)*x'+h(x)=0";
 
-/// What `ode` of a certificate of a driven motion has; c and s are `cos(Omega t)` and
-/// `sin(Omega t)`.
+/// The form of the equation in `ode` of a certificate of a driven motion; c and s are `cos(Omega
+/// t)` and `sin(Omega t)`.
 pub const EQUATION_WITH_DRIVE: &str = "x''+g(x)*x'+h(x,c,s)=0";
 
 /// Numbers from which a limit cycle of `x'' + g(x) x' + h(x) = 0` can be proved, or a steady motion

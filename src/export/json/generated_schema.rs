@@ -71,7 +71,7 @@ impl JsonSchema for EitherCertificate {
     }
 }
 
-/// What a reader looks for first stands first.
+/// Moves the keys that a reader looks for first to the front.
 fn head_first(schema: Value) -> Value {
     let Value::Object(mut rest) = schema else {
         return schema;

@@ -10,8 +10,8 @@
 //! polynomial   {"terms": [{"monomial": {"A": 2}, "exact": "-1/8", "value": -0.125}, ...]}
 //! ```
 //!
-//! What stands in the documentation of a field stands in the schema, [`DocumentKind::json_schema`].
-//! What has no value is null: a key is never left out.
+//! The documentation of a field is its description in the schema, [`DocumentKind::json_schema`]. A
+//! missing value is null: a key is never left out.
 
 pub mod audit;
 pub mod catalog;
@@ -88,7 +88,7 @@ fn unexpected<T>(key: &str, expected: &'static str) -> Result<T, JsonError> {
 /// Writes a document as text of several lines, with a line end.
 ///
 /// # Errors
-/// What the writer says.
+/// The errors of the writer.
 ///
 /// ```
 /// use lindstedt::{Options, Oscillator, solve};

@@ -16,7 +16,7 @@ use crate::symbol::Symbol;
 use crate::symbol::letters::ResultSymbols;
 use crate::values::Values;
 
-/// What stands under names that the equation or the program chose, in their order.
+/// Values under names that the equation or the program chose, in their order.
 pub type Map<T> = IndexMap<String, T>;
 
 /// Whether there is nothing of what is counted, so that it is left out.
@@ -146,7 +146,7 @@ pub(super) fn meanings(definitions: &[Definition]) -> Map<String> {
     named(definitions.iter().map(|own| (own.symbol, own.meaning.to_string())))
 }
 
-/// What the names in a document stand for: the letters of an answer give way to the names of its
+/// The meaning of the names in a document: the letters of an answer give way to the names of its
 /// equation.
 pub(super) struct DocumentNames {
     own: Vec<Symbol>,
@@ -163,7 +163,7 @@ impl DocumentNames {
         Self { own: own.into_iter().map(apart).collect(), letters }
     }
 
-    /// How the frequency is written.
+    /// The name of the frequency.
     pub fn frequency(&self) -> &'static str {
         self.letters.frequency.name()
     }

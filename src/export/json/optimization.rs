@@ -502,7 +502,7 @@ fn decision(decision: &optimize::Decision) -> Decision {
 }
 
 impl Asked {
-    /// What a question asks.
+    /// The request of an optimisation problem.
     pub fn from_problem(question: &OptimizationProblem) -> Self {
         Self {
             objectives: question
@@ -703,7 +703,7 @@ struct Head {
 /// The first line of the record of a search, with its line end.
 ///
 /// # Errors
-/// What the writer says.
+/// The errors of the writer.
 pub fn record_head(question: &OptimizationProblem) -> Result<String, JsonError> {
     let head = Head { schema: RECORD.to_owned(), asked: request_value(question)? };
     line(&head)
@@ -712,7 +712,7 @@ pub fn record_head(question: &OptimizationProblem) -> Result<String, JsonError> 
 /// The line of a run, with its line end.
 ///
 /// # Errors
-/// What the writer says.
+/// The errors of the writer.
 pub fn record_line(run: &SearchRun) -> Result<String, JsonError> {
     line(&Run::from_run(run))
 }

@@ -106,7 +106,7 @@ impl Serialize for Streamed<'_> {
 /// Writes the document of kind `sweep`, a row at a time.
 ///
 /// # Errors
-/// What the writer says.
+/// The errors of the writer.
 ///
 /// ```
 /// use lindstedt::export::{json, simulation::SweepReport};

@@ -41,7 +41,7 @@ enum LatexItem {
     Expr(Expr, LatexContext),
 }
 
-/// What surrounds an expression, and with it what needs parentheses.
+/// The context of an expression, which decides whether it needs parentheses.
 #[derive(Clone, Copy, PartialEq)]
 enum LatexContext {
     /// Alone.
@@ -50,7 +50,7 @@ enum LatexContext {
     Inside,
     /// A term after its sign has been written: the sign is left out.
     Unsigned,
-    /// The same for a single term, whose minus has gone into a difference above the line.
+    /// A single term whose minus has gone into a difference above the fraction bar.
     Turned,
     /// A factor that needs no sign between itself and its neighbours.
     Factor,
@@ -130,7 +130,7 @@ fn term(term: &Expr, turn: bool) -> Vec<LatexItem> {
     };
     let below = match below.as_slice() {
         [] if denominator.is_one() => return above,
-        // What is alone under the line stands between braces already.
+        // A single factor in the denominator is between braces already.
         [(base, exponent)] if denominator.is_one() && exponent.is_one() => {
             vec![LatexItem::Expr(base.clone(), LatexContext::Inside)]
         }

@@ -5,9 +5,9 @@ use crate::report::{Heading, are_names};
 
 /// A table whose cells are LaTeX already.
 pub(in crate::export) struct LatexTable {
-    /// Where each column stands: `l`, `r`.
+    /// The alignment of each column: `l`, `r`.
     pub(in crate::export) places: String,
-    /// What stands above each column.
+    /// The heading of each column.
     pub(in crate::export) head: Vec<String>,
     /// A cell for each column.
     pub(in crate::export) rows: Vec<Vec<String>>,

@@ -63,7 +63,7 @@ fn own_variables(question: &OptimizationProblem) -> impl Iterator<Item = usize> 
         .filter(move |&index| !is_objective(question.variables[index].parameter.name()))
 }
 
-/// What is known of a design beside what was made small, and what varies.
+/// The quantities of a design beside the objectives and the variables.
 fn others(question: &OptimizationProblem) -> impl Iterator<Item = Objective> {
     let varies = |name: &str| {
         let mut variables = question.variables.iter();

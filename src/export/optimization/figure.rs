@@ -1,5 +1,5 @@
-//! How the runs of a search come down, where in the box the good designs lie, and the front of
-//! several objectives.
+//! The convergence of the runs of a search, the good designs in the box, and the front of several
+//! objectives.
 
 use crate::decimal::{decimal, significant};
 use crate::export::figure::{
@@ -71,7 +71,7 @@ fn search(study: &Study) -> Result<String, FigureError> {
     figure(&panels, &caption)
 }
 
-/// What each search has after so many evaluations.
+/// The best value of each search against the number of evaluations.
 struct SearchConvergence {
     runs: Vec<Points>,
     median: Points,
@@ -117,7 +117,7 @@ impl SearchConvergence {
     }
 }
 
-/// Where designs lie in the box, two variables at a time.
+/// The designs in the box, two variables at a time.
 struct Designs {
     pairs: Vec<[usize; 2]>,
     labels: Vec<String>,

@@ -1,4 +1,4 @@
-//! What a chain of closed forms says beyond a simulation: its formulas.
+//! The chain of closed forms: the formulas that it adds to a simulation.
 
 use std::fmt::Write as _;
 

@@ -59,7 +59,7 @@ pub fn simulation(report: &Report) -> String {
 /// told to skip; the second has the names.
 ///
 /// # Errors
-/// What the writer says.
+/// The errors of the writer.
 ///
 /// ```
 /// use lindstedt::export::simulation::{SweepReport, sweep_csv};

@@ -158,7 +158,7 @@ const TIME: &str = "time t (units of 1/ω)";
 pub(super) struct SweepQuantity {
     pub(super) title: &'static str,
     pub(super) label: &'static str,
-    /// What a motion without it lacks.
+    /// The name of the quantity, for a motion that has none.
     name: &'static str,
     value: fn(&Summary) -> Option<f64>,
 }
@@ -190,8 +190,7 @@ pub(super) const QUANTITIES: [SweepQuantity; 4] = [
     },
 ];
 
-/// How a swept parameter is written at an axis and in a caption: what it is with its unit, and its
-/// symbol.
+/// The label of a swept parameter at an axis, with its unit, and its symbol in a caption.
 fn parameter(name: &str) -> [&str; 2] {
     match name {
         "amplitude" => ["amplitude A (rad)", "A"],
@@ -234,7 +233,7 @@ fn range(axis: &Axis) -> String {
     }
 }
 
-/// What is written at an axis: on a logarithmic one of negative values stand their sizes.
+/// The label of an axis: a logarithmic one of negative values shows their sizes.
 pub(super) fn axis_label(axis: &Axis) -> String {
     let [label, _] = parameter(axis.name());
     match axis.spacing() {

@@ -23,12 +23,12 @@ fn rising(grid: &[Vec<f64>], down_rises: bool, across_rises: bool) -> Vec<Vec<f6
     rows
 }
 
-/// Where the values of an axis stand on a map, at equal distances: at themselves, at their
-/// exponents, or one after the other.
+/// The positions of the values of an axis on a map, at equal distances: the values themselves,
+/// their exponents, or their indices.
 struct Ruler {
     /// The places of the first value and the last.
     ends: [f64; 2],
-    /// What is written at a place.
+    /// The text of a tick.
     ticks: TickFormat,
     /// The distance of the places with something written; the library's choice where there is none.
     step: Option<f64>,
@@ -138,7 +138,7 @@ mod tests {
     use super::super::figure::QUANTITIES;
     use super::*;
 
-    /// Where the one hot cell stands in the picture: left or right, above or below.
+    /// The position of the one hot cell in the picture: left or right, above or below.
     #[test]
     fn cells_stand_at_their_values() {
         let axis = |from, to| Axis::linear("a", from, to, 2).expect("an axis");

@@ -177,7 +177,7 @@ fn header(report: &Report) -> String {
     text
 }
 
-/// What damps, in every form, and which form is held fixed.
+/// The damping in every form, and the form that is held fixed.
 fn damping(dissipation: &Dissipation, has_barrier: bool, units: Option<&Units>) -> String {
     let &Dissipation {
         mu, mu_over_gamma, lambda, coefficient, zeta, viscous, alpha, torque, ..
@@ -268,7 +268,7 @@ fn impacts(motion: &Simulation, judge: Option<&Simulation>) -> String {
             optional(impact.restitution),
         ];
         if !judged {
-            // What is lost in an elastic contact is rounding.
+            // The loss in an elastic contact is rounding.
             cells.push(optional(impact.energy_lost.map(|lost| {
                 let speed = impact.speed_in.abs().max(impact.speed_out.unwrap_or_default());
                 if lost.abs() < 1e-9 * speed * speed { 0.0 } else { lost }
@@ -301,7 +301,7 @@ fn impacts(motion: &Simulation, judge: Option<&Simulation>) -> String {
     text
 }
 
-/// How long an impact lasts, as far as its two times tell: one of a barrier too stiff is shorter
+/// Duration of an impact, to the accuracy of its two times: with a very stiff barrier it is shorter
 /// than their last digit.
 fn duration(impact: &ContactRecord) -> String {
     let least = 2.0 * f64::EPSILON * impact.entry_time.abs();
@@ -407,7 +407,7 @@ fn energy(text: &mut String, motion: &Simulation) {
 /// make a block.
 ///
 /// # Errors
-/// What the writer says.
+/// The errors of the writer.
 ///
 /// ```
 /// use lindstedt::export::simulation::{SweepReport, sweep_text};

@@ -215,7 +215,7 @@ pub(super) fn wrapped(text: &str, width: usize, first: &str, next: &str) -> Stri
     lines.join("\n")
 }
 
-/// What stands in the place of a frequency.
+/// The text in place of a frequency.
 fn without_number(row: &ComparisonRow) -> &'static str {
     match &row.reason {
         Some(reason) if reason.is_not_real() => "not real",

@@ -1,5 +1,5 @@
-//! What the numbers of a search say, in sentences: what decides, how its optimum compares with the
-//! paper's design and with other searches.
+//! The results of a search, in sentences: its limits, and its optimum compared with the paper's
+//! design and with other searches.
 
 use super::super::materials::percent;
 use super::{closed_forms_off, with_unit};
@@ -17,7 +17,7 @@ fn listed(names: &[&str]) -> String {
     }
 }
 
-/// What the numbers of a search say, in sentences.
+/// The results of a search, in sentences.
 pub fn optimization_sentences(study: &Study) -> Vec<String> {
     let mut sentences = Vec::new();
     if !study.complete {
@@ -72,7 +72,7 @@ fn found_better(study: &Study, decision: &Decision) -> Option<(String, f64)> {
     let alone =
         apart(decision.least, decision.value).map(|apart| ("a look around it".to_owned(), -apart));
     let best = rivals.chain(alone).max_by(|one, other| one.1.total_cmp(&other.1));
-    // What closed forms are off decides nothing.
+    // Differences within the error of the closed forms decide nothing.
     best.filter(|(_, better)| *better > BETTER.max(closed_forms_off(study)))
 }
 

@@ -55,7 +55,7 @@ impl Symbol {
     }
 
     /// The name as it is printed: that of something in an answer gives way to the same name of an
-    /// equation, see `Letters`.
+    /// equation, see `ResultSymbols`.
     pub fn written(self) -> &'static str {
         letters::written(self)
     }

@@ -1,7 +1,7 @@
 //! One run by Taylor series: how far a step reaches, what happens in it, and what comes next.
 //!
 //! In: a model, a start and settings that have been checked. Out: a [`Simulation`], from one run
-//! alone (`alone`) or from eight side by side (`lanes`), the same to the last bit. The coefficients
+//! alone (`simulate_one`) or from eight side by side (`lanes`), the same to the last bit. The coefficients
 //! of a step come from `recurrences`.
 //!
 //! ```text

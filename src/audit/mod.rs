@@ -121,11 +121,11 @@ impl ClaimFinding {
         if self.verdict != Verdict::UnderAssumption {
             return String::new();
         }
-        self.shown().map(ClaimAttempt::in_a_line).unwrap_or_default()
+        self.displayed_attempt().map(ClaimAttempt::in_a_line).unwrap_or_default()
     }
 
     /// The attempt to be shown: one that reproduces the claim, or that of the claim alone.
-    pub fn shown(&self) -> Option<&ClaimAttempt> {
+    pub fn displayed_attempt(&self) -> Option<&ClaimAttempt> {
         let best = self.tried.iter().find(|tried| tried.is_reproduced());
         best.or(self.tried.first())
     }
@@ -403,11 +403,13 @@ fn finding(
     evidence.extend(outside);
     match (best, verdict) {
         (None, Verdict::Inconsistent) if demand.is_none() => {
-            evidence.extend(alone.map(|alone| against(&claim, alone)).unwrap_or_default());
+            evidence.extend(
+                alone.map(|alone| computed_versus_printed(&claim, alone)).unwrap_or_default(),
+            );
         }
         _ => {}
     }
-    evidence.extend(others(&claim, &tried));
+    evidence.extend(other_attempts(&claim, &tried));
     if let Some(demand) = demand.filter(|demand| demand.is_within && best.is_some()) {
         let name = demand.unknown.name;
         let [low, high] = demand.unknown.within.map(|end| significant(end, 3));
@@ -420,7 +422,7 @@ fn finding(
 }
 
 /// The computed values beside the printed ones, in words.
-fn against(claim: &Claim, tried: &ClaimAttempt) -> Vec<String> {
+fn computed_versus_printed(claim: &Claim, tried: &ClaimAttempt) -> Vec<String> {
     let several = claim.entries.len() > 1;
     if several && tried.reproduced.iter().any(|entry| *entry) {
         let count = tried.reproduced.iter().filter(|entry| **entry).count();
@@ -436,7 +438,7 @@ fn against(claim: &Claim, tried: &ClaimAttempt) -> Vec<String> {
         }
         (PrintedStatement::Number(printed), Ok(found)) => {
             let number = found.number().unwrap_or(f64::NAN);
-            vec![versus(entry, printed, number)]
+            vec![number_versus_printed(entry, printed, number)]
         }
         (PrintedStatement::Formula(printed), Ok(Computed::Formula(formula))) => {
             let printed = identity::with_definitions(printed, &claim.question.values);
@@ -449,9 +451,9 @@ fn against(claim: &Claim, tried: &ClaimAttempt) -> Vec<String> {
 }
 
 /// A number beside the printed one.
-fn versus(entry: &PrintedEntry, printed: &Printed, number: f64) -> String {
+fn number_versus_printed(entry: &PrintedEntry, printed: &Printed, number: f64) -> String {
     let read = entry.read_as.as_ref().map_or(String::new(), |text| format!(", read as {text}"));
-    let computed = printed.alike(number, 6);
+    let computed = printed.formatted_alike(number, 6);
     let difference = match printed.relation {
         Relation::Equal if number.is_finite() && printed.value * number > 0.0 => {
             let ratio = printed.value / number;
@@ -497,7 +499,7 @@ pub(crate) const ABSENT: &str = "0, no such term";
 fn numbers_of(claim: &Claim, tried: &ClaimAttempt) -> String {
     let words = claim.entries.iter().zip(&tried.computed).map(|(entry, found)| match found {
         Ok(Computed::Number(number)) => match &entry.stated {
-            PrintedStatement::Number(printed) => printed.alike(*number, 6),
+            PrintedStatement::Number(printed) => printed.formatted_alike(*number, 6),
             _ => decimal(*number),
         },
         Ok(Computed::Exact(fraction)) => fraction.to_string(),
@@ -514,7 +516,7 @@ fn numbers_of(claim: &Claim, tried: &ClaimAttempt) -> String {
 const TOLD: usize = 8;
 
 /// The results of the other attempts, a sentence each.
-fn others(claim: &Claim, tried: &[ClaimAttempt]) -> Vec<String> {
+fn other_attempts(claim: &Claim, tried: &[ClaimAttempt]) -> Vec<String> {
     let entries = claim.entries.len();
     let is_trend = matches!(
         claim.entries.first().map(|entry| &entry.stated),

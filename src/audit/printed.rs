@@ -225,7 +225,7 @@ impl Printed {
     }
 
     /// Another number in the same unit, with two digits more than are printed and at least so many.
-    pub fn alike(&self, number: f64, least: usize) -> String {
+    pub fn formatted_alike(&self, number: f64, least: usize) -> String {
         let digits = (self.significant_digits() + 2).max(least);
         match self.percent {
             true => format!("{} %", significant(100.0 * number, digits)),

@@ -357,7 +357,7 @@ impl EvaluationScope<'_, '_> {
             "rest_time_without_barrier" => self.rest_time(false),
             "primary_rest_time" => self.primary_rest_time(),
             "primary_rest_time_locked" | "primary_rest_time_without" => {
-                let others = self.primary()?.others();
+                let others = self.primary()?.undamped_and_locked();
                 let alone = match name {
                     "primary_rest_time_locked" => others.locked,
                     _ => others.without,

@@ -99,7 +99,7 @@ fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
         Some(_) => steady_formula(&oscillator, &values).unwrap_or(solution),
         None => solution,
     };
-    derive::needed(&solution, &values)?;
+    derive::check_values(&solution, &values)?;
     let refused = |error: &NotCertified| Failure::refused(error, error.help());
     let tolerance = tolerance(&arguments.common);
     let question = (&solution, &values);

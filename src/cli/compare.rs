@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 use lindstedt::export::json;
-use lindstedt::problem::Reader;
+use lindstedt::problem::ReadingCommand;
 use lindstedt::report;
 use lindstedt::verify::Verdict;
 use lindstedt::verify::comparison::{self, Comparison};
@@ -50,7 +50,7 @@ impl Work for CompareArguments {
 
 fn run(arguments: &CompareArguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
-    let formula = formula(&problem, Reader::Compare)?;
+    let formula = formula(&problem, ReadingCommand::Compare)?;
     let oscillator = named(&oscillator(&formula, arguments.about.as_deref())?)?;
     let letters = oscillator.letters();
     let _letters = letters.in_force();
@@ -61,13 +61,13 @@ fn run(arguments: &CompareArguments) -> Result<Outcome, Failure> {
     if small.is_some() {
         oscillator
             .small_parameter(small)
-            .map_err(|error| Failure::advised(&error, error.help()))?;
+            .map_err(|error| Failure::with_advice(&error, error.help()))?;
     }
     let tolerance = tolerance(&arguments.common);
     let comparison = comparison::compare(&oscillator, &values, small, tolerance).map_err(
         |error| match &error {
             comparison::ComparisonError::NoMethod(refused) => {
-                Failure::advised(&error, refused.first().and_then(|first| first.reason.help()))
+                Failure::with_advice(&error, refused.first().and_then(|first| first.reason.help()))
             }
             comparison::ComparisonError::Verification(verify::VerificationError::Missing(
                 names,

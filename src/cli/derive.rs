@@ -12,7 +12,7 @@ use lindstedt::export::{code, html, json, latex, text};
 use lindstedt::expr::{Expr, ResultSymbols, parse_expression};
 use lindstedt::method::table::{Choice, MethodEntry, that_take};
 use lindstedt::method::{self, Options, Reason, Refusal};
-use lindstedt::problem::{FormulaProblem, Order, Problem, ProblemError, Reader};
+use lindstedt::problem::{FormulaProblem, Order, Problem, ProblemError, ReadingCommand};
 use lindstedt::report;
 use lindstedt::solution::{
     AmplitudeConvention, Counts, Degrees, Method, Modulation, Note, Solution,
@@ -145,7 +145,7 @@ pub(super) struct Solved {
 /// equation needs stand in it.
 pub(super) fn solved(arguments: &EquationArguments) -> Result<Solved, Failure> {
     let problem = problem(&arguments.problem)?;
-    let formula = formula(&problem, Reader::Derive)?;
+    let formula = formula(&problem, ReadingCommand::Derive)?;
     let oscillator = named(&oscillator(&formula, arguments.about.as_deref())?)?;
     let letters = oscillator.letters();
     let _letters = letters.in_force();
@@ -154,7 +154,7 @@ pub(super) fn solved(arguments: &EquationArguments) -> Result<Solved, Failure> {
     if options.small.is_some() {
         oscillator
             .small_parameter(options.small.as_deref())
-            .map_err(|error| Failure::advised(&error, error.help()))?;
+            .map_err(|error| Failure::with_advice(&error, error.help()))?;
     }
     let coordinate = oscillator.coordinate;
     let Numbered { oscillator, values, mut notes } =
@@ -183,7 +183,7 @@ pub(super) fn solved(arguments: &EquationArguments) -> Result<Solved, Failure> {
 }
 
 /// Refuses values that the formula does not have, and asks for those that it needs.
-pub(super) fn needed(solution: &Solution, values: &Values) -> Result<(), Failure> {
+pub(super) fn check_values(solution: &Solution, values: &Values) -> Result<(), Failure> {
     verify::checked(solution, values).map_err(|error| unjudged(&error))
 }
 
@@ -294,7 +294,7 @@ fn run(arguments: &DeriveArguments) -> Result<Outcome, Failure> {
         Format::Code(language) => {
             let program =
                 code::solution(&oscillator, &solution, verification.as_ref(), tolerance, language);
-            let program = program.map_err(|reason| Failure::advised(&reason, reason.help()))?;
+            let program = program.map_err(|reason| Failure::with_advice(&reason, reason.help()))?;
             let space = if derivation.is_empty() { "" } else { "\n" };
             language.comment(&(derivation + space)) + &program
         }
@@ -328,7 +328,7 @@ fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) ->
 }
 
 /// The grace period after a timeout: an expansion that has begun has orders to show.
-pub(super) fn patience() -> Duration {
+pub(super) fn grace_period() -> Duration {
     match PROGRESS.read() {
         (_, 0) => Duration::ZERO,
         _ => Duration::from_secs(60),
@@ -356,7 +356,7 @@ fn solve_at(
             let (known, rest) = values.split(&names);
             let oscillator = oscillator
                 .with_values(&known)
-                .map_err(|error| Failure::advised(&error, error.help()))?;
+                .map_err(|error| Failure::with_advice(&error, error.help()))?;
             let solution = method::solve(&oscillator, options)
                 .map_err(|refusal| refused(&oscillator, &refusal))?;
             Ok((oscillator, Some(rest), solution))
@@ -369,11 +369,14 @@ fn solve_at(
 pub(super) fn refused(oscillator: &Oscillator, refusal: &Refusal) -> Failure {
     let place = refusal.term().and_then(|term| oscillator.typed.locate(term));
     let shown = place.map_or(String::new(), |[line, carets]| format!("\n  {line}\n  {carets}"));
-    Failure::advised(&format!("{refusal}{shown}"), refusal.help())
+    Failure::with_advice(&format!("{refusal}{shown}"), refusal.help())
 }
 
 /// Reads the equation and the choices of a problem for this command.
-pub(super) fn formula(problem: &Problem, reader: Reader) -> Result<FormulaProblem<'_>, Failure> {
+pub(super) fn formula(
+    problem: &Problem,
+    reader: ReadingCommand,
+) -> Result<FormulaProblem<'_>, Failure> {
     problem.formula(reader).map_err(|error| Failure::refused(&error, error.help()))
 }
 
@@ -383,7 +386,7 @@ pub(super) fn oscillator(
     about: Option<&str>,
 ) -> Result<Oscillator, Failure> {
     let oscillator = Oscillator::parse(formula.equation)
-        .map_err(|error| Failure::advised(&error, error.help()))?;
+        .map_err(|error| Failure::with_advice(&error, error.help()))?;
     let Some(about) = about.or(formula.about) else {
         return Ok(oscillator);
     };
@@ -405,7 +408,7 @@ pub(super) fn oscillator(
 /// The oscillator with the names of its equation that are those of something in an answer kept
 /// apart.
 pub(super) fn named(oscillator: &Oscillator) -> Result<Oscillator, Failure> {
-    oscillator.with_own_names_apart().map_err(|error| Failure::advised(&error, error.help()))
+    oscillator.with_own_names_apart().map_err(|error| Failure::with_advice(&error, error.help()))
 }
 
 /// Notes on the letters that an answer takes in the place of usual ones, of those that it has; one
@@ -429,7 +432,7 @@ pub(super) fn notes_on_letters(
             judged || solution.slow().is_none() && solution.in_time().is_none()
         }
     };
-    let unusual = letters.unusual().filter(|(usual, _)| stands(*usual));
+    let unusual = letters.renamed().filter(|(usual, _)| stands(*usual));
     let note = |(usual, written): (Symbol, Symbol)| Note::OtherLetter {
         usual,
         written,
@@ -476,7 +479,7 @@ fn as_meant(values: &Values, oscillator: &Oscillator) -> Result<Values, Failure>
     let mut meant = Values::default();
     for (name, value) in values.iter() {
         meant
-            .insert(oscillator.meant(name), value.clone())
+            .insert(oscillator.resolve_symbol(name), value.clone())
             .map_err(|error| Failure::Usage(format!("--at: {error}")))?;
     }
     Ok(meant)
@@ -493,7 +496,7 @@ fn with_known_equilibrium(
     };
     let (known, rest) = given.split(&oscillator.parameters);
     let numerical = method::with_numbers_where_needed(&oscillator, &known)
-        .map_err(|error| Failure::advised(&error, error.help()))?;
+        .map_err(|error| Failure::with_advice(&error, error.help()))?;
     Ok(match numerical {
         Some(numerical) => (numerical, Some(rest)),
         None => (oscillator, Some(given)),

@@ -62,7 +62,7 @@ pub(super) fn check(common: &Common, input: Option<&Path>) -> Result<(), Failure
         .chain(common.plot.as_deref().map(|picture| ("--plot", picture)))
         .collect();
     if let [(_, text), (_, picture)] = named[..]
-        && same(text, picture)
+        && is_same_file(text, picture)
     {
         return Err(Failure::Usage(match is_standard(text) {
             true => {
@@ -79,7 +79,7 @@ pub(super) fn check(common: &Common, input: Option<&Path>) -> Result<(), Failure
         if is_standard(path) {
             continue;
         }
-        if input.is_some_and(|input| !is_standard(input) && same(input, path)) {
+        if input.is_some_and(|input| !is_standard(input) && is_same_file(input, path)) {
             return Err(Failure::Usage(format!(
                 "{option} {} is the file that is read: it would be overwritten; give another name",
                 path.display()
@@ -125,7 +125,7 @@ fn folder(path: &Path) -> &Path {
 }
 
 /// Whether two paths are one place.
-pub(super) fn same(one: &Path, other: &Path) -> bool {
+pub(super) fn is_same_file(one: &Path, other: &Path) -> bool {
     one == other || resolved(one).is_some_and(|place| Some(place) == resolved(other))
 }
 

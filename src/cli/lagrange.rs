@@ -6,7 +6,7 @@ use clap::Args;
 use lindstedt::audit::paper;
 use lindstedt::export::json;
 use lindstedt::mechanics::study;
-use lindstedt::problem::{Problem, Reader};
+use lindstedt::problem::{Problem, ReadingCommand};
 use lindstedt::report;
 
 use super::answer::{Answer, no_such};
@@ -60,7 +60,7 @@ fn run(arguments: &LagrangeArguments) -> Result<Outcome, Failure> {
         None => (paper::mechanism(), Problem::default()),
         Some(path) => {
             let problem = from_file(path)?;
-            problem.check_keys(Reader::Lagrange)?;
+            problem.check_keys(ReadingCommand::Lagrange)?;
             let question =
                 problem.mechanism().map_err(|error| Failure::refused(&error, error.help()))?;
             (question, problem)

@@ -58,21 +58,21 @@ paper always); 4 stopped before the end: what is printed is partial and says so.
 static COMMANDS: [Command; 16] = [
     Command::new::<derive::DeriveArguments>("derive")
         .writing(Formats::Programs)
-        .waiting(derive::patience),
+        .waiting(derive::grace_period),
     Command::new::<compare::CompareArguments>("compare").writing(Formats::Pictures),
     Command::new::<impact::ImpactArguments>("impact").writing(Formats::Pictures),
-    Command::new::<simulate::SimulateArguments>("simulate").waiting(a_minute),
-    Command::new::<response::ResponseArguments>("response").waiting(a_minute),
+    Command::new::<simulate::SimulateArguments>("simulate").waiting(one_minute),
+    Command::new::<response::ResponseArguments>("response").waiting(one_minute),
     Command::new::<friction::FrictionArguments>("friction"),
     Command::new::<lagrange::LagrangeArguments>("lagrange").writing(Formats::Words),
-    Command::new::<materials::MaterialsArguments>("materials").waiting(a_minute),
-    Command::new::<optimize::OptimizeArguments>("optimize").waiting(a_minute),
+    Command::new::<materials::MaterialsArguments>("materials").waiting(one_minute),
+    Command::new::<optimize::OptimizeArguments>("optimize").waiting(one_minute),
     Command::new::<stability::StabilityArguments>("stability"),
     Command::new::<audit::AuditArguments>("audit").writing(Formats::Words).judged(),
     Command::new::<audit::PaperArguments>("paper").writing(Formats::Words).judged(),
     Command::new::<certify::CertifyArguments>("certify")
         .writing(Formats::Words)
-        .waiting(derive::patience),
+        .waiting(derive::grace_period),
     Command::new::<certify::CheckArguments>("check")
         .writing(Formats::Words)
         .limited(certify::LONGEST_CHECK),
@@ -163,7 +163,7 @@ impl Command {
     }
 
     /// Refuses a format that the command does not have, before any work is done for it.
-    fn takes(&self, format: Format) -> Result<(), Failure> {
+    fn check_format(&self, format: Format) -> Result<(), Failure> {
         let is_taken = matches!(self.formats, Formats::One)
             || Format::OF_ALL.contains(&format)
             || self.formats.listed().contains(&format);
@@ -172,7 +172,7 @@ impl Command {
 }
 
 /// A minute: the patience with work that is stopped and hands back a part.
-fn a_minute() -> Duration {
+fn one_minute() -> Duration {
     Duration::from_secs(60)
 }
 
@@ -379,7 +379,7 @@ impl Failure {
     }
 
     /// A refusal with the advice of the library.
-    fn advised(error: &impl Display, advice: Option<Advice>) -> Self {
+    fn with_advice(error: &impl Display, advice: Option<Advice>) -> Self {
         Self::refused(error, advice.as_ref().map(in_flags))
     }
 }
@@ -461,7 +461,7 @@ pub fn run() -> ExitCode {
     let judged = common.tolerance.is_some() || command.is_judged;
     progress::QUIET.store(common.quiet, Ordering::Relaxed);
     match command
-        .takes(common.format())
+        .check_format(common.format())
         .map_err(|failure| by_ending(failure, &common))
         .and_then(|()| files::check(&common, work.input()))
     {

@@ -18,7 +18,7 @@ use lindstedt::problem::Problem;
 use lindstedt::report;
 
 use super::answer::{Answer, no_such};
-use super::files::{is_standard, same, width};
+use super::files::{is_same_file, is_standard, width};
 use super::problem::from_file;
 use super::progress;
 use super::{Common, Failure, Format, Outcome, STOP, Work, count, json_text, read_at_most};
@@ -125,7 +125,7 @@ fn run(arguments: &OptimizeArguments) -> Result<Outcome, Failure> {
             format => no_such(format),
         },
     };
-    let note = match (record.trouble(), study.complete) {
+    let note = match (record.warning(), study.complete) {
         (Some(trouble), _) => Some(format!("warning: the record is not complete: {trouble}")),
         (None, false) => Some(format!(
             "warning: stopped early, what there is is kept: {} of {} runs{}",
@@ -213,7 +213,7 @@ impl Record {
                 )));
             }
             let others = [&arguments.common.output, &arguments.common.plot, &arguments.file];
-            if others.into_iter().flatten().any(|other| same(other, path)) {
+            if others.into_iter().flatten().any(|other| is_same_file(other, path)) {
                 return Err(Failure::Usage(format!(
                     "{option} {} is read or written as something else: give another name",
                     path.display()
@@ -229,7 +229,7 @@ impl Record {
         }
         let (path, goes_on) = match (&arguments.record, &arguments.resume) {
             (None, None) => return Ok(none),
-            (Some(record), Some(resume)) if same(record, resume) => (resume, true),
+            (Some(record), Some(resume)) if is_same_file(record, resume) => (resume, true),
             (Some(record), _) => (record, false),
             (None, Some(resume)) => (resume, true),
         };
@@ -287,7 +287,7 @@ impl Record {
         }
     }
 
-    fn trouble(&self) -> Option<String> {
+    fn warning(&self) -> Option<String> {
         self.trouble.lock().ok()?.clone()
     }
 }

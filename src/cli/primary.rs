@@ -21,7 +21,7 @@ pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcom
     check_format(&asked.common)?;
     match asked.sweep.as_slice() {
         [] => run_single(problem, asked),
-        axes => many(problem, asked, axes),
+        axes => run_sweep(problem, asked, axes),
     }
 }
 
@@ -56,7 +56,11 @@ fn run_single(problem: &Problem, asked: &SimulateArguments) -> Result<Outcome, F
     })
 }
 
-fn many(problem: &Problem, asked: &SimulateArguments, axes: &[Axis]) -> Result<Outcome, Failure> {
+fn run_sweep(
+    problem: &Problem,
+    asked: &SimulateArguments,
+    axes: &[Axis],
+) -> Result<Outcome, Failure> {
     let common = &asked.common;
     check_sweep(asked)?;
     let parameters: Vec<PrimaryParameter> = axes

@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::Args;
 use lindstedt::export::{self, json};
 use lindstedt::expr::parse_expression;
-use lindstedt::problem::{Order, Reader};
+use lindstedt::problem::{Order, ReadingCommand};
 use lindstedt::response::{MOST_HARMONICS, ResponseError, ResponseRequest, respond};
 use lindstedt::solution::{Method, Solution};
 use lindstedt::{Interrupt, Options, Oscillator, Progress, Symbol, report, solve};
@@ -60,9 +60,9 @@ impl Work for ResponseArguments {
 
 fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
-    let formula = formula(&problem, Reader::Response)?;
+    let formula = formula(&problem, ReadingCommand::Response)?;
     let oscillator = Oscillator::parse(formula.equation)
-        .map_err(|error| Failure::advised(&error, error.help()))?;
+        .map_err(|error| Failure::with_advice(&error, error.help()))?;
     let method = method(arguments.method.as_deref().or(formula.method))?;
     let order = match (arguments.order, formula.order) {
         (Some(order), _) | (None, Some(Order::Power(order))) => Some(order),
@@ -101,7 +101,7 @@ fn run(arguments: &ResponseArguments) -> Result<Outcome, Failure> {
         slow.as_ref().filter(|slow| slow.coordinate() != question.oscillator.coordinate)
     {
         question.oscillator = Oscillator::from_equation(&slow.equation)
-            .map_err(|error| Failure::advised(&error, error.help()))?;
+            .map_err(|error| Failure::with_advice(&error, error.help()))?;
     }
     let mut response = with_progress("of this search, or of its points", || respond(&question))
         .map_err(refused)?;

@@ -118,7 +118,7 @@ fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
         Some(text) => problem(text)?,
     };
     if problem.equation.is_some() || problem.lagrangian.is_some() {
-        return own(arguments, &problem);
+        return run_equation(arguments, &problem);
     }
     let foreign = [
         ("--from", !arguments.from.is_empty(), "start and speed in [pendulum]"),
@@ -154,7 +154,7 @@ fn run(arguments: &SimulateArguments) -> Result<Outcome, Failure> {
     }
     match arguments.sweep.is_empty() {
         true => run_single(arguments, &problem),
-        false => many(arguments, &problem),
+        false => run_sweep(arguments, &problem),
     }
 }
 
@@ -176,7 +176,7 @@ fn main_mass(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome
 }
 
 /// An equation or a mechanism of one's own.
-fn own(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
+fn run_equation(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
     let foreign = [
         ("--chain", arguments.chain),
         ("--jobs", arguments.jobs.is_some()),
@@ -388,7 +388,7 @@ fn add_baseline(
     Ok(())
 }
 
-fn many(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
+fn run_sweep(arguments: &SimulateArguments, problem: &Problem) -> Result<Outcome, Failure> {
     check_sweep(arguments)?;
     let (motions, settings) = motions(arguments, problem)?;
     let total = motions.len();

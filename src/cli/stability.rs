@@ -7,7 +7,7 @@ use lindstedt::export::{json, stability};
 use lindstedt::hill::{
     self, Chart, HillError, HillOptions, JudgedCurve, TransitionCurves, TruthError,
 };
-use lindstedt::problem::{Order, Reader};
+use lindstedt::problem::{Order, ReadingCommand};
 use lindstedt::report::{self, StabilityReport};
 use lindstedt::verify::Verdict;
 use lindstedt::{Symbol, Values};
@@ -64,7 +64,7 @@ impl Work for StabilityArguments {
 
 fn run(arguments: &StabilityArguments) -> Result<Outcome, Failure> {
     let problem = problem(&arguments.problem)?;
-    let formula = formula(&problem, Reader::Stability)?;
+    let formula = formula(&problem, ReadingCommand::Stability)?;
     let oscillator = oscillator(&formula, None)?;
     let usual = HillOptions::default();
     let order = match formula.order {

@@ -25,7 +25,7 @@ pub(super) fn run(problem: &Problem, asked: &SimulateArguments) -> Result<Outcom
     check_format(common)?;
     let course = course(problem, asked)?;
     if !asked.sweep.is_empty() {
-        return many(&course, asked);
+        return run_sweep(&course, asked);
     }
     check_samples(&asked.sample, course.duration, "--until")?;
     let by = |integrator: Integrator| course.clone().follow_by(integrator).map_err(refused);
@@ -219,7 +219,7 @@ fn section(
 }
 
 /// Many motions.
-fn many(course: &TrajectoryRequest, asked: &SimulateArguments) -> Result<Outcome, Failure> {
+fn run_sweep(course: &TrajectoryRequest, asked: &SimulateArguments) -> Result<Outcome, Failure> {
     let common = &asked.common;
     if asked.integrator.is_some() || !asked.sample.is_empty() || common.tolerance.is_some() {
         return Err(Failure::Usage(

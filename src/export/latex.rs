@@ -262,11 +262,11 @@ impl LatexPage {
             (Setting::Equations(rows), _) => self.rows.extend(rows),
             (Setting::Words, _) => {}
         }
-        self.say(block);
+        self.write_words(block);
     }
 
     /// The words of a block, as comments; an article says the rest in words of its own.
-    fn say(&mut self, block: &Block) {
+    fn write_words(&mut self, block: &Block) {
         match block {
             Block::Title { words, amplitude } => {
                 self.comment(Rank::Note, format!("{words}; {amplitude}"))

@@ -60,7 +60,7 @@ impl Problem {
     ) -> Result<f64, ProblemError> {
         let [key, other] = keys;
         match own {
-            Some(_) if self.gives(other) => {
+            Some(_) if self.has_key(other) => {
                 refused(format!("`{key}` and `{other}` say the same: give one of them"))
             }
             Some(value) => positive(key, value),
@@ -123,7 +123,7 @@ impl Problem {
         gamma_follows: bool,
     ) -> Result<Option<Units>, ProblemError> {
         let design = self.design()?;
-        let first = |keys: &[&'static str]| keys.iter().copied().find(|key| self.gives(key));
+        let first = |keys: &[&'static str]| keys.iter().copied().find(|key| self.has_key(key));
         let silent = |groups: &[&[&'static str]]| first(&groups.concat());
         let [sphere_yield, barrier_yield] =
             [(YIELD[0], self.sphere.yield_limit), (YIELD[1], self.barrier.yield_limit)]
@@ -159,7 +159,7 @@ impl Problem {
             ));
         }
         let given =
-            |name: &str, own: &str| self.gives(own) || self.gives(&format!("[design] {name}"));
+            |name: &str, own: &str| self.has_key(own) || self.has_key(&format!("[design] {name}"));
         let needed = ["mass", "length", "gravity"].into_iter().zip(PENDULUM);
         let missing: Vec<&str> =
             needed.filter(|(name, own)| !given(name, own)).map(|(name, _)| name).collect();
@@ -196,7 +196,7 @@ impl Problem {
     pub(super) fn simulation_units(&self, design: &StiffnessDesign) -> Option<Units> {
         let given = |name: &str| {
             let keys = [format!("[pendulum] {name}"), format!("[design] {name}")];
-            keys.iter().any(|key| self.gives(key))
+            keys.iter().any(|key| self.has_key(key))
         };
         let follows = self.contact.gamma.is_none() || self.damps_in_si_units();
         let known = follows || ["mass", "length", "gravity"].into_iter().all(given);

@@ -1,7 +1,7 @@
 //! The input of `derive`, `compare` and `response` from a problem file: an equation, its method and
 //! its values.
 
-use super::{Order, Problem, ProblemError, Reader, refused};
+use super::{Order, Problem, ProblemError, ReadingCommand, refused};
 use crate::expr::parse_expression;
 use crate::symbol::Symbol;
 use crate::values::Values;
@@ -37,7 +37,7 @@ impl Problem {
     /// assert_eq!(file.formula(Reader::Derive)?.small, Some("eps"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn formula(&self, reader: Reader) -> Result<FormulaProblem<'_>, ProblemError> {
+    pub fn formula(&self, reader: ReadingCommand) -> Result<FormulaProblem<'_>, ProblemError> {
         self.check_keys(reader)?;
         self.check_derived_equation()?;
         let Some(equation) = self.equation.as_deref() else {

@@ -1,7 +1,7 @@
 //! The input of `impact` from a problem file: an undamped swing and its barrier, released from
 //! rest.
 
-use super::{Barrier, BarrierSide, Order, Problem, ProblemError, Reader, refused};
+use super::{Barrier, BarrierSide, Order, Problem, ProblemError, ReadingCommand, refused};
 use crate::expr::{Expr, parse_expression};
 use crate::impact::contact::ContactLaw;
 use crate::impact::hertz::{NotPositive, StiffnessDesign};
@@ -40,7 +40,7 @@ impl TryFrom<&Problem> for Setup {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     fn try_from(problem: &Problem) -> Result<Self, ProblemError> {
-        problem.check_keys(Reader::Impact)?;
+        problem.check_keys(ReadingCommand::Impact)?;
         let (damping, contact) = (&problem.damping, &problem.contact);
         let damps =
             [damping.zeta, damping.alpha].into_iter().chain(damping.viscous).chain(damping.torque);
@@ -158,14 +158,14 @@ impl ImpactValues {
             *found = own.contains(&name).then(|| values.get(name)).flatten();
             // The command line wins over the file.
             let wins = problem.overriding.contains(written);
-            if found.is_some() && problem.gives(key) && !wins {
+            if found.is_some() && problem.has_key(key) && !wins {
                 return refused(format!(
                     "`{letter}` in [values] and `{key}` say the same: give one of them"
                 ));
             }
         }
         let starts = problem.pendulum.start.is_some();
-        let gives = |index: usize| found[index].is_some() || problem.gives(letters[index].2);
+        let gives = |index: usize| found[index].is_some() || problem.has_key(letters[index].2);
         if starts && gives(0) {
             return refused(
                 "`amplitude` says nothing beside `start`, where the swing is released: give one of them",

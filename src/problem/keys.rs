@@ -12,7 +12,7 @@ use super::{Problem, ProblemError, refused};
 
 /// The commands that read problem files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reader {
+pub enum ReadingCommand {
     /// `lindstedt derive`
     Derive,
     /// `lindstedt compare`
@@ -35,12 +35,12 @@ pub enum Reader {
     Response,
 }
 
-use Reader::{
+use ReadingCommand::{
     Compare, Derive, Impact, Lagrange, Materials, Optimize, Response, Simulate, Stability,
     Trajectory,
 };
 
-impl fmt::Display for Reader {
+impl fmt::Display for ReadingCommand {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
             Derive => "lindstedt derive",
@@ -57,7 +57,7 @@ impl fmt::Display for Reader {
 }
 
 /// The commands that read a key, or refuse it with a reason of their own.
-fn readers(section: &str, key: &str) -> &'static [Reader] {
+fn readers(section: &str, key: &str) -> &'static [ReadingCommand] {
     match (section, key) {
         ("", "equation") => &[Derive, Compare, Impact, Simulate, Trajectory, Stability, Response],
         ("", "method") => &[Derive, Impact, Response],
@@ -125,7 +125,7 @@ const SECTIONS: [KeySection; 15] = [
 
 /// Every key of a problem file, as messages name it, and the commands that read it, or refuse it
 /// with a reason of their own.
-pub fn keys() -> impl Iterator<Item = (String, &'static [Reader])> {
+pub fn keys() -> impl Iterator<Item = (String, &'static [ReadingCommand])> {
     SECTIONS.into_iter().flat_map(|(section, keys)| {
         keys().iter().map(move |key| {
             let name = match section {
@@ -190,7 +190,7 @@ pub(super) fn given(file: &toml::Table) -> Vec<String> {
 
 impl Problem {
     /// Whether the file gives this key: `order`, `[run] duration`.
-    pub(super) fn gives(&self, key: &str) -> bool {
+    pub(super) fn has_key(&self, key: &str) -> bool {
         self.given.iter().any(|given| given == key)
     }
 
@@ -198,7 +198,7 @@ impl Problem {
     ///
     /// # Errors
     /// [`ProblemError`] names the first, and the commands that read it.
-    pub fn check_keys(&self, reader: Reader) -> Result<(), ProblemError> {
+    pub fn check_keys(&self, reader: ReadingCommand) -> Result<(), ProblemError> {
         let described = self.given.iter().any(|key| key.starts_with('[') && key != "[values]");
         if matches!(reader, Derive | Compare | Stability | Response)
             && self.equation.is_none()
@@ -211,7 +211,7 @@ impl Problem {
             ));
         }
         for (key, readers) in keys() {
-            if self.gives(&key) && !readers.contains(&reader) {
+            if self.has_key(&key) && !readers.contains(&reader) {
                 // Two readers may be one command.
                 let own = format!("`{reader}`");
                 let mut names: Vec<String> = Vec::new();

@@ -7,8 +7,8 @@
 
 use super::design::{needs, positive};
 use super::document::MaterialSection;
-use super::simulate::{refuse_two_forms, without};
-use super::{Problem, ProblemError, Reader, SphereSection, refused};
+use super::simulate::{message_of_missing_key, refuse_two_forms};
+use super::{Problem, ProblemError, ReadingCommand, SphereSection, refused};
 use crate::impact::{
     ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Integrator, Material, MaterialQuestion,
     Modulus, Parameter, default_lambda,
@@ -30,7 +30,7 @@ impl Problem {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn materials(&self, only_own: bool) -> Result<MaterialQuestion, ProblemError> {
-        self.check_keys(Reader::Materials)?;
+        self.check_keys(ReadingCommand::Materials)?;
         let gives = |parameter| self.gives_parameter(parameter);
         refuse_two_forms(gives)?;
         self.check_pairs(gives)?;
@@ -49,7 +49,7 @@ impl Problem {
             case.zeta = DEFAULT_ZETA;
             defaults.push(Parameter::Zeta);
         }
-        if !self.gives("[run] duration") {
+        if !self.has_key("[run] duration") {
             settings.duration = DEFAULT_DURATION;
         }
         let mut materials = match only_own {
@@ -78,7 +78,7 @@ impl Problem {
 
     /// Refuses an empty list.
     pub(super) fn check_materials(&self) -> Result<(), ProblemError> {
-        match self.material.is_empty() && self.gives("[[material]]") {
+        match self.material.is_empty() && self.has_key("[[material]]") {
             true => refused(
                 "`material = []` lists no material: give [[material]] with a name and a modulus, or leave it out",
             ),
@@ -129,7 +129,10 @@ impl Problem {
             ));
         }
         if section.at_speed.is_some() && section.restitution.is_none() {
-            return refused(format!("material `{name}`: {}", without("at_speed", &"restitution")));
+            return refused(format!(
+                "material `{name}`: {}",
+                message_of_missing_key("at_speed", &"restitution")
+            ));
         }
         Ok(Material {
             modulus: modulus.map_err(of_material)?,

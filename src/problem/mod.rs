@@ -45,7 +45,7 @@ pub use document::{
     Order, Pendulum, PrimarySection, Problem, Range, Run, SphereSection,
 };
 pub use formula::FormulaProblem;
-pub use keys::{Reader, keys};
+pub use keys::{ReadingCommand, keys};
 pub(crate) use mistakes::{at_place, in_words};
 pub use primary::PrimaryProblem;
 pub use simulate::Simulate;
@@ -199,7 +199,7 @@ impl Problem {
             let mut keys = without_say
                 .iter()
                 .flat_map(|key| sections.iter().map(move |section| format!("[{section}] {key}")));
-            keys.any(|key| self.gives(&key))
+            keys.any(|key| self.has_key(&key))
         };
         match (gives(&["design"]), gives(&["pendulum", "sphere", "barrier"])) {
             (true, _) => "given: [design] has no say in it",

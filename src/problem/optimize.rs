@@ -7,7 +7,7 @@
 
 use super::primary::at_rest;
 use super::simulate::refuse_two_forms;
-use super::{Objectives, Problem, ProblemError, Reader, refused};
+use super::{Objectives, Problem, ProblemError, ReadingCommand, refused};
 use crate::genetic::{Coding, Crossover, GeneticOptions, Mutation, Penalty, StallTest};
 use crate::impact::{ContactDamping, DEFAULT_DURATION, DEFAULT_ZETA, Parameter, default_lambda};
 use crate::optimize::{
@@ -63,7 +63,7 @@ impl Problem {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn optimize(&self) -> Result<OptimizationProblem, ProblemError> {
-        self.check_keys(Reader::Optimize)?;
+        self.check_keys(ReadingCommand::Optimize)?;
         let gives = |parameter| self.gives_parameter(parameter);
         refuse_two_forms(gives)?;
         self.check_pairs(gives)?;
@@ -86,7 +86,7 @@ impl Problem {
             question.defaults.push(Parameter::Zeta);
         }
         question.settings = self.settings()?;
-        if !self.gives("[run] duration") {
+        if !self.has_key("[run] duration") {
             question.settings.duration = DEFAULT_DURATION;
         }
         self.boundaries(&mut question)?;
@@ -112,7 +112,7 @@ impl Problem {
                 Parameter::Length => limits.length,
                 _ => limits.modulus,
             };
-            let fixed = fixing(parameter).into_iter().find(|key| self.gives(key));
+            let fixed = fixing(parameter).into_iter().find(|key| self.has_key(key));
             let name = parameter.name();
             if parameter == Parameter::Modulus && !question.materials.is_empty() {
                 let key = fixed.or(given.map(|_| "[limits] modulus"));
@@ -251,7 +251,7 @@ impl Problem {
             question.runs = count(section.runs, SEVERAL_RUNS);
             options.generations = count(section.generations, SEVERAL_GENERATIONS);
             for key in ONE_OBJECTIVE {
-                if self.gives(&format!("[genetic] {key}")) {
+                if self.has_key(&format!("[genetic] {key}")) {
                     return Err(OptimizeError::OneObjective(key).into());
                 }
             }
@@ -354,7 +354,7 @@ impl Problem {
         there: bool,
         other: &'static str,
     ) -> Result<(), ProblemError> {
-        match self.gives(&format!("[genetic] {key}")) && !there {
+        match self.has_key(&format!("[genetic] {key}")) && !there {
             true => refused(format!(
                 "`[genetic] {key}` changes nothing without {other}: give that too, or leave it out"
             )),

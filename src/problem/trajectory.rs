@@ -1,7 +1,7 @@
 //! The input of `simulate` from a file with an equation or a mechanism of its own.
 
 use super::mechanism::no_mechanism;
-use super::{Problem, ProblemError, Reader};
+use super::{Problem, ProblemError, ReadingCommand};
 use crate::oscillator::Oscillator;
 use crate::trajectory::TrajectoryRequest;
 
@@ -21,7 +21,7 @@ impl Problem {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn course(&self) -> Result<TrajectoryRequest, ProblemError> {
-        self.check_keys(Reader::Trajectory)?;
+        self.check_keys(ReadingCommand::Trajectory)?;
         let mut course = match (&self.lagrangian, &self.equation) {
             (Some(_), _) => {
                 let mechanism = self.mechanism()?.mechanism;

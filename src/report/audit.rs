@@ -32,7 +32,7 @@ pub fn audit(audit: &Audit) -> Document<'_> {
             && finding.claim.note.is_none()
             && finding.is_as_expected();
         if !plain {
-            sections.push(story(finding));
+            sections.push(finding_blocks(finding));
         }
     }
     Document { sections }
@@ -98,7 +98,7 @@ pub(crate) fn printed(finding: &ClaimFinding) -> String {
 
 /// The computed value, in one line; empty if there is none.
 pub(crate) fn computed(finding: &ClaimFinding) -> String {
-    let Some(shown) = finding.shown() else {
+    let Some(shown) = finding.displayed_attempt() else {
         return String::new();
     };
     let trend = matches!(
@@ -106,7 +106,9 @@ pub(crate) fn computed(finding: &ClaimFinding) -> String {
         Some(PrintedStatement::Trend(_))
     );
     match &shown.computed[..] {
-        [_] => entry(finding, shown, 0).or_else(|| demanded(finding)).unwrap_or_default(),
+        [_] => entry(finding, shown, 0)
+            .or_else(|| required_value_in_words(finding))
+            .unwrap_or_default(),
         several if trend => {
             let each: Vec<String> =
                 (0..several.len()).filter_map(|index| entry(finding, shown, index)).collect();
@@ -120,7 +122,7 @@ pub(crate) fn computed(finding: &ClaimFinding) -> String {
 }
 
 /// The value of an unknown that a claim requires and that it cannot have, in words.
-fn demanded(finding: &ClaimFinding) -> Option<String> {
+fn required_value_in_words(finding: &ClaimFinding) -> Option<String> {
     let demand = finding.demand?;
     Some(format!("needs {} = {}", demand.unknown.name, significant(demand.value, 3)))
 }
@@ -129,7 +131,7 @@ fn demanded(finding: &ClaimFinding) -> Option<String> {
 /// printed number; `None` if it cannot be computed.
 pub(crate) fn entry(finding: &ClaimFinding, tried: &ClaimAttempt, index: usize) -> Option<String> {
     let alike = |number: f64| match finding.claim.entries.get(index).map(|entry| &entry.stated) {
-        Some(PrintedStatement::Number(printed)) => printed.alike(number, 6),
+        Some(PrintedStatement::Number(printed)) => printed.formatted_alike(number, 6),
         _ => decimal(number),
     };
     match tried.computed.get(index)? {
@@ -147,7 +149,7 @@ pub(crate) fn entry(finding: &ClaimFinding, tried: &ClaimAttempt, index: usize) 
 }
 
 /// A claim and what speaks for its verdict.
-fn story(finding: &ClaimFinding) -> Vec<Block<'_>> {
+fn finding_blocks(finding: &ClaimFinding) -> Vec<Block<'_>> {
     let claim = &finding.claim;
     let place = if claim.place.is_empty() { &claim.id } else { &claim.place };
     let says = if claim.says.is_empty() { String::new() } else { format!(": {}", claim.says) };

@@ -222,7 +222,7 @@ pub fn certificate<'a>(report: &CertificateReport<'a>) -> Document<'a> {
             match (&solution.response, &solution.modulation) {
                 (Some(response), Some(slow)) => slow_equations(solution, response, slow),
                 _ => {
-                    let law = solution.law.shown().into_iter();
+                    let law = solution.law.display_forms().into_iter();
                     law.flat_map(|law| law_blocks(solution, law)).collect()
                 }
             },

@@ -52,7 +52,7 @@ fn equation<'a>(
 }
 
 /// Words before an equation.
-fn said<'a>(
+fn equation_with_words<'a>(
     words: &str,
     left: impl Into<DerivationFormula>,
     right: impl Into<DerivationFormula>,
@@ -93,7 +93,7 @@ fn steady_motions<'a>(solution: &'a Solution, response: &Response) -> Vec<Block<
     let detuning = detuning(solution);
     let polynomial = |polynomial: &Polynomial| Expr::from(polynomial);
     if let Some(relation) = &response.relation {
-        blocks.push(said("frequency response", Expr::zero(), polynomial(relation)));
+        blocks.push(equation_with_words("frequency response", Expr::zero(), polynomial(relation)));
     }
     if let (Some(branches), Some(detuning)) = (&response.branches, detuning) {
         let centre = polynomial(&branches.centre);
@@ -101,33 +101,41 @@ fn steady_motions<'a>(solution: &'a Solution, response: &Response) -> Vec<Block<
             let either = [&centre - &width, &centre + &width];
             let words = ["solved for the detuning", "and"];
             for (words, branch) in words.iter().zip(either) {
-                blocks.push(said(words, detuning, branch));
+                blocks.push(equation_with_words(words, detuning, branch));
             }
         }
     }
     if let Some(closed) = &response.closed {
-        blocks.push(said("frequency response", Expr::zero(), closed.relation.clone()));
+        blocks.push(equation_with_words(
+            "frequency response",
+            Expr::zero(),
+            closed.relation.clone(),
+        ));
         if let (Some(detuning), Ok(width)) = (detuning, closed.width_squared.sqrt()) {
-            blocks.push(said("solved for the detuning", detuning, &closed.centre - &width));
-            blocks.push(said("and", detuning, &closed.centre + &width));
+            blocks.push(equation_with_words(
+                "solved for the detuning",
+                detuning,
+                &closed.centre - &width,
+            ));
+            blocks.push(equation_with_words("and", detuning, &closed.centre + &width));
         }
     }
     if let Some(frequency) = solution.law.frequency() {
-        blocks.push(said("backbone", Symbol::new("omega"), polynomial(frequency)));
+        blocks.push(equation_with_words("backbone", Symbol::new("omega"), polynomial(frequency)));
     }
     if let Some(form) = solution.law.closed_form() {
-        blocks.push(said("backbone", Symbol::new("omega"), form.value.clone()));
+        blocks.push(equation_with_words("backbone", Symbol::new("omega"), form.value.clone()));
     }
     let a = solution.amplitude.symbol();
     if let Some(peak) = &response.peak {
-        blocks.push(said("largest amplitude", a, peak.clone()));
+        blocks.push(equation_with_words("largest amplitude", a, peak.clone()));
     }
     for fold in &response.folds {
         let square = Expr::product([Expr::from(a), Expr::from(a)]);
-        blocks.push(said("branches meet at", square, fold.clone()));
+        blocks.push(equation_with_words("branches meet at", square, fold.clone()));
     }
     if let Some(jumps) = &response.jumps {
-        blocks.push(said(
+        blocks.push(equation_with_words(
             "jumps, where this discriminant changes its sign",
             Expr::zero(),
             polynomial(jumps),

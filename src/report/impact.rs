@@ -141,7 +141,7 @@ fn free_swing<'a>(impact: &Impact, law: &'a Solution) -> Vec<Block<'a>> {
 /// The law in a line, omega^2 where there are two; a balance or an integral stays with
 /// `lindstedt derive`.
 fn first_law(solution: &Solution) -> Vec<Block<'_>> {
-    match solution.law.shown().into_iter().next() {
+    match solution.law.display_forms().into_iter().next() {
         None | Some(DisplayedLaw::System(_) | DisplayedLaw::Quadrature(_)) => vec![],
         Some(shown) => law_blocks(solution, shown),
     }

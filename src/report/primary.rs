@@ -177,7 +177,7 @@ fn energy<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
 
 fn rest_times<'a>(report: &PrimaryReport<'a>) -> Vec<Block<'a>> {
     let motion = report.motion;
-    let others = motion.case.primary.others();
+    let others = motion.case.primary.undamped_and_locked();
     let seconds = |time: f64| decimal(time * report.units.time());
     let driven = motion.case.primary.force != 0.0;
     let alone = |name: &str, alone: &Alone| {

@@ -39,7 +39,7 @@ pub fn solution<'a>(
         words: solution.title(),
         amplitude: solution.amplitude.in_words(solution.coordinate()),
     };
-    let shown = solution.law.shown();
+    let shown = solution.law.display_forms();
     let laws = match solution.slow() {
         Some(slow) => slow_equations(solution, slow),
         None => shown.into_iter().flat_map(|law| law_blocks(solution, law)).collect(),

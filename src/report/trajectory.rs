@@ -252,11 +252,11 @@ fn account<'a>(report: &TrajectoryReport<'a>) -> Vec<Block<'a>> {
     )];
     facts.push(("until", format!("t = {}, {}", decimal(motion.end()), in_words(motion.reason()))));
     let held: Vec<String> = motion
-        .held()
+        .sticking_intervals()
         .take(MOST_HELD)
         .map(|[from, until]| format!("{} to {}", decimal(from), decimal(until)))
         .collect();
-    let more = motion.held().count().saturating_sub(MOST_HELD);
+    let more = motion.sticking_intervals().count().saturating_sub(MOST_HELD);
     if !held.is_empty() {
         let more = if more == 0 { String::new() } else { format!(", and {more} times more") };
         facts.push(("held by friction", format!("t = {}{more}", held.join(", "))));

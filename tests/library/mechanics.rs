@@ -500,9 +500,9 @@ fn a_driven_motion_sticks_and_lets_go() {
             assert!((own - x).abs() < 1e-8, "{alpha} {beta} {eta} at {t}: {own} {x}");
         }
         assert!(
-            motion.held().count() > 2 || beta < alpha,
+            motion.sticking_intervals().count() > 2 || beta < alpha,
             "{:?}",
-            motion.held().collect::<Vec<_>>()
+            motion.sticking_intervals().collect::<Vec<_>>()
         );
     }
 }
@@ -541,7 +541,7 @@ fn friction_holds_one_of_several_coordinates() {
     // The spring between them, 1/2 times y, is too weak for the friction of 2/5: y'' + 3/2 y = 0.
     let blocks = ["(x'^2 + y'^2)/2", "(x^2 + y^2)/2 + (x - y)^2/4", "2/5*abs(x')"];
     let motion = followed(mechanism(blocks, &[], &[("y", 0.79)], 40.0));
-    assert_eq!(motion.held().collect::<Vec<_>>(), [[0.0, 40.0]]);
+    assert_eq!(motion.sticking_intervals().collect::<Vec<_>>(), [[0.0, 40.0]]);
     for index in 0..=400 {
         let t = 0.1 * f64::from(index);
         let state = motion.states_at(t).expect("a state");
@@ -553,7 +553,7 @@ fn friction_holds_one_of_several_coordinates() {
     let size = (0.49 + 0.49 / 1.5_f64).sqrt();
     let phase = (0.7 / 1.5_f64.sqrt()).atan2(0.7);
     let let_go = (phase - (0.8 / size).acos()) / 1.5_f64.sqrt();
-    let [from, until] = motion.held().next().expect("a hold");
+    let [from, until] = motion.sticking_intervals().next().expect("a hold");
     assert!(from == 0.0 && (until - let_go).abs() < 1e-12, "{until} {let_go}");
     assert!(motion.states_at(until + 0.3).expect("a state")[0] > 1e-4);
     // Three quarters of the mass ride on the rest: 4 x'' + x = 0 while 3 |x''| <= 1/2.
@@ -571,7 +571,8 @@ fn friction_holds_one_of_several_coordinates() {
     // equally fast.
     let motion = followed(mechanism(riding, &[], &[("x", 1.2)], 30.0));
     assert!(
-        motion.held().all(|[from, until]| from > 0.0 && until > from) && motion.held().count() > 0
+        motion.sticking_intervals().all(|[from, until]| from > 0.0 && until > from)
+            && motion.sticking_intervals().count() > 0
     );
     // On a belt it is carried until the spring is too strong, and then swings about where friction
     // alone would hold it: it comes back to the speed of the belt once a period, and touches it.
@@ -682,7 +683,7 @@ fn stick_and_slip_of_several_coordinates_is_that_of_time_stepping() {
             let apart = (state[0] - x).abs().max((state[1] - y).abs());
             assert!(apart < 5e-4, "{mass:?} {bounds:?} {belt} at {t}: {state:?} {x} {y}");
         }
-        held += motion.held().count();
+        held += motion.sticking_intervals().count();
         // The other integrator finds the same.
         course.duration = 6.0;
         let other = course.follow_by(Integrator::RungeKutta).expect("a motion");
@@ -699,7 +700,7 @@ fn more_frictions_at_rest_than_velocities() {
     let dissipation = "abs(x') + abs(y')/10 + abs(x' - y')/2";
     let bodies = ["x'^2/2 + y'^2/2", "0", dissipation];
     let motion = followed(mechanism(bodies, &[("x", "t/10")], &[], 25.0));
-    let held: Vec<[f64; 2]> = motion.held().collect();
+    let held: Vec<[f64; 2]> = motion.sticking_intervals().collect();
     assert!(matches!(held.as_slice(), [[0.0, apart]] if (apart - 19.0).abs() < 1e-6), "{held:?}");
     for index in 0..=190 {
         let t = 0.1 * f64::from(index);

@@ -116,7 +116,7 @@ fn without_contact_it_is_the_linear_system_of_two_modes() {
     let rest =
         follow(PrimaryCase { primary: damped, model: held, start: [0.0, 0.0, 0.5, 0.0] }, 200.0)
             .rest_time();
-    let locked = damped.others().locked.rest_time.expect("a rest time");
+    let locked = damped.undamped_and_locked().locked.rest_time.expect("a rest time");
     assert!((rest.expect("a rest time") / locked - 1.0).abs() < 1e-9);
 }
 
@@ -272,7 +272,7 @@ fn what_the_damper_is_worth() {
     let with = follow(PrimaryCase { primary, model: caged, start }, 400.0)
         .rest_time()
         .expect("a rest time");
-    let others = primary.others();
+    let others = primary.undamped_and_locked();
     assert!(
         with < others.locked.rest_time.expect("a rest time")
             && with < others.without.rest_time.expect("a rest time")
@@ -282,7 +282,7 @@ fn what_the_damper_is_worth() {
         100.0,
     );
     assert!(lossless.rest_time().is_err());
-    assert_eq!(MASS.others().without.rest_time, None);
+    assert_eq!(MASS.undamped_and_locked().without.rest_time, None);
     assert!((lossless.energy.end / lossless.energy.start - 1.0).abs() < 1e-9);
 }
 

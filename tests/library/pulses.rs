@@ -129,7 +129,7 @@ fn a_stiffness_for_a_moment_kicks() {
 #[test]
 fn a_short_pulse_frees_what_friction_holds() {
     for motion in followed("x'' + x + 0.5*sgn(x') = 50*exp(-((t-20)*100)^2)", 0.1, 40.0) {
-        let held: Vec<[f64; 2]> = motion.held().collect();
+        let held: Vec<[f64; 2]> = motion.sticking_intervals().collect();
         assert!(
             held.first().is_some_and(|[from, until]| *from < 1.0 && (until - 20.0).abs() < 0.05),
             "{held:?}"
@@ -155,7 +155,7 @@ fn what_ends_at_the_edge_of_what_friction_holds_is_held() {
                 course.energy = None;
             }
             let motion = course.follow().expect("a motion");
-            let held: Vec<[f64; 2]> = motion.held().collect();
+            let held: Vec<[f64; 2]> = motion.sticking_intervals().collect();
             let [[from, until]] = held.as_slice() else {
                 panic!("{start}: {held:?}");
             };

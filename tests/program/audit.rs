@@ -208,7 +208,7 @@ fn what_is_found_of_the_paper_follows_from_its_numbers() {
     assert!(!steel.is_within && steel.range[0] < density && density < steel.range[1]);
     // The speed of the pendulum.
     let number = |id: &str| {
-        let tried = finding(&paper, id).shown().expect("a try");
+        let tried = finding(&paper, id).displayed_attempt().expect("a try");
         tried.computed[0].as_ref().expect("a number").number().expect("a number")
     };
     let exact = (2.0 * (0.323_f64.cos() - 1.5_f64.cos())).sqrt();

@@ -23,7 +23,7 @@ pub fn par_map<I: Sync, T: Send>(items: &[I], work: impl Fn(&I) -> T + Sync) -> 
 /// Every number up to this one; a function of its own, so that it is built once for all kinds of
 /// work.
 fn run(count: usize, work: &(dyn Fn(usize) + Sync)) {
-    let letters = ResultSymbols::here();
+    let letters = ResultSymbols::in_force_here();
     let work = &|number| {
         let _letters = letters.exactly();
         work(number);

@@ -43,7 +43,7 @@ use crate::solution::note::{CornerSide, CrossWell};
 use crate::symbol::{Symbol, fresh};
 use force::{PositionForce, SingularAttraction};
 use search::Zero as SignChange;
-use shift::{moved, value_at};
+use shift::{shifted_force, value_at};
 
 /// An equation of motion in the deviation from its equilibrium.
 #[derive(Clone, Debug, PartialEq)]
@@ -321,7 +321,7 @@ fn about_zero_of_force(
     place: &Expr,
     degree: Option<u32>,
 ) -> Result<Option<Centred>, OscillatorError> {
-    let there = moved(still, oscillator.coordinate, place)?;
+    let there = shifted_force(still, oscillator.coordinate, place)?;
     let there = PositionForce::new(&there, oscillator.coordinate);
     let stable = there.is_stable_at_zero();
     // Without a drive, which has been taken out of the force, and without what velocities add.
@@ -401,7 +401,7 @@ fn seen_from(
     let simple = matches!(place, EquilibriumPosition::Exact(_))
         && position.to_polynomial(&mut |_| None)?.is_some();
     if simple {
-        centred.oscillator.force = moved(&oscillator.force, coordinate, &position)?;
+        centred.oscillator.force = shifted_force(&oscillator.force, coordinate, &position)?;
         return Ok(centred);
     }
     if let (Some(degree), Some(number)) = (degree, number) {

@@ -506,9 +506,9 @@ impl Oscillator {
 
     /// The symbol that a person means by this name: one of the equation, or else the one that is
     /// written so in the answer.
-    pub fn meant(&self, name: Symbol) -> Symbol {
+    pub fn resolve_symbol(&self, name: Symbol) -> Symbol {
         let own: Vec<Symbol> = self.own_names().collect();
-        self.letters().meant(name, &own)
+        self.letters().resolve(name, &own)
     }
 
     /// Parameters whose names look like something else, `e` or `sinx`, each with how that would be
@@ -548,7 +548,7 @@ impl Oscillator {
     /// method introduces is named by [`fresh`] beside them.
     pub fn names(&self) -> Vec<Symbol> {
         let letters = self.letters();
-        let letters = letters.unusual().map(|(_, written)| written);
+        let letters = letters.renamed().map(|(_, written)| written);
         self.own_names().chain(letters).collect()
     }
 
@@ -625,7 +625,7 @@ impl Oscillator {
     /// An unknown name, or several parameters that would do.
     pub fn small_parameter(&self, asked: Option<&str>) -> Result<SmallParameter, OscillatorError> {
         if let Some(name) = asked {
-            let symbol = self.meant(Symbol::new(name));
+            let symbol = self.resolve_symbol(Symbol::new(name));
             return match symbol {
                 AMPLITUDE | FIRST_HARMONIC => Ok(SmallParameter::Amplitude),
                 _ if self.parameters.contains(&symbol) => Ok(SmallParameter::Parameter(symbol)),

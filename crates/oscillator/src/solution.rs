@@ -350,7 +350,7 @@ impl Solution {
     pub fn names(&self) -> Vec<Symbol> {
         let defined = self.definitions.iter().map(|definition| definition.symbol);
         let letters = self.letters();
-        let letters = letters.unusual().map(|(_, written)| written);
+        let letters = letters.renamed().map(|(_, written)| written);
         self.names_of_equation().chain(defined).chain(letters).collect()
     }
 

@@ -676,7 +676,7 @@ impl Trajectory {
 
     /// The stretches of time, from when until when, on which dry friction holds something: at rest,
     /// on a belt or on another body.
-    pub fn held(&self) -> impl Iterator<Item = [f64; 2]> {
+    pub fn sticking_intervals(&self) -> impl Iterator<Item = [f64; 2]> {
         let mut held: Vec<[f64; 2]> = Vec::new();
         for piece in self.pieces.iter().filter(|piece| piece.is_held()) {
             match held.last_mut() {

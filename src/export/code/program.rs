@@ -59,7 +59,7 @@ pub(super) fn of_solution(
             } else if !solution.displacement.is_zero() {
                 routines.extend(motion(oscillator, solution, &names, &arguments));
             }
-            remarks.extend(unseen(oscillator, solution));
+            remarks.extend(unchecked_conditions(oscillator, solution));
             remarks.extend(at_rest(solution, law));
         }
         (Err(reason), None) => return Err(NoCode::SolvedByNumbers(reason.clone())),
@@ -460,7 +460,7 @@ fn motion(
         Sign::Opposite => Some(names.sign),
         _ => None,
     };
-    both(names, beginnings, before, displaced.collect(), moving.collect())
+    displacement_and_velocity(names, beginnings, before, displaced.collect(), moving.collect())
 }
 
 /// Displacement and velocity of a motion that is an expression in the time.
@@ -518,7 +518,7 @@ fn angle(names: &ProgramNames) -> Statement {
 }
 
 /// Displacement and velocity; `before` stands before either.
-fn both(
+fn displacement_and_velocity(
     names: &ProgramNames,
     beginnings: [FunctionPrologue; 2],
     before: Option<Symbol>,
@@ -633,7 +633,13 @@ fn motion_in_numbers(
         arguments: vec![names.time],
         body: vec![Statement::Variable(names.omega, number(frequency)), angle(names)],
     };
-    both(names, [beginning(), beginning()], None, displaced.collect(), moving.collect())
+    displacement_and_velocity(
+        names,
+        [beginning(), beginning()],
+        None,
+        displaced.collect(),
+        moving.collect(),
+    )
 }
 
 /// Ends a function where the terms of its formulas cancel and more than half of the digits of
@@ -674,7 +680,7 @@ fn digits<'a>(
 
 /// Conditions that a program does not check and a numerical answer does: whether there is a motion,
 /// and whether the force is defined all along it.
-fn unseen(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
+fn unchecked_conditions(oscillator: &Oscillator, solution: &Solution) -> Option<String> {
     let in_parts = |part: &Expr| match part.node() {
         Node::Function(function, _) => {
             use Function::{Acos, Asin, Log, Tan};

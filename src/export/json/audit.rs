@@ -157,7 +157,7 @@ fn number(found: &Result<Computed, crate::audit::NotComputable>) -> Option<f64> 
 
 fn claim(finding: &ClaimFinding) -> AuditClaim {
     let own = &finding.claim;
-    let shown = finding.shown();
+    let shown = finding.displayed_attempt();
     let entry = |(index, printed): (usize, &crate::audit::PrintedEntry)| AuditEntry {
         printed: printed.printed.clone(),
         computed: shown.and_then(|tried| audit_entry(finding, tried, index)),

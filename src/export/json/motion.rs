@@ -153,7 +153,7 @@ pub fn motion(report: &TrajectoryReport) -> MotionDocument {
         }),
         difference: report.judge.map(|judge| motion.difference(judge)),
         known_until: report.known_until,
-        held: motion.held().collect(),
+        held: motion.sticking_intervals().collect(),
         stopped: in_words(motion.reason()).to_owned(),
         complete: report.is_complete(),
     }

@@ -158,7 +158,7 @@ impl DocumentNames {
     pub fn avoiding(own: impl IntoIterator<Item = Symbol>, driven: bool) -> Self {
         let own: Vec<Symbol> = own.into_iter().collect();
         let letters = ResultSymbols::avoiding(&own, driven);
-        let clash = |name: &Symbol| letters.unusual().any(|(usual, _)| usual.name() == name.name());
+        let clash = |name: &Symbol| letters.renamed().any(|(usual, _)| usual.name() == name.name());
         let apart = |name: Symbol| if clash(&name) { name.apart() } else { name };
         Self { own: own.into_iter().map(apart).collect(), letters }
     }
@@ -174,12 +174,12 @@ impl DocumentNames {
     }
 
     fn changed(&self, name: Symbol) -> Symbol {
-        let changed = self.letters.meant(name.coordinate(), &self.own);
+        let changed = self.letters.resolve(name.coordinate(), &self.own);
         (0..name.primes()).fold(changed, |name, _| name.derivative())
     }
 
     fn are_usual(&self) -> bool {
-        self.letters.unusual().next().is_none()
+        self.letters.renamed().next().is_none()
     }
 
     /// An expression with the symbols of its names.

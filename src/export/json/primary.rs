@@ -182,7 +182,7 @@ pub fn primary(report: &PrimaryReport) -> PrimaryDocument {
     };
     let [x, velocity, y, speed] = case.start;
     let start = PrimarySample { t: 0.0, x, velocity, y, speed };
-    let others = own.others();
+    let others = own.undamped_and_locked();
     let driven = own.force != 0.0;
     let rest = motion.rest_time();
     PrimaryDocument {

@@ -355,7 +355,7 @@ fn the_generations(study: &Study) -> Option<String> {
         .map(|run| run.generations)
         .collect();
     let at_once = stalled.iter().filter(|generations| **generations == earliest).count();
-    let settled = study.settled(1e-3)?;
+    let settled = study.generation_of_convergence(1e-3)?;
     let when = match settled {
         0 => "already in its random population".to_owned(),
         generation => format!("from generation {generation} on"),

@@ -96,7 +96,7 @@ pub fn equilibria(equations: &EquationsOfMotion) -> Result<Vec<Rest>, MechanicsE
         }
     };
     if let ([angle], [force]) = (coordinates.as_slice(), forces.as_slice())
-        && let Some(cosine) = tilted(*angle, force)?
+        && let Some(cosine) = cosine_of_tilt(*angle, force)?
     {
         let place = Expr::function(Function::Acos, vec![cosine.clone()])?;
         for place in [place.clone(), -place] {
@@ -238,7 +238,7 @@ fn linear_places(
 }
 
 /// The cosine of the angle at which `sin(q)*(a + b*cos(q))` vanishes beside 0 and pi.
-fn tilted(angle: Symbol, force: &Expr) -> Result<Option<Expr>, ExprError> {
+fn cosine_of_tilt(angle: Symbol, force: &Expr) -> Result<Option<Expr>, ExprError> {
     let (sine, cosine) = (Expr::from(angle).sin()?, Expr::from(angle).cos()?);
     let mark = Symbol::new("_cosine");
     let marked: BTreeMap<Symbol, Expr> = [(angle, Expr::symbol("_angle"))].into();

@@ -101,8 +101,10 @@ impl Groups {
         let dimension_of = |name: Symbol| known.get(&name).cloned().unwrap_or_default();
         let inertia = combined(&equations.mass.concat())?;
         let stiffness = combined(std::slice::from_ref(&mechanism.potential))?;
-        let mut basis =
-            Basis::independent_among(&preferred(&inertia, &stiffness, &parameters), dimension_of);
+        let mut basis = Basis::independent_among(
+            &unit_candidates(&inertia, &stiffness, &parameters),
+            dimension_of,
+        );
         let mut sizes = Vec::new();
         for coordinate in &equations.coordinates {
             let unit = dimension_of(*coordinate);
@@ -183,7 +185,7 @@ fn names(parameters: &[Symbol]) -> String {
 
 /// The parameters in the order in which they are taken for units: those of inertia, of stiffness,
 /// all others.
-fn preferred(inertia: &[Expr], stiffness: &[Expr], parameters: &[Symbol]) -> Vec<Symbol> {
+fn unit_candidates(inertia: &[Expr], stiffness: &[Expr], parameters: &[Symbol]) -> Vec<Symbol> {
     let [inertia, stiffness] = [inertia, stiffness]
         .map(|parts| parts.iter().flat_map(Expr::symbols).collect::<BTreeSet<_>>());
     let place = |name: &Symbol| match (inertia.contains(name), stiffness.contains(name)) {

@@ -293,14 +293,15 @@ fn undamped(mass: &Cholesky<f64, nalgebra::Dyn>, stiffness: &DMatrix<f64>) -> Ve
         Mode {
             frequency: square.max(0.0).sqrt(),
             growth: (-square).max(0.0).sqrt(),
-            shape: shape.map(|shape| shape.iter().map(|entry| tidy(entry / size)).collect()),
+            shape: shape
+                .map(|shape| shape.iter().map(|entry| without_rounding(entry / size)).collect()),
         }
     };
     (0..stiffness.nrows()).map(mode).collect()
 }
 
 /// A proportion without the noise of rounding.
-fn tidy(proportion: f64) -> f64 {
+fn without_rounding(proportion: f64) -> f64 {
     if proportion.abs() < ROUNDING { 0.0 } else { proportion }
 }
 

@@ -24,7 +24,7 @@ const MOST_TERMS: usize = 2000;
 pub(super) fn simplified(expression: &Expr) -> Result<Expr, ExprError> {
     let mut sum = without_inverses(expression)?.expand()?;
     while sum.terms().len() <= MOST_TERMS {
-        match joined(&sum)? {
+        match join_one_pair(&sum)? {
             Some(shorter) => sum = shorter.expand()?,
             None => break,
         }
@@ -49,7 +49,7 @@ fn without_inverses(expression: &Expr) -> Result<Expr, ExprError> {
 }
 
 /// The sum with one pair of its terms joined; nothing where there is no such pair.
-fn joined(sum: &Expr) -> Result<Option<Expr>, ExprError> {
+fn join_one_pair(sum: &Expr) -> Result<Option<Expr>, ExprError> {
     let terms = sum.terms();
     let bare: Vec<(Rational, Expr)> = terms.iter().map(without_number).collect();
     let places: HashMap<&Expr, usize> =
@@ -57,7 +57,7 @@ fn joined(sum: &Expr) -> Result<Option<Expr>, ExprError> {
     for (index, (number, term)) in bare.iter().enumerate() {
         for [first, second] in pairs(term) {
             let rest = Expr::divide(term, &(&first.expression() * &second.expression()))?;
-            let partner = &rest * &(first.turned()? * second.turned()?);
+            let partner = &rest * &(first.cofunction()? * second.cofunction()?);
             let Some(&place) = places.get(&partner) else {
                 continue;
             };
@@ -69,7 +69,7 @@ fn joined(sum: &Expr) -> Result<Option<Expr>, ExprError> {
             if place == index || !(whole || first.angle == second.angle) {
                 continue;
             }
-            let Some(together) = SineOrCosine::join(&first, &second, opposite)? else {
+            let Some(together) = SineOrCosine::combine(&first, &second, opposite)? else {
                 continue;
             };
             let share = match other.abs() < number.abs() {
@@ -113,7 +113,7 @@ impl SineOrCosine {
     }
 
     /// Sine for cosine and the other way round.
-    fn turned(&self) -> Result<Expr, ExprError> {
+    fn cofunction(&self) -> Result<Expr, ExprError> {
         let function = match self.function {
             Function::Sin => Function::Cos,
             _ => Function::Sin,
@@ -123,7 +123,7 @@ impl SineOrCosine {
 
     /// `first*second + turned*turned`, or their difference, as one wave; nothing where that is no
     /// shorter.
-    fn join(first: &Self, second: &Self, opposite: bool) -> Result<Option<Expr>, ExprError> {
+    fn combine(first: &Self, second: &Self, opposite: bool) -> Result<Option<Expr>, ExprError> {
         let (u, v) = (&first.angle, &second.angle);
         match (first.function, second.function, opposite) {
             (Function::Cos, Function::Cos, false) => (u - v).cos().map(Some),

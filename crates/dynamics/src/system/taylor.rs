@@ -289,7 +289,7 @@ impl<'a> TaylorRun<'a> {
         if !over && self.options.interrupt.is_requested() {
             return Some(PathEnd::Interrupted);
         }
-        self.expansion.put(self.start + self.time, &self.values);
+        self.expansion.expand_about(self.start + self.time, &self.values);
         None
     }
 
@@ -321,7 +321,7 @@ impl<'a> TaylorRun<'a> {
         if over {
             return Ok(Some(PathEnd::Reached));
         }
-        let reach = self.reach(now);
+        let reach = self.step_length(now);
         if reach.is_nan() || reach <= 0.0 || now + reach == now {
             return Ok(Some(PathEnd::Singular));
         }
@@ -330,7 +330,7 @@ impl<'a> TaylorRun<'a> {
         {
             return Ok(Some(PathEnd::Sticks));
         }
-        Ok(self.go(reach))
+        Ok(self.advance(reach))
     }
 
     /// Whether everything has a series here.
@@ -338,7 +338,7 @@ impl<'a> TaylorRun<'a> {
     /// # Errors
     /// The first state or event without one.
     fn defined(&mut self) -> Result<(), SystemError> {
-        let settled = self.expansion.settle();
+        let settled = self.expansion.switch_corners();
         settled.map_err(|state| SystemError::Start(self.system.state[state]))?;
         let is_undefined =
             |event: &usize| !self.expansion.event(*event).iter().all(|value| value.is_finite());
@@ -356,7 +356,7 @@ impl<'a> TaylorRun<'a> {
 
     /// The length of the next step: the reach of the series here, shortened so that no critical
     /// time and no narrow place is stepped over.
-    fn reach(&mut self, now: f64) -> f64 {
+    fn step_length(&mut self, now: f64) -> f64 {
         let reach = self.expansion.step().min(self.duration - self.time);
         let next = next_critical(&self.system.critical, now);
         let reach = next.map_or(reach, |next| reach.min(next - now));
@@ -366,7 +366,7 @@ impl<'a> TaylorRun<'a> {
 
     /// Goes so far, or to the first corner or event that stops; answers why the run ends there, if
     /// it does.
-    fn go(&mut self, reach: f64) -> Option<PathEnd> {
+    fn advance(&mut self, reach: f64) -> Option<PathEnd> {
         // A corner within the step ends it, and so does an event that stops.
         let mut corner = self.expansion.first_corner(reach);
         let mut length = corner.map_or(reach, |(_, place)| place);
@@ -488,7 +488,7 @@ impl<'a> TaylorRun<'a> {
         self.time = step.start;
         self.values = step.coefficients.chunks(step.order + 1).map(|series| series[0]).collect();
         self.signs = last.signs;
-        self.expansion.take(&last.sides);
+        self.expansion.set_sides(&last.sides);
         self.occurrences.truncate(last.occurrences);
         self.halvings += 1;
     }
@@ -528,7 +528,7 @@ impl SystemSeries {
 
     /// Takes the side of every corner on which this point lies, or to which it is going.
     pub(super) fn begin(&mut self, time: f64, values: &[f64]) {
-        self.put(time, values);
+        self.expand_about(time, values);
         let corners = self.tape.corners().count();
         // The argument of one corner may depend on the side of another.
         for _ in 0..if corners > 0 { corners + 1 } else { 0 } {
@@ -545,21 +545,21 @@ impl SystemSeries {
     /// # Errors
     /// As [`Self::settle`].
     pub(super) fn expand(&mut self, time: f64, values: &[f64]) -> Result<(), usize> {
-        self.put(time, values);
+        self.expand_about(time, values);
         self.compute();
-        self.settle()
+        self.switch_corners()
     }
 
     /// The coefficients of everything about a point, on these sides of the corners; whether there
     /// are any.
     fn expand_once(&mut self, time: f64, values: &[f64]) -> bool {
-        self.put(time, values);
+        self.expand_about(time, values);
         self.compute();
         self.check().is_ok()
     }
 
     /// Puts the variables where everything is to be expanded.
-    fn put(&mut self, time: f64, values: &[f64]) {
+    fn expand_about(&mut self, time: f64, values: &[f64]) {
         for (variable, value) in values.iter().chain([&time]).enumerate() {
             self.tape.set(variable, 0, *value);
         }
@@ -576,7 +576,7 @@ impl SystemSeries {
     /// Takes what was computed for it in a lane.
     fn take_from(&mut self, tape: &Tape<LANES>, lane: usize) {
         let places = (0..self.states).chain(self.outputs[self.states..].iter().copied());
-        tape.unload(lane, places, &mut self.tape);
+        tape.copy_lane_to(lane, places, &mut self.tape);
     }
 
     /// The places of the rates.
@@ -590,7 +590,7 @@ impl SystemSeries {
     /// # Errors
     /// The first state whose series has no finite value, or the first of all where a corner has
     /// none.
-    fn settle(&mut self) -> Result<(), usize> {
+    fn switch_corners(&mut self) -> Result<(), usize> {
         for _ in 0..=self.tape.corners().count() {
             let left = self.tape.corners().position(|(series, side)| {
                 let slope = series.get(1).copied().unwrap_or(0.0);
@@ -642,7 +642,7 @@ impl SystemSeries {
         let finite = |series: &&[f64]| series.iter().all(|value| value.is_finite());
         let corners = self.tape.corners().map(|(series, _)| series).filter(finite);
         followed.chain(events).chain(corners).fold(f64::INFINITY, |longest, series| {
-            self.of_steps.reach(series, longest, &mut self.powers)
+            self.of_steps.longest_step(series, longest, &mut self.powers)
         })
     }
 
@@ -657,7 +657,7 @@ impl SystemSeries {
                 continue;
             }
             // Beyond its own reach the series of the argument says nothing.
-            length = self.of_arguments.reach(series, length, &mut self.powers);
+            length = self.of_arguments.longest_step(series, length, &mut self.powers);
             if let Some(end) = end_of_step(*kind, series, length) {
                 length = end;
             }
@@ -754,7 +754,7 @@ impl SystemSeries {
     }
 
     /// Goes to these sides.
-    fn take(&mut self, sides: &[f64]) {
+    fn set_sides(&mut self, sides: &[f64]) {
         for (corner, side) in sides.iter().enumerate() {
             if self.tape.corners().nth(corner).is_some_and(|(_, now)| now != *side) {
                 self.cross(corner);
@@ -800,7 +800,7 @@ impl Allowance {
 
     /// The longest step, no longer than this, on which the last terms of a series of this order are
     /// within the tolerance.
-    fn reach(&self, series: &[f64], longest: f64, powers: &mut PowerTable) -> f64 {
+    fn longest_step(&self, series: &[f64], longest: f64, powers: &mut PowerTable) -> f64 {
         const TRIALS: usize = 400;
         let order = self.order;
         let Some(lead) = series.iter().position(|c| *c != 0.0) else {

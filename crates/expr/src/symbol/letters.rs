@@ -128,12 +128,12 @@ impl ResultSymbols {
     }
 
     /// The letters that are in force on this thread, the usual ones included.
-    pub(crate) fn here() -> Self {
+    pub(crate) fn in_force_here() -> Self {
         IN_FORCE.get()
     }
 
     /// Those that are not the usual ones: each the symbol of the answer and how it is written.
-    pub fn unusual(&self) -> impl Iterator<Item = (Symbol, Symbol)> {
+    pub fn renamed(&self) -> impl Iterator<Item = (Symbol, Symbol)> {
         let pairs = [
             (AMPLITUDE, self.amplitude),
             (FIRST_HARMONIC, self.first_harmonic),
@@ -144,11 +144,11 @@ impl ResultSymbols {
 
     /// The symbol that a person means by this name beside an equation with these names: one of the
     /// equation, or else the one that is written so in the answer.
-    pub fn meant(&self, name: Symbol, names: &[Symbol]) -> Symbol {
+    pub fn resolve(&self, name: Symbol, names: &[Symbol]) -> Symbol {
         if let Some(own) = names.iter().find(|own| own.name() == name.name()) {
             return *own;
         }
-        let written = self.unusual().find(|(_, written)| *written == name);
+        let written = self.renamed().find(|(_, written)| *written == name);
         written.map_or(name, |(usual, _)| usual)
     }
 }
@@ -159,7 +159,7 @@ pub(super) fn written(symbol: Symbol) -> &'static str {
         return symbol.name();
     };
     let bare = symbol.0.trim_end_matches('\'');
-    let Some((_, letter)) = letters.unusual().find(|(usual, _)| usual.0 == bare) else {
+    let Some((_, letter)) = letters.renamed().find(|(usual, _)| usual.0 == bare) else {
         return symbol.name();
     };
     match symbol.primes() {
@@ -201,7 +201,7 @@ mod tests {
             assert_eq!(answer.to_string(), "r");
         }
         assert_eq!(answer.to_string(), "a");
-        assert_eq!(letters.meant("r".into(), &[equation]), answer);
-        assert_eq!(letters.meant("a".into(), &[equation]), equation);
+        assert_eq!(letters.resolve("r".into(), &[equation]), answer);
+        assert_eq!(letters.resolve("a".into(), &[equation]), equation);
     }
 }

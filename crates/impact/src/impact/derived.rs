@@ -64,7 +64,7 @@ impl Flight {
         options: &method::Options,
     ) -> Result<Self, ImpactError> {
         let swing = &equations.swing;
-        let turned = if sign < 0.0 { turned(swing)? } else { None };
+        let turned = if sign < 0.0 { mirrored_equation(swing)? } else { None };
         // A swing between barriers is free: what drives it is refused by the method that knows free
         // motions alone.
         let options = &method::Options {
@@ -180,7 +180,7 @@ fn motion_at(
 }
 
 /// The equation of -x; `None` where it is that of x.
-fn turned(swing: &Oscillator) -> Result<Option<Oscillator>, ImpactError> {
+fn mirrored_equation(swing: &Oscillator) -> Result<Option<Oscillator>, ImpactError> {
     let x = swing.coordinate;
     if is_odd(&swing.force, x)? {
         return Ok(None);

@@ -346,8 +346,13 @@ pub fn study_materials(question: MaterialQuestion) -> Result<MaterialStudy, Mate
         model,
         start,
         rows,
-        no_barrier: course(&without, start, question.integrator, &longer(&question.settings))?
-            .rest_time,
+        no_barrier: course(
+            &without,
+            start,
+            question.integrator,
+            &with_longer_duration(&question.settings),
+        )?
+        .rest_time,
         dissipation,
         held_fixed,
         question,
@@ -355,7 +360,7 @@ pub fn study_materials(question: MaterialQuestion) -> Result<MaterialStudy, Mate
 }
 
 /// The settings of a motion that rests later.
-fn longer(settings: &Settings) -> Settings {
+fn with_longer_duration(settings: &Settings) -> Settings {
     Settings { duration: BASELINE_DURATIONS * settings.duration, ..*settings }
 }
 
@@ -409,8 +414,13 @@ fn row(
         dissipation: case.dissipation(Some(units))?,
         yield_checks: checks.collect(),
         first,
-        lossless: self::course(&lossless, start, question.integrator, &longer(&question.settings))?
-            .rest_time,
+        lossless: self::course(
+            &lossless,
+            start,
+            question.integrator,
+            &with_longer_duration(&question.settings),
+        )?
+        .rest_time,
         course,
         material: material.clone(),
     })

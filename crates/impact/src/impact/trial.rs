@@ -157,9 +157,9 @@ impl Trial<'_> {
         let mut tried: Vec<Attempt> = Vec::new();
         let mut best: Option<Derived> = None;
         for &method in methods {
-            let (found, attempts) = self.climb(method);
+            let (found, attempts) = self.raise_order(method);
             tried.extend(attempts);
-            best = closer(best, found);
+            best = with_smaller_error(best, found);
             if best.as_ref().is_some_and(|best| best.error <= self.setup.tolerance) {
                 break;
             }
@@ -169,7 +169,7 @@ impl Trial<'_> {
 
     /// The derived phases of a method: at the order asked for, or at the lowest that passes, else
     /// at the best.
-    fn climb(&self, method: Method) -> (Option<Derived>, Vec<Attempt>) {
+    fn raise_order(&self, method: Method) -> (Option<Derived>, Vec<Attempt>) {
         let setup = self.setup;
         let takes = |choice| MethodEntry::for_method(method).takes(choice);
         let same = |n| match method.counts() {
@@ -227,7 +227,7 @@ impl Trial<'_> {
                     .map(|found| found.error)
                     .map_err(|reason| reason.without_title(method)),
             });
-            best = closer(best, found.ok());
+            best = with_smaller_error(best, found.ok());
             // Orders that bring nothing closer for long: an expansion beyond its radius.
             let error = |attempt: &Attempt| attempt.error.clone().unwrap_or(f64::INFINITY);
             let stalls = tried.len() > PATIENCE && {
@@ -333,7 +333,7 @@ impl Trial<'_> {
 }
 
 /// The one with the smaller error.
-fn closer(one: Option<Derived>, other: Option<Derived>) -> Option<Derived> {
+fn with_smaller_error(one: Option<Derived>, other: Option<Derived>) -> Option<Derived> {
     match (one, other) {
         (Some(one), Some(other)) if other.error < one.error => Some(other),
         (one, other) => one.or(other),

@@ -223,7 +223,7 @@ impl Probe<'_> {
 
     /// The objective of a point, constraints aside, and where it keeps them.
     fn judged(&self, point: &[f64]) -> [Option<f64>; 2] {
-        let evaluation = self.question.worth(point, self.least.get(), &mut 0);
+        let evaluation = self.question.bounded_evaluation(point, self.least.get(), &mut 0);
         let value = Some(evaluation.value()).filter(|value| value.is_finite());
         let kept =
             value.filter(|_| evaluation.is_feasible(self.question.genetic.constraint_tolerance));
@@ -255,7 +255,7 @@ impl Probe<'_> {
         self.space.contains(&point).then_some(point)
     }
 
-    fn moved(&self, best: &[f64], index: usize, value: f64) -> Option<Vec<f64>> {
+    fn with_variable(&self, best: &[f64], index: usize, value: f64) -> Option<Vec<f64>> {
         let mut point = best.to_vec();
         point[index] = value;
         self.on_surface(point, Some(index))
@@ -263,7 +263,7 @@ impl Probe<'_> {
 
     /// Values from the best one to a limit, closer together near the smaller where the range has
     /// decades.
-    fn way(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
+    fn values_towards(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + use<> {
         let decades = (to / from).abs().max((from / to).abs()) > 10.0;
         let steps = if self.fewer > 1 { STEPS / 4 } else { STEPS };
         (1..=steps).map(move |step| {
@@ -281,12 +281,12 @@ impl Probe<'_> {
         let (parameter, value) = (variable.parameter, best[index]);
         let limits = [variable.lower, variable.upper];
         let good = |value: f64| {
-            let point = self.moved(best, index, value)?;
+            let point = self.with_variable(best, index, value)?;
             self.feasible(&point).filter(|objective| *objective <= level)
         };
         let reach = |limit: f64| {
             let mut last = value;
-            for next in self.way(value, limit) {
+            for next in self.values_towards(value, limit) {
                 if good(next).is_none() {
                     let halvings = if self.fewer > 1 { 12 } else { 30 };
                     let [inside, _] = bisect(
@@ -303,8 +303,8 @@ impl Probe<'_> {
         };
         let alone = limits.map(reach);
         // With a density some values are not to be had.
-        let tried = limits.into_iter().flat_map(|limit| self.way(value, limit));
-        let tried = tried.filter_map(|value| self.moved(best, index, value));
+        let tried = limits.into_iter().flat_map(|limit| self.values_towards(value, limit));
+        let tried = tried.filter_map(|value| self.with_variable(best, index, value));
         let tried: Vec<[Option<f64>; 2]> = tried.map(|point| self.judged(&point)).collect();
         let whole: Option<Vec<f64>> =
             tried.iter().map(|[value, _]| *value).chain([self.value(best)]).collect();
@@ -316,7 +316,7 @@ impl Probe<'_> {
         let least = kept.chain(self.value(best)).fold(f64::INFINITY, f64::min);
         // Whether the end is as good as anything on the way.
         let is_end = |end: usize| {
-            let point = self.moved(best, index, limits[end]);
+            let point = self.with_variable(best, index, limits[end]);
             let at_end = point.and_then(|point| self.feasible(&point));
             alone[end] == limits[end] && at_end.is_some_and(|at_end| at_end <= least * (1.0 + SAME))
         };
@@ -324,7 +324,7 @@ impl Probe<'_> {
         let is_forbidden = |end: usize| {
             let beyond = alone[end] + 1e-3 * (limits[end] - alone[end]);
             alone[end] != limits[end]
-                && self.moved(best, index, beyond).is_none_or(|point| {
+                && self.with_variable(best, index, beyond).is_none_or(|point| {
                     self.value(&point).is_some_and(|objective| objective <= level)
                 })
         };
@@ -357,7 +357,7 @@ impl Probe<'_> {
             (value * (1.0 + STEP)).min(variable.upper),
         ];
         let at = |end: f64| {
-            let point = self.moved(best, index, end).unwrap_or_else(|| {
+            let point = self.with_variable(best, index, end).unwrap_or_else(|| {
                 let mut point = best.to_vec();
                 point[index] = end;
                 point
@@ -447,7 +447,7 @@ impl Probe<'_> {
         let [(short, _), (long, _)] = [both(lengths[0])?, both(lengths[1])?];
         let mut least = [f64::INFINITY; 2];
         let mut best_lengths = [best[index]; 2];
-        let tried = lengths.into_iter().flat_map(|limit| self.way(best[index], limit));
+        let tried = lengths.into_iter().flat_map(|limit| self.values_towards(best[index], limit));
         for length in lengths.into_iter().chain([best[index]]).chain(tried) {
             let Some((times, true)) = both(length) else {
                 continue;

@@ -139,7 +139,7 @@ impl OptimizationProblem {
         };
         let motion = DesignMotion { question: self, model, start, units, route, contact };
         let followed = match self.main_mass {
-            Some(main_mass) => motion.carried(&main_mass)?,
+            Some(main_mass) => motion.on_main_mass(&main_mass)?,
             None => motion.on_fixed_pivot().map_err(|error| error.to_string())?,
         };
         Ok(EvaluatedDesign {
@@ -259,7 +259,7 @@ impl DesignMotion<'_> {
 
     /// The pendulum on the main mass that carries it: always by integration, for the two have no
     /// chain. It ends when the main mass rests, unless the rest of the pendulum is asked for too.
-    fn carried(&self, main_mass: &MainMass) -> Result<SimulatedMotion, String> {
+    fn on_main_mass(&self, main_mass: &MainMass) -> Result<SimulatedMotion, String> {
         let [displacement, speed] = main_mass.start(&self.units);
         let case = PrimaryCase {
             primary: main_mass.primary(&self.units),

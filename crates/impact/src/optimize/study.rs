@@ -188,7 +188,12 @@ impl OptimizationProblem {
     /// Closed forms are too coarse to decide whether a constraint is kept: a design as near to one
     /// as they may be off, which by them would be the best or on a front, is integrated. It keeps
     /// its value by closed forms where it keeps the constraints, so that values can be compared.
-    pub(super) fn worth(&self, point: &[f64], best: f64, integrated: &mut usize) -> Evaluation {
+    pub(super) fn bounded_evaluation(
+        &self,
+        point: &[f64],
+        best: f64,
+        integrated: &mut usize,
+    ) -> Evaluation {
         let follow = |route| match self.follow(point, route, self.needs_contact()) {
             Ok(design) => (self.evaluation(&design), design.integrated),
             Err(_) => {
@@ -224,7 +229,7 @@ impl OptimizationProblem {
     fn evaluate<'a>(&'a self, integrated: &'a mut usize) -> impl FnMut(&[f64]) -> Evaluation + 'a {
         let mut best = f64::INFINITY;
         move |point| {
-            let evaluation = self.worth(point, best, integrated);
+            let evaluation = self.bounded_evaluation(point, best, integrated);
             if evaluation.is_feasible(self.genetic.constraint_tolerance) {
                 best = best.min(evaluation.value());
             }
@@ -301,11 +306,11 @@ pub fn optimize(
     let complete =
         runs.len() == question.runs && runs.iter().all(|run| run.stop != GeneticStop::Interrupted);
     if runs.iter().all(|run| run.found.is_empty()) {
-        return Err(nothing(&question, &space, watch, complete));
+        return Err(no_design_error(&question, &space, watch, complete));
     }
     let finalists = finalists(&question, &runs);
     if finalists.first().is_none_or(|best| !best.feasible) {
-        return Err(nothing(&question, &space, watch, complete));
+        return Err(no_design_error(&question, &space, watch, complete));
     }
     let (mut rivals, mut decision) = (vec![], None);
     if question.objectives.len() == 1 {
@@ -352,7 +357,7 @@ pub fn optimize_on(
 const ENOUGH: [usize; 2] = [60, 100];
 
 /// Why nothing was found.
-fn nothing(
+fn no_design_error(
     question: &OptimizationProblem,
     space: &Space,
     watch: &StudyObserver,
@@ -387,7 +392,7 @@ fn nothing(
     // Constraints alone: how far they are broken is what is to be small.
     let tolerance = question.genetic.constraint_tolerance;
     let evaluate = |point: &[f64]| {
-        let evaluation = question.worth(point, f64::INFINITY, &mut 0);
+        let evaluation = question.bounded_evaluation(point, f64::INFINITY, &mut 0);
         let has_values = evaluation.objectives.iter().all(|value| value.is_finite());
         Evaluation::unconstrained(match has_values {
             true => evaluation.violation(tolerance),
@@ -437,7 +442,7 @@ fn finalists(question: &OptimizationProblem, runs: &[SearchRun]) -> Vec<Finalist
         found.sort_by(|one, other| one.1.values[0].total_cmp(&other.1.values[0]));
         found = distinct(question, &found);
     } else {
-        found = front(&found, question.genetic.population);
+        found = merged_front(&found, question.genetic.population);
     }
     let judge = |&(run, found): &(usize, &Found)| {
         let design = question.follow(&found.point, Route::Integration, true).ok()?;
@@ -504,7 +509,7 @@ fn distinct<'a>(
 }
 
 /// Whom nobody dominates among the fronts of all runs; the loneliest where they are too many.
-fn front<'a>(found: &[(usize, &'a Found)], most: usize) -> Vec<(usize, &'a Found)> {
+fn merged_front<'a>(found: &[(usize, &'a Found)], most: usize) -> Vec<(usize, &'a Found)> {
     let evaluation =
         |found: &Found| Evaluation { objectives: found.values.clone(), ..Evaluation::default() };
     let all: Vec<Evaluation> = found.iter().map(|(_, found)| evaluation(found)).collect();
@@ -625,7 +630,7 @@ impl Study {
     }
 
     /// The generation from which on the median run was within this part of its last value.
-    pub fn settled(&self, part: f64) -> Option<usize> {
+    pub fn generation_of_convergence(&self, part: f64) -> Option<usize> {
         let curve = self.median_curve();
         let last = *curve.last()?;
         curve.iter().position(|value| value - last <= part * last.abs())

@@ -80,7 +80,7 @@ pub fn search_front(
     };
     let mut population: Vec<Individual> = (0..size).map(|_| born(space.draw(generator))).collect();
     evaluations += size;
-    let (mut standing, mut loneliness) = standings(&population, tolerance);
+    let (mut standing, mut loneliness) = ranks_and_crowding(&population, tolerance);
     let mut curve = vec![front_size(&population, &standing, tolerance)];
     let mut generation = 0;
     let stop = loop {
@@ -112,7 +112,7 @@ pub fn search_front(
         }
         population.extend(children.into_iter().map(&mut born));
         evaluations += size;
-        let (all, lonely) = standings(&population, tolerance);
+        let (all, lonely) = ranks_and_crowding(&population, tolerance);
         let mut order: Vec<usize> = (0..population.len()).collect();
         order.sort_by(|one, other| {
             all[*one].cmp(&all[*other]).then(lonely[*other].total_cmp(&lonely[*one]))
@@ -120,7 +120,7 @@ pub fn search_front(
         order.truncate(size);
         let mut places: Vec<Option<Individual>> = population.into_iter().map(Some).collect();
         population = order.iter().filter_map(|index| places[*index].take()).collect();
-        (standing, loneliness) = standings(&population, tolerance);
+        (standing, loneliness) = ranks_and_crowding(&population, tolerance);
         curve.push(front_size(&population, &standing, tolerance));
         generation += 1;
     };
@@ -140,7 +140,7 @@ pub fn search_front(
 }
 
 /// Ranks, and how lonely everybody is among those of the same rank.
-fn standings(population: &[Individual], tolerance: f64) -> (Vec<usize>, Vec<f64>) {
+fn ranks_and_crowding(population: &[Individual], tolerance: f64) -> (Vec<usize>, Vec<f64>) {
     let all: Vec<&Evaluation> = population.iter().map(|member| &member.evaluation).collect();
     let ranks = ranks(&all, tolerance);
     let mut lonely = vec![0.0; all.len()];

@@ -280,7 +280,7 @@ pub fn search(
         PopulationBuilder { space, options, evaluate: &mut evaluate, best: None, evaluations: 0 };
     let mut population = Vec::with_capacity(options.population);
     for _ in 0..options.population {
-        population.push(nursery.born(options.coding.draw(space, generator)));
+        population.push(nursery.evaluate_genes(options.coding.draw(space, generator)));
     }
     let mut multipliers = match (options.penalty, population.first()) {
         (Penalty::AugmentedLagrangian { initial, .. }, Some(first)) => {
@@ -311,7 +311,7 @@ pub fn search(
         let mut places: Vec<Option<Member>> = population.into_iter().map(Some).collect();
         let elite = order.iter().take(options.elite);
         population = elite.filter_map(|index| places[*index].take()).collect();
-        population.extend(children.into_iter().map(|genes| nursery.born(genes)));
+        population.extend(children.into_iter().map(|genes| nursery.evaluate_genes(genes)));
         let before = order.first().map_or(f64::INFINITY, |index| scored[*index]);
         let now = score(&population, multipliers.as_ref());
         let leader = (0..now.len()).min_by(|one, other| now[*one].total_cmp(&now[*other]));
@@ -347,7 +347,7 @@ struct PopulationBuilder<'a, E> {
 }
 
 impl<E: FnMut(&[f64]) -> Evaluation> PopulationBuilder<'_, E> {
-    fn born(&mut self, genes: Vec<f64>) -> Member {
+    fn evaluate_genes(&mut self, genes: Vec<f64>) -> Member {
         let point = self.options.coding.point(&genes, self.space);
         let evaluation = (self.evaluate)(&point);
         self.evaluations += 1;

@@ -32,7 +32,7 @@ impl<F: FnMut(&[f64]) -> Evaluation> BestTracker<F> {
         Self { evaluate, tolerance, every, best: None, curve: vec![], count: 0 }
     }
 
-    fn see(&mut self, point: &[f64]) -> Evaluation {
+    fn evaluate_point(&mut self, point: &[f64]) -> Evaluation {
         let evaluation = (self.evaluate)(point);
         self.count += 1;
         let better = |best: &Individual| evaluation.value() < best.evaluation.value();
@@ -71,7 +71,7 @@ pub fn random_search(
 ) -> GeneticRun {
     let mut watch = BestTracker::new(evaluate, tolerance, every.max(1));
     for _ in 0..evaluations {
-        watch.see(&space.draw(generator));
+        watch.evaluate_point(&space.draw(generator));
     }
     watch.finish(GeneticStop::Budget)
 }
@@ -103,7 +103,7 @@ impl<F: FnMut(&[f64]) -> Evaluation> CostFunction for &Boxed<F> {
     fn cost(&self, point: &Vec<f64>) -> Result<f64, Infallible> {
         let mut watch = self.watch.borrow_mut();
         let tolerance = watch.tolerance;
-        let evaluation = watch.see(point);
+        let evaluation = watch.evaluate_point(point);
         Ok(match evaluation.violation(tolerance) {
             0.0 if evaluation.value().is_finite() => evaluation.value().clamp(-BROKEN, BROKEN),
             violation => BROKEN * (1.0 + violation.min(1e6)),

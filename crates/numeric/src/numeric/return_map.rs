@@ -195,19 +195,21 @@ fn at_once(
     equation: &AutonomousEquation,
     attracts: bool,
 ) -> Result<Option<NumericalLimitCycle>, NoReturn> {
-    let explicit = returns(ROUNDING, equation, attracts, &|start| {
+    let explicit = cycle_by_returns(ROUNDING, equation, attracts, &|start| {
         swing(equation, attracts, start, STEPS_OF_RELAXATION)
     });
     match explicit {
-        Err(NoReturn::TooManySteps) => returns(STIFF_ROUNDING, equation, attracts, &|start| {
-            stiff_swing(equation, attracts, start)
-        }),
+        Err(NoReturn::TooManySteps) => {
+            cycle_by_returns(STIFF_ROUNDING, equation, attracts, &|start| {
+                stiff_swing(equation, attracts, start)
+            })
+        }
         explicit => explicit,
     }
 }
 
 /// The cycle onto which a few returns lead, to this accuracy.
-fn returns(
+fn cycle_by_returns(
     rounding: f64,
     equation: &AutonomousEquation,
     attracts: bool,

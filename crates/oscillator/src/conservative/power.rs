@@ -24,7 +24,7 @@ impl Power {
     }
 
     /// Takes a factor in, where it is a power of the variable, its size or its sign.
-    pub(crate) fn takes(&mut self, factor: &Expr, variable: Symbol) -> bool {
+    pub(crate) fn absorb(&mut self, factor: &Expr, variable: Symbol) -> bool {
         let (base, exponent) = factor.base_and_exponent();
         let number = exponent.as_number();
         let of_variable =

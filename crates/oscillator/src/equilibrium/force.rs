@@ -12,7 +12,7 @@ use num_traits::Zero;
 use super::EquilibriumPosition;
 use super::inverse::inverted;
 use super::search::{Zero as SignChange, polynomial_zeros, zeros};
-use super::shift::{closed_forms, coefficients, exact_zero, linear_zeros, moved};
+use super::shift::{closed_forms, coefficients, exact_zero, linear_zeros, shifted_force};
 use crate::conservative::force::CentredForce as AtNumbers;
 use crate::conservative::passage::{Passage, passages, pushes_away};
 use crate::conservative::{is_odd, potential};
@@ -461,7 +461,7 @@ impl<'a> PositionForce<'a> {
         let periods =
             slopes.iter().map(|slope| Expr::from(2) * Expr::pi() * Expr::number(slope.recip()));
         periods.into_iter().find(|period| {
-            let moved = moved(self.force, self.coordinate, period);
+            let moved = shifted_force(self.force, self.coordinate, period);
             let difference = moved.and_then(|moved| (&moved - self.force).expand());
             difference.is_ok_and(|difference| difference.is_zero())
         })

@@ -53,12 +53,12 @@ fn zeros(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     }
     let parts: Option<Vec<(Expr, Expr)>> = moving.iter().map(|term| split(term, x)).collect();
     if let Some([(factor, function)]) = parts.as_deref() {
-        return before(function, &Expr::divide(&other_side, factor)?, x);
+        return solve_for_argument(function, &Expr::divide(&other_side, factor)?, x);
     }
     if let Some([one, other]) = parts.as_deref()
         && let Some((angle, values)) = angles([one, other], &other_side)?
     {
-        return through(&angle, values, x);
+        return zeros_at_values(&angle, values, x);
     }
     let roots = of_polynomial(expression, x)?;
     match parts {
@@ -80,7 +80,7 @@ fn split(term: &Expr, x: Symbol) -> Option<(Expr, Expr)> {
 }
 
 /// Solves `function = y` for x.
-fn before(function: &Expr, y: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
+fn solve_for_argument(function: &Expr, y: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     let both = |value: Expr| vec![value.clone(), -value];
     let call = |function, argument: Expr| Expr::function(function, vec![argument]);
     let squared = y.integer_power(2)?;
@@ -121,11 +121,11 @@ fn before(function: &Expr, y: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> 
         Node::Sum(_) => (function, vec![y.clone()]),
         _ => return Ok(vec![]),
     };
-    through(inner, values, x)
+    zeros_at_values(inner, values, x)
 }
 
 /// Solves `inner = value` for x, for each of these values.
-fn through(inner: &Expr, values: Vec<Expr>, x: Symbol) -> Result<Vec<Expr>, ExprError> {
+fn zeros_at_values(inner: &Expr, values: Vec<Expr>, x: Symbol) -> Result<Vec<Expr>, ExprError> {
     let found: Result<Vec<Vec<Expr>>, ExprError> =
         values.iter().map(|value| zeros(&(inner - value), x)).collect();
     Ok(found?.into_iter().flatten().collect())
@@ -168,7 +168,7 @@ fn of_polynomial(expression: &Expr, x: Symbol) -> Result<Vec<Expr>, ExprError> {
         Some([d, c, b, a]) => cubic_roots(a, b, c, d),
         Some([d, between @ .., a]) if !between.is_empty() && between.iter().all(Expr::is_zero) => {
             let degree = Expr::from(between.len() as i64 + 1);
-            before(&Expr::power(&Expr::from(x), &degree)?, &Expr::divide(&-d, a)?, x)
+            solve_for_argument(&Expr::power(&Expr::from(x), &degree)?, &Expr::divide(&-d, a)?, x)
         }
         _ => Ok(vec![]),
     }
@@ -221,7 +221,7 @@ fn of_powers(parts: &[(Expr, Expr)], r: &Expr, x: Symbol) -> Result<Vec<Expr>, E
         None => Expr::function(Function::Exp, vec![exponent])?,
     };
     let found: Result<Vec<Vec<Expr>>, ExprError> =
-        roots.iter().map(|root| before(&function, root, x)).collect();
+        roots.iter().map(|root| solve_for_argument(&function, root, x)).collect();
     Ok(found?.into_iter().flatten().collect())
 }
 

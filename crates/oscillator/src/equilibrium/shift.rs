@@ -30,7 +30,11 @@ pub(super) fn value_at(
 }
 
 /// The force in the deviation from a position.
-pub(super) fn moved(force: &Expr, coordinate: Symbol, position: &Expr) -> Result<Expr, ExprError> {
+pub(super) fn shifted_force(
+    force: &Expr,
+    coordinate: Symbol,
+    position: &Expr,
+) -> Result<Expr, ExprError> {
     with_known_angles(&force.substitute(coordinate, &(Expr::from(coordinate) + position))?)
 }
 

@@ -568,7 +568,7 @@ impl Projected {
     }
 
     /// The motion, its velocity and the small terms, as lines of a derivation.
-    fn along(
+    fn derivation_lines(
         &self,
         oscillator: &Oscillator,
         amplitude: &Expr,
@@ -606,7 +606,7 @@ fn by_projections(oscillator: &Oscillator, small: &SmallTerms) -> Result<Average
     let amplitude = Expr::from(a);
     let found = Projected::new(oscillator, small, &amplitude)?;
     let letters = DerivationLetters::avoiding(&oscillator.names());
-    let mut derivation = found.along(oscillator, &amplitude, &letters)?;
+    let mut derivation = found.derivation_lines(oscillator, &amplitude, &letters)?;
     let Projected { omega0, root, definitions, sine, cosine, .. } = found;
     let twice = Expr::from(2) * &omega0;
     let amplitude_rate = Expr::divide(&sine, &twice)?.expand()?;

@@ -104,7 +104,7 @@ pub struct Continuation {
     /// Refinement factor of the sums of the last solution; 0 if there is none yet.
     fineness: Cell<usize>,
     /// Number of failed continuations of motions over several wells.
-    in_vain: Cell<usize>,
+    failures: Cell<usize>,
 }
 
 impl Continuation {
@@ -175,7 +175,7 @@ pub fn balance(
 }
 
 /// The last of these motions up to which, from the first on, nothing changes.
-fn settled<'s>(motions: &[&'s (BalanceUnknowns, f64)]) -> Option<&'s (BalanceUnknowns, f64)> {
+fn converged<'s>(motions: &[&'s (BalanceUnknowns, f64)]) -> Option<&'s (BalanceUnknowns, f64)> {
     let first = motions.first()?.1;
     let same = motions.iter().take_while(|entry| (entry.1 - first).abs() <= 1e-6);
     same.last().copied()
@@ -481,7 +481,7 @@ impl<'a> BalanceProblem<'a> {
     }
 
     /// The motion of one term, and how large its first corrections are.
-    fn of_one_term(&self, amplitude: f64) -> Option<(BalanceUnknowns, f64)> {
+    fn one_term_guess(&self, amplitude: f64) -> Option<(BalanceUnknowns, f64)> {
         let mut state = BalanceUnknowns(DVector::zeros(self.count + 2));
         state.0[self.first + 1] = self.side();
         state.0[self.count + 1] = amplitude.abs().ln();
@@ -505,7 +505,7 @@ impl<'a> BalanceProblem<'a> {
     /// A motion of small amplitude: the nearest that has the linear frequency and nearly is its
     /// first harmonic alone, or, where the force has no linear part, the nearest below which
     /// nothing changes any more, as for a power of x.
-    fn at_rest(&self) -> Option<BalanceUnknowns> {
+    fn small_amplitude_start(&self) -> Option<BalanceUnknowns> {
         /// Corrections so small, and a frequency so close, that the branch is that of rest.
         const NEARLY_ALONE: f64 = 0.01;
         const NEARLY_LINEAR: f64 = 0.05;
@@ -513,36 +513,36 @@ impl<'a> BalanceProblem<'a> {
         let mut tried: Vec<(BalanceUnknowns, f64)> = Vec::new();
         for halving in (0..25).chain([30, 40, 60, 100]) {
             let amplitude = self.amplitude * 0.5_f64.powi(halving);
-            let Some((alone, corrections)) = self.of_one_term(amplitude) else {
+            let Some((alone, corrections)) = self.one_term_guess(amplitude) else {
                 continue;
             };
             if corrections <= NEARLY_ALONE
                 && (alone.frequency_squared() / linear - 1.0).abs() <= NEARLY_LINEAR
-                && let Some(found) = self.near(&alone, 0.05)
+                && let Some(found) = self.solve_near(&alone, 0.05)
             {
                 return Some(found);
             }
             tried.push((alone, corrections));
         }
         let upwards: Vec<&(BalanceUnknowns, f64)> = tried.iter().rev().collect();
-        self.near(&settled(&upwards)?.0, 0.5)
+        self.solve_near(&converged(&upwards)?.0, 0.5)
     }
 
     /// A motion of an amplitude so large that nothing changes any more beyond it.
-    fn at_large(&self) -> Option<BalanceUnknowns> {
+    fn large_amplitude_start(&self) -> Option<BalanceUnknowns> {
         const DOUBLINGS: i32 = 40;
         let tried: Vec<Option<(BalanceUnknowns, f64)>> = (0..=DOUBLINGS)
-            .map(|doubling| self.of_one_term(self.amplitude * 2.0_f64.powi(doubling)))
+            .map(|doubling| self.one_term_guess(self.amplitude * 2.0_f64.powi(doubling)))
             .collect();
         // Far out the force may overflow.
         let felt = tried.iter().rposition(Option::is_some)?;
         let downwards: Vec<&(BalanceUnknowns, f64)> =
             tried[..=felt].iter().rev().map_while(Option::as_ref).collect();
-        self.near(&settled(&downwards)?.0, 0.5)
+        self.solve_near(&converged(&downwards)?.0, 0.5)
     }
 
     /// A solution close to a guess.
-    fn near(&self, guess: &BalanceUnknowns, distance: f64) -> Option<BalanceUnknowns> {
+    fn solve_near(&self, guess: &BalanceUnknowns, distance: f64) -> Option<BalanceUnknowns> {
         self.at_amplitude(guess, 1).filter(|found| (&found.0 - &guess.0).amax() <= distance)
     }
 
@@ -553,7 +553,7 @@ impl<'a> BalanceProblem<'a> {
         known: &Continuation,
     ) -> Result<(BalanceUnknowns, Option<f64>), BalanceError> {
         if pushes_away(self.force, self.amplitude) {
-            return self.over_the_hilltop(known).map(|found| (found, None));
+            return self.follow_cross_well_branch(known).map(|found| (found, None));
         }
         const FINER: usize = 4;
         const FINEST: usize = 64;
@@ -561,7 +561,7 @@ impl<'a> BalanceProblem<'a> {
         const AHEAD: f64 = 0.01;
         let mut before = f64::NEG_INFINITY;
         let end = loop {
-            let end = match self.up_from_rest(known).ok_or(BalanceError::NoStart)? {
+            let end = match self.follow_from_rest(known).ok_or(BalanceError::NoStart)? {
                 Ok(found) => return Ok((found, None)),
                 Err(end) => end,
             };
@@ -579,7 +579,7 @@ impl<'a> BalanceProblem<'a> {
             let (low, high) = self.range(found);
             self.is_pulled_back(low, high) || self.runs_over_several_wells()
         };
-        let outer = self.at_large();
+        let outer = self.large_amplitude_start();
         let outer = outer.and_then(|large| self.followed_from(large, -1.0, &mut Vec::new()).ok());
         let found = outer.filter(fits).map(|found| (found, Some(amplitude)));
         found.ok_or(BalanceError::Ends { amplitude })
@@ -587,7 +587,10 @@ impl<'a> BalanceProblem<'a> {
 
     /// The branch of motions through an unstable equilibrium, over the wells on both sides, from
     /// what is known of it or from an amplitude nearby at which one term is nearly all.
-    fn over_the_hilltop(&self, known: &Continuation) -> Result<BalanceUnknowns, BalanceError> {
+    fn follow_cross_well_branch(
+        &self,
+        known: &Continuation,
+    ) -> Result<BalanceUnknowns, BalanceError> {
         /// Starts that are tried, and how far they are from the amplitude: to four times, where
         /// there is no end before.
         const STARTS: usize = 6;
@@ -606,11 +609,11 @@ impl<'a> BalanceProblem<'a> {
             known.states.borrow_mut().append(&mut passed);
             found
         };
-        let nearest = known.nearest(self.amplitude).and_then(|state| self.near(&state, 0.05));
+        let nearest = known.nearest(self.amplitude).and_then(|state| self.solve_near(&state, 0.05));
         if let Some(Ok(found)) = nearest.map(&reached) {
             return Ok(found);
         }
-        if known.in_vain.get() >= MOST_IN_VAIN {
+        if known.failures.get() >= MOST_IN_VAIN {
             return Err(BalanceError::NoStart);
         }
         let sizes = (-3 * PER_DOUBLING..=2 * PER_DOUBLING)
@@ -618,7 +621,7 @@ impl<'a> BalanceProblem<'a> {
         let sizes = sizes.map(|factor| factor * self.amplitude.abs());
         let mut alone: Vec<(BalanceUnknowns, f64)> = sizes
             .filter(|&size| size > range.from && size < end)
-            .filter_map(|size| self.of_one_term(size * self.side()))
+            .filter_map(|size| self.one_term_guess(size * self.side()))
             .collect();
         // Nearly of one term, and not far.
         let merit = |(state, corrections): &(BalanceUnknowns, f64)| {
@@ -626,11 +629,11 @@ impl<'a> BalanceProblem<'a> {
         };
         alone.sort_by(|one, other| merit(one).total_cmp(&merit(other)));
         let mut lost = BalanceError::NoStart;
-        let starts = alone.iter().filter_map(|(alone, _)| self.near(alone, 0.5));
+        let starts = alone.iter().filter_map(|(alone, _)| self.solve_near(alone, 0.5));
         for start in starts.take(STARTS) {
             let from = start.logarithm().exp() * self.side();
             let found = reached(start);
-            known.in_vain.set(known.in_vain.get() + usize::from(found.is_err()));
+            known.failures.set(known.failures.get() + usize::from(found.is_err()));
             match found {
                 Ok(found) => return Ok(found),
                 Err(last) if lost == BalanceError::NoStart => {
@@ -645,19 +648,19 @@ impl<'a> BalanceProblem<'a> {
 
     /// The branch from rest, or from what is known of it, to the amplitude; or its end. Nothing
     /// where there is no motion at rest.
-    fn up_from_rest(
+    fn follow_from_rest(
         &self,
         known: &Continuation,
     ) -> Option<Result<BalanceUnknowns, BalanceUnknowns>> {
         let mut passed = Vec::new();
         // By the sums of this problem, which may be finer than those that it was found with.
         let nearest = known.below(self.amplitude);
-        let nearest = nearest.and_then(|state| self.near(&state, 0.05));
+        let nearest = nearest.and_then(|state| self.solve_near(&state, 0.05));
         let mut found =
             nearest.and_then(|nearest| self.followed_from(nearest, 1.0, &mut passed).ok());
         if found.is_none() {
             passed.clear();
-            match self.followed_from(self.at_rest()?, 1.0, &mut passed) {
+            match self.followed_from(self.small_amplitude_start()?, 1.0, &mut passed) {
                 Ok(reached) => found = Some(reached),
                 Err(end) => return Some(Err(end)),
             }

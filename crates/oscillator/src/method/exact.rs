@@ -389,7 +389,7 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<ForceProp
     }
     // A power that is no number.
     let mut power = Power::one();
-    if inside.iter().all(|factor| power.takes(factor, coordinate))
+    if inside.iter().all(|factor| power.absorb(factor, coordinate))
         && power.exponent.as_number().is_none()
     {
         let form = power.odd.then(|| of_power(&outside, &power.exponent)).transpose()?;

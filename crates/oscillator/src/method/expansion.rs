@@ -104,7 +104,7 @@ pub fn expand_exactly(
             let force = force_terms(&reduced, numbers.into_iter().map(constant));
             let expansion =
                 expand_numbers_supervised(&force, order as usize, scheme, extent, supervision)?;
-            Ok(collect(&expansion, scheme, over::<Integer>, restore, taken))
+            Ok(collect(&expansion, scheme, over_denominator::<Integer>, restore, taken))
         }
         _ => {
             let force =
@@ -134,7 +134,7 @@ pub fn expand_exactly(
                     expansion
                 }
             };
-            Ok(collect(&expansion, scheme, over::<Polynomial<Integer>>, restore, taken))
+            Ok(collect(&expansion, scheme, over_denominator::<Polynomial<Integer>>, restore, taken))
         }
     }
 }
@@ -160,7 +160,7 @@ impl Numerator for Polynomial<Integer> {
 /// From the numerators of a series over this denominator to polynomials. The denominators of an
 /// expansion have small prime factors alone: found once, they take the place of a greatest common
 /// divisor for each coefficient.
-fn over<N: Numerator>(denominator: &Integer) -> impl Fn(&N) -> Polynomial + use<'_, N> {
+fn over_denominator<N: Numerator>(denominator: &Integer) -> impl Fn(&N) -> Polynomial + use<'_, N> {
     let factored = Factored::factorize(denominator);
     move |numerator| {
         numerator.polynomial(&|number| match &factored {

@@ -54,7 +54,7 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Soluti
     };
     let parts = oscillator.parts().ok()?;
     let waves: Option<Vec<HarmonicExcitation>> =
-        parts.forcing.terms().iter().map(|term| plain(term, oscillator)).collect();
+        parts.forcing.terms().iter().map(|term| as_free_force(term, oscillator)).collect();
     let waves = waves?;
     let mut free = oscillator.clone();
     free.force = (&oscillator.force - &parts.forcing).expand().ok()?;
@@ -138,7 +138,7 @@ fn of_the_whole(
 }
 
 /// A drive that is a force free of the motion; `None` for any other.
-fn plain(term: &Expr, oscillator: &Oscillator) -> Option<HarmonicExcitation> {
+fn as_free_force(term: &Expr, oscillator: &Oscillator) -> Option<HarmonicExcitation> {
     let wave = HarmonicExcitation::new(term, Method::MultipleScales).ok()?;
     let own = [oscillator.coordinate, oscillator.velocity()];
     let moves = |part: &Expr| own.iter().any(|name| part.contains(*name));

@@ -873,7 +873,8 @@ fn exact_motion(
     let frequency = std::f64::consts::TAU / period;
     // A motion that is written down is judged as it is written.
     let written = solution.closed_motion.as_ref();
-    let written = written.and_then(|motion| along(solution, motion, numbers, frequency));
+    let written =
+        written.and_then(|motion| harmonics_of_closed_form(solution, motion, numbers, frequency));
     Ok((
         frequency * frequency,
         FourierSeries::from_parts(Doubles, written.unwrap_or(cosine), vec![]),
@@ -881,7 +882,7 @@ fn exact_motion(
 }
 
 /// The coefficients of `cos(k theta)` of a motion in closed form; `None` where it has no value.
-fn along(
+fn harmonics_of_closed_form(
     solution: &Solution,
     motion: &Expr,
     numbers: &BTreeMap<Symbol, f64>,

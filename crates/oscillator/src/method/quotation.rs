@@ -45,7 +45,7 @@ pub(super) fn as_typed(
         Reason::NotOddAbout(..) => None,
         _ => refusal.quoted.as_deref_mut(),
     };
-    let found = term.and_then(|term| Some((typed(term, oscillator, centred)?, term)));
+    let found = term.and_then(|term| Some((typed_terms(term, oscillator, centred)?, term)));
     // It may be the factor of the acceleration that brings the velocity in: then the term is shown
     // over that.
     let shows_velocity = |found: &Quotation| found.words().contains(oscillator.velocity().name());
@@ -59,7 +59,7 @@ pub(super) fn as_typed(
 }
 
 /// The typed terms from which the terms of a sum come.
-fn typed(sum: &Quotation, oscillator: &Oscillator, centred: &Centred) -> Option<Quotation> {
+fn typed_terms(sum: &Quotation, oscillator: &Oscillator, centred: &Centred) -> Option<Quotation> {
     let expression = sum.expression();
     let sum = expression.expand().ok()?;
     let of = |term: &Expr| term.factors().1.to_vec();

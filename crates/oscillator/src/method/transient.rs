@@ -48,13 +48,13 @@ pub(crate) fn from_release(
     };
     let start = named(&format!("{FIRST_HARMONIC}0"), &mut release.amplitude);
     let phase = named("psi0", &mut release.phase);
-    let found = closed(a, rate, phase_rate, [&start, &phase]);
+    let found = closed_form(a, rate, phase_rate, [&start, &phase]);
     (definitions, found)
 }
 
 /// The amplitude and the phase from their values at the start, the first of which is a symbol;
 /// `None` where the amplitude has no closed form here.
-fn closed(
+fn closed_form(
     a: Symbol,
     rate: &Expr,
     phase_rate: &Expr,
@@ -65,14 +65,14 @@ fn closed(
     let phase = law.phase(phase_rate, a, &amplitude, start);
     Some(Transient {
         start: start.as_symbol()?,
-        amplitude: tidy(&amplitude)?,
-        phase: phase.and_then(|phase| tidy(&(begins + &phase))),
+        amplitude: merge_exponentials(&amplitude)?,
+        phase: phase.and_then(|phase| merge_exponentials(&(begins + &phase))),
         ends,
     })
 }
 
 /// Powers of exponentials as exponentials: `exp(u)^2 = exp(2 u)`.
-fn tidy(expression: &Expr) -> Option<Expr> {
+fn merge_exponentials(expression: &Expr) -> Option<Expr> {
     let tidied: Result<Expr, ExprError> = expression.fold(|expr, children: &[Expr]| {
         let whole = expr.with_children(children)?;
         let (base, exponent) = whole.base_and_exponent();

@@ -215,7 +215,7 @@ pub enum DisplayedLaw<'a> {
 impl Law {
     /// All forms of it that a report of one answer shows, in their order. A relation that is solved
     /// by a polynomial is left out.
-    pub fn shown(&self) -> Vec<DisplayedLaw<'_>> {
+    pub fn display_forms(&self) -> Vec<DisplayedLaw<'_>> {
         let shown = self.in_one_line();
         let beside = match self {
             Self::Series { frequency, .. } => frequency.as_ref().map(DisplayedLaw::Frequency),

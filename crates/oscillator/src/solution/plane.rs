@@ -126,7 +126,7 @@ impl AmplitudePolynomial {
     }
 
     /// Without what rounding leaves of terms that cancel.
-    fn cleaned(mut self) -> Self {
+    fn without_rounding_noise(mut self) -> Self {
         const ROUNDING: f64 = 1e-13;
         for (value, size) in self.coefficients.iter_mut().zip(&self.sizes) {
             if value.abs() <= ROUNDING * size {
@@ -152,7 +152,7 @@ impl AmplitudePolynomial {
             self.add(power, -value);
             self.sizes[power] += size - value.abs();
         }
-        self.cleaned()
+        self.without_rounding_noise()
     }
 
     fn is_zero(&self) -> bool {
@@ -261,7 +261,9 @@ impl PlaneField {
         }
         found
             .into_iter()
-            .map(|(m, rates)| (m, rates.map(|waves| waves.map(AmplitudePolynomial::cleaned))))
+            .map(|(m, rates)| {
+                (m, rates.map(|waves| waves.map(AmplitudePolynomial::without_rounding_noise)))
+            })
             .collect()
     }
 
@@ -349,7 +351,7 @@ impl PlaneField {
 
     /// A radius beyond which the terms of the highest degree outweigh all others, as far as they
     /// vanish nowhere on it.
-    fn outermost(&self) -> f64 {
+    fn outer_radius(&self) -> f64 {
         const ANGLES: usize = 72;
         /// The least part of their sizes that counts where they almost vanish.
         const LEAST: f64 = 1e-2;
@@ -390,7 +392,7 @@ impl PlaneField {
         /// Parts of the largest square within which a place is the origin, up to rounding.
         const ORIGIN: f64 = 1e-10;
         let mut places: Vec<[f64; 2]> = vec![];
-        let half = self.outermost();
+        let half = self.outer_radius();
         let is_elsewhere = |[u, v]: &[f64; 2]| u.hypot(*v) > ORIGIN * half;
         let mut squares = VecDeque::from([([0.0, 0.0], half, 0)]);
         let mut count = 0;

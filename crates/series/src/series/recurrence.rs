@@ -52,11 +52,11 @@ pub struct Recurrences {
 }
 
 /// The real root of an odd degree: the sign of the base is kept, or lost in an even power.
-fn odd(base: f64, exponent: f64) -> f64 {
+fn odd_root(base: f64, exponent: f64) -> f64 {
     base.abs().powf(exponent).copysign(base)
 }
 
-fn even(base: f64, exponent: f64) -> f64 {
+fn even_root(base: f64, exponent: f64) -> f64 {
     base.abs().powf(exponent)
 }
 
@@ -273,8 +273,8 @@ impl Recurrences {
             };
         }
         let first = match (exponent.denom().is_odd(), exponent.numer().is_odd()) {
-            (true, true) => odd,
-            (true, false) => even,
+            (true, true) => odd_root,
+            (true, false) => even_root,
             (false, _) => f64::powf,
         };
         self.emit(Operation::Power { base, exponent: to_f64(exponent), first })

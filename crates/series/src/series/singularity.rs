@@ -268,7 +268,7 @@ impl Complex {
     }
 
     /// The quotient; zero where the divisor is.
-    fn over(&self, divisor: &Self) -> Self {
+    fn divided_by(&self, divisor: &Self) -> Self {
         let size = divisor.squared_size();
         let above = self * &Self { re: divisor.re.clone(), im: -&divisor.im };
         Self { re: &above.re / &size, im: &above.im / &size }
@@ -584,7 +584,7 @@ impl Approximant {
                 last = 0.0;
                 break;
             }
-            let step = value.over(&slope);
+            let step = value.divided_by(&slope);
             let length = step.squared_size().sqrt()?.to_f64();
             // Rounding keeps the last digits moving.
             if length >= last && length < 1e-12 * size {
@@ -598,12 +598,12 @@ impl Approximant {
         }
         let [_, slope, bend] = derivatives(&self.zero, &place);
         let settled = place.distance(start) <= MOVES * size && last < 1e-9 * size;
-        let apart =
-            2.0 * slope.over(&bend).to_f64().norm() > APART * size || bend.squared_size().is_zero();
+        let apart = 2.0 * slope.divided_by(&bend).to_f64().norm() > APART * size
+            || bend.squared_size().is_zero();
         (settled && apart).then(|| Zero {
             exponent: (!self.beside.is_empty()).then(|| {
                 let [value, ..] = derivatives(&self.beside, &place);
-                -value.over(&slope).to_f64()
+                -value.divided_by(&slope).to_f64()
             }),
             place: if start.im.is_zero() {
                 Complex { im: BigFloat::zero(bits), ..place }

@@ -332,7 +332,7 @@ impl<const L: usize> Tape<L> {
 
     /// Hands the series of one lane at these places, and those of the corners, to a tape of its
     /// own with the same operations.
-    pub fn unload(&self, lane: usize, places: impl Iterator<Item = usize>, own: &mut Tape) {
+    pub fn copy_lane_to(&self, lane: usize, places: impl Iterator<Item = usize>, own: &mut Tape) {
         let length = self.program.length;
         for place in places.chain(self.program.corners.iter().copied()) {
             let own = &mut own.series[place * length..][..length];

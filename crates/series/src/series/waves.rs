@@ -191,7 +191,7 @@ impl Waves {
     }
 
     /// The divisors, point by point, that leave cosines of multiples of `phi`.
-    fn over(&self, wave: Wave) -> Option<&[Lanes]> {
+    fn divisors(&self, wave: Wave) -> Option<&[Lanes]> {
         match (self.grid.half_wave, wave) {
             (_, Wave::Sine) => Some(&self.over_sine),
             (true, Wave::Cosine) => Some(&self.over_cosine),
@@ -312,7 +312,7 @@ impl<A: Arithmetic> NullaryFnOnce for EvaluateWaves<'_, A> {
                 }
             }
         }
-        if let Some(over) = waves.over(wave) {
+        if let Some(over) = waves.divisors(wave) {
             multiply(residues, values, over);
         }
         waves.scratch = scratch;
@@ -336,7 +336,7 @@ impl<A: Arithmetic> NullaryFnOnce for RecoverCoefficients<'_, A> {
         let Grid { half_wave, halvings, leaf } = waves.grid;
         let size = waves.grid.size();
         let mut scratch = std::mem::take(&mut waves.scratch);
-        if let Some(over) = waves.over(wave) {
+        if let Some(over) = waves.divisors(wave) {
             multiply(residues, values, over);
         }
         for halving in 0..halvings {

@@ -349,7 +349,7 @@ pub(super) fn judged(
     let sines: Vec<f64> = harmonics.clone().map(|k| displacement.sine(k).mean().0).collect();
     let length = sines.iter().rposition(|sine| *sine != 0.0).map_or(0, |last| last + 1);
     let cosines: Vec<f64> = harmonics.map(|k| displacement.cosine(k).mean().0).collect();
-    let mut formula = unclaimed([&cosines, &sines[..length]], bits);
+    let mut formula = without_claims([&cosines, &sines[..length]], bits);
     (formula.law, formula.values) = law::of_frequency(solution, at);
     formula.frequency = units(motion.frequency(), bits);
     // If the law can be evaluated exactly from its text, that value is the frequency of the
@@ -372,7 +372,7 @@ pub(super) fn is_near(exact: &Ball, double: f64) -> bool {
 
 /// A formula of which nothing is claimed yet, its cosine and sine coefficients in units; without a
 /// law, and without a frequency.
-pub(super) fn unclaimed([cosines, sines]: [&[f64]; 2], bits: usize) -> JudgedFormula {
+pub(super) fn without_claims([cosines, sines]: [&[f64]; 2], bits: usize) -> JudgedFormula {
     let in_units = |values: &[f64]| values.iter().map(|value| units(*value, bits)).collect();
     let nothing = || [Rational::zero(), Rational::zero()];
     JudgedFormula {

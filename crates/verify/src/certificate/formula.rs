@@ -230,7 +230,8 @@ pub(super) fn certified(certificate: &Certificate, proof: Proof) -> Result<Certi
         exponent: None,
         amplitude: None,
         copies: 1,
-        law_is_held: formula.is_some_and(|formula| law::hold(formula, bits) == Ok(true)),
+        law_is_held: formula
+            .is_some_and(|formula| law::law_matches_frequency(formula, bits) == Ok(true)),
         formula: formula.map(errors),
     })
 }
@@ -267,7 +268,7 @@ impl Truth<'_> {
         own_motion: &FourierSeries,
         [own, truth]: [&Ball; 2],
     ) -> Errors {
-        let (amplitude, relative) = apart(own, truth);
+        let (amplitude, relative) = absolute_and_relative_error(own, truth);
         Errors {
             deviation: self.deviation(own_motion),
             frequency: SizeBounds::default(),
@@ -279,7 +280,8 @@ impl Truth<'_> {
 
     /// Errors of a formula with this frequency and this motion.
     pub(super) fn errors(&self, own_frequency: &Ball, own_motion: &FourierSeries) -> Errors {
-        let (frequency_error, relative) = apart(own_frequency, self.frequency);
+        let (frequency_error, relative) =
+            absolute_and_relative_error(own_frequency, self.frequency);
         let (flattest, steepest) = largest(&own_motion.derivative());
         Errors {
             deviation: self.deviation(own_motion),
@@ -295,7 +297,7 @@ impl Truth<'_> {
 }
 
 /// Absolute and relative error of a number, each between two bounds.
-fn apart(own: &Ball, truth: &Ball) -> (SizeBounds, SizeBounds) {
+fn absolute_and_relative_error(own: &Ball, truth: &Ball) -> (SizeBounds, SizeBounds) {
     let off = WORKING.difference(own, truth);
     let error = SizeBounds {
         lower: WORKING.distance_from_zero(&off).max(0.0),

@@ -164,7 +164,7 @@ impl FourierSeries {
     }
 
     /// The function `theta -> f(theta + a)`, with the cosine and the sine of `a` given.
-    pub(super) fn turned(&self, by: &[Ball; 2]) -> Self {
+    pub(super) fn phase_shifted(&self, by: &[Ball; 2]) -> Self {
         let (mut cosines, mut sines) = (vec![], vec![]);
         let mut angle = [WORKING.integer(1), Ball::zero()];
         for k in 0..self.length() {
@@ -340,7 +340,7 @@ impl FourierSeries {
 
     /// Itself divided by a power of two, so that its norm is at most a half, and how often it was
     /// halved.
-    fn halved(&self) -> Option<(Self, u32)> {
+    fn scaled_to_half_norm(&self) -> Option<(Self, u32)> {
         let norm = self.norm();
         let halvings = (0..=MOST_HALVINGS)
             .find(|&halvings| norm <= Bound::power_of_two(halvings as i32 - 1))?;
@@ -349,7 +349,7 @@ impl FourierSeries {
 
     /// Sine and cosine; `None` of what is too large.
     pub(super) fn sine_and_cosine(&self) -> Option<(Self, Self)> {
-        let (argument, halvings) = self.halved()?;
+        let (argument, halvings) = self.scaled_to_half_norm()?;
         let square = argument.squared();
         let terms = self.terms();
         let (mut sine, mut cosine) = (Self::integer(1), Self::integer(1));
@@ -370,7 +370,7 @@ impl FourierSeries {
 
     /// The exponential function; `None` of what is too large.
     pub(super) fn exponential(&self) -> Option<Self> {
-        let (argument, halvings) = self.halved()?;
+        let (argument, halvings) = self.scaled_to_half_norm()?;
         let terms = self.terms();
         let mut sum = Self::integer(1);
         for k in (1..=terms).rev() {

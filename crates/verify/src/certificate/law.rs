@@ -156,7 +156,10 @@ pub(super) fn number(expression: &Expr) -> Option<Ball> {
 ///
 /// # Errors
 /// A law that gives another one.
-pub(super) fn hold(formula: &JudgedFormula, bits: usize) -> Result<bool, &'static str> {
+pub(super) fn law_matches_frequency(
+    formula: &JudgedFormula,
+    bits: usize,
+) -> Result<bool, &'static str> {
     let exact = frequency(formula).filter(|_| bits >= FEWEST_BITS);
     let Some(exact) = exact else { return Ok(false) };
     match is_rounded(&exact, &formula.frequency_ball(bits), bits) {

@@ -263,7 +263,7 @@ impl Certificate {
             return Err("a formula that begins elsewhere than the motion");
         }
         self.amplitude_of_law(formula)?;
-        law::hold(formula, self.bits).map(|_| ())
+        law::law_matches_frequency(formula, self.bits).map(|_| ())
     }
 
     /// Checks that the amplitude among the values of the law is that of the motion, about a place

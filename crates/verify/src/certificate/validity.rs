@@ -174,7 +174,8 @@ impl<'a> Family<'a> {
     ) -> Result<Self, NotCertified> {
         let amplitude = solution.amplitude.symbol();
         let (_, at) = at.split(&[amplitude]);
-        let (mut certificate, _) = certify(oscillator, solution, &with(&at, solution, from))?;
+        let (mut certificate, _) =
+            certify(oscillator, solution, &with_amplitude(&at, solution, from))?;
         certificate.formula = None;
         certificate.shorten(BITS);
         let law = solution.law.closed_form().map(|form| (form.value.clone(), form.squared));
@@ -229,8 +230,11 @@ impl<'a> Family<'a> {
     /// known of the very first.
     fn beyond(&self, amplitudes: &[Rational; 5], tolerance: f64) -> RangeEnd {
         let is_further = |amplitude: &Rational| {
-            let (_, certified) =
-                certify(self.oscillator, self.solution, &with(&self.at, self.solution, amplitude))?;
+            let (_, certified) = certify(
+                self.oscillator,
+                self.solution,
+                &with_amplitude(&self.at, self.solution, amplitude),
+            )?;
             Ok(certified.formula.is_some_and(|errors| errors.relative.lower > tolerance))
         };
         let further = amplitudes.iter().find(|amplitude| is_further(amplitude) == Ok(true));
@@ -258,7 +262,7 @@ fn proved(certificate: &mut Certificate, spread: Bound) -> Result<Neighbours, No
 }
 
 /// The values with this amplitude.
-fn with(at: &Values, solution: &Solution, amplitude: &Rational) -> Values {
+fn with_amplitude(at: &Values, solution: &Solution, amplitude: &Rational) -> Values {
     let mut values = at.clone();
     // A number is a value.
     let _ = values.insert(solution.amplitude.symbol(), Expr::number(amplitude.clone()));

@@ -123,7 +123,7 @@ fn separate(
         true => Some(effective_matrix(hill, tongue, order + 2 * tongue as u32)),
     };
     let [[cosine, _], [_, sine]] = further.as_ref().unwrap_or(matrix);
-    if power.is_above(cosine, sine) != power.falls() {
+    if power.is_above(cosine, sine) != power.decreases_with_eigenvalue() {
         pair.swap(0, 1);
     }
     pair[1].upper = true;
@@ -327,7 +327,7 @@ impl TruncatedPowers<'_> {
     }
 
     /// Whether what a curve gives falls where the eigenvalue grows.
-    fn falls(&self) -> bool {
+    fn decreases_with_eigenvalue(&self) -> bool {
         match self.hill.unknown {
             Unknown::Stiffness { .. } => {
                 let factor = self.hill.factor.single_term();

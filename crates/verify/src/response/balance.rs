@@ -131,7 +131,7 @@ impl<'a> HarmonicBalance<'a> {
         if !self.driven.self_excited {
             return coefficients;
         }
-        let mut begun = later(&coefficients, coefficients[2].atan2(coefficients[1]));
+        let mut begun = phase_shifted(&coefficients, coefficients[2].atan2(coefficients[1]));
         begun[FREQUENCY] = frequency;
         begun
     }
@@ -439,7 +439,7 @@ impl<'a> HarmonicBalance<'a> {
 }
 
 /// The motion begun later by a phase.
-pub(super) fn later(coefficients: &DVector<f64>, phase: f64) -> DVector<f64> {
+pub(super) fn phase_shifted(coefficients: &DVector<f64>, phase: f64) -> DVector<f64> {
     let mut turned = coefficients.clone();
     for harmonic in 1..=(coefficients.len() - 1) / 2 {
         let (sine, cosine) = (phase * harmonic as f64).sin_cos();

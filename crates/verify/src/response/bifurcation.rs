@@ -131,7 +131,7 @@ pub fn between(
         };
         let part = match kind {
             // A sign alone has no root but by halving.
-            BranchPoint => Some(halved(value)),
+            BranchPoint => Some(bisect_sign_change(value)),
             _ => find_root(value, 0.0, 1.0).ok(),
         };
         // At a branch point the Jacobian is singular and Newton's method may not converge; a point
@@ -154,7 +154,7 @@ pub fn between(
 }
 
 /// Bisects the sign change of a function between 0 and 1, to 1e-9.
-fn halved(mut value: impl FnMut(f64) -> f64) -> f64 {
+fn bisect_sign_change(mut value: impl FnMut(f64) -> f64) -> f64 {
     let before = value(0.0);
     let is_before = |part: f64| match value(part) {
         // The branch itself cannot be told from the other one here: close enough.

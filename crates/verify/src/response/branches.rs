@@ -3,7 +3,7 @@
 
 use nalgebra::DVector;
 
-use super::balance::{HarmonicBalance, later};
+use super::balance::{HarmonicBalance, phase_shifted};
 use super::continuation::{self, BranchEnd, BranchNode, BranchPath, ContinuationSettings};
 use super::seeds::Seed;
 use super::{MOST_BRANCHES, PreparedRequest};
@@ -46,7 +46,7 @@ impl PreparedRequest<'_> {
             {
                 continue;
             }
-            if let Some(path) = walk.through(balance, &found, seed.parameter) {
+            if let Some(path) = walk.branch_through(balance, &found, seed.parameter) {
                 self.keep(balance, path, &mut paths);
             }
         }
@@ -63,7 +63,8 @@ impl PreparedRequest<'_> {
         let nodes = &paths[index].nodes;
         let middle = &nodes[nodes.len() / 2];
         let period = std::f64::consts::TAU / self.question.periods as f64;
-        let (parameter, image) = (middle.parameter, -later(&middle.coefficients, 0.5 * period));
+        let (parameter, image) =
+            (middle.parameter, -phase_shifted(&middle.coefficients, 0.5 * period));
         let is_motion = balance
             .solve(&image, parameter)
             .is_some_and(|found| (&found - &image).norm() <= SAME * image.norm());
@@ -80,7 +81,7 @@ impl PreparedRequest<'_> {
         coefficients: &DVector<f64>,
         parameter: f64,
     ) -> bool {
-        let known = self.known(balance, paths, coefficients, parameter);
+        let known = self.known_motion(balance, paths, coefficients, parameter);
         if let Some(KnownMotion::Mirrored(index)) = known {
             paths[index].mirrored = true;
         }
@@ -100,8 +101,9 @@ impl PreparedRequest<'_> {
             _ if path.ends[1] == BranchEnd::Crossing => vec![first],
             _ => vec![first, last],
         };
-        let known =
-            |node: &BranchNode| self.known(balance, paths, &node.coefficients, node.parameter);
+        let known = |node: &BranchNode| {
+            self.known_motion(balance, paths, &node.coefficients, node.parameter)
+        };
         match ends.into_iter().find_map(known).filter(|_| known(middle).is_some()) {
             Some(KnownMotion::Itself) => {}
             Some(KnownMotion::Mirrored(index)) => paths[index].mirrored = true,
@@ -119,7 +121,12 @@ impl PreparedRequest<'_> {
         let (before, behind) = (&path.nodes[..=index], &path.nodes[index + 1..]);
         let half = BranchPath { nodes: before.to_vec(), ends: path.ends, mirrored: false };
         let image = |node: &BranchNode| {
-            self.known(balance, std::slice::from_ref(&half), &node.coefficients, node.parameter)
+            self.known_motion(
+                balance,
+                std::slice::from_ref(&half),
+                &node.coefficients,
+                node.parameter,
+            )
         };
         // The middle of that half, which is surely no longer than the first.
         if let Some(known) = behind.get(behind.len() / 2).and_then(image) {
@@ -132,7 +139,7 @@ impl PreparedRequest<'_> {
 
     /// Whether a motion lies on one of these branches, or is one of theirs begun a period of the
     /// drive later, or a mirror image.
-    fn known(
+    fn known_motion(
         &self,
         balance: &HarmonicBalance,
         paths: &[BranchPath],
@@ -146,9 +153,9 @@ impl PreparedRequest<'_> {
         let period = std::f64::consts::TAU / self.question.periods as f64;
         let shifts = (0..self.question.periods).map(|periods| period * periods as f64);
         let shifted: Vec<DVector<f64>> =
-            shifts.clone().map(|shift| later(coefficients, shift)).collect();
+            shifts.clone().map(|shift| phase_shifted(coefficients, shift)).collect();
         let mirrored: Vec<DVector<f64>> =
-            shifts.map(|shift| -later(coefficients, shift + 0.5 * period)).collect();
+            shifts.map(|shift| -phase_shifted(coefficients, shift + 0.5 * period)).collect();
         // Places between which the force does not change, such as those a turn of a pendulum apart,
         // are one.
         let is_one = |motion: &DVector<f64>, of: &[DVector<f64>], within: f64, anywhere: bool| {
@@ -205,7 +212,7 @@ impl PreparedRequest<'_> {
                 continue;
             }
             if let Some(path) =
-                walk.along(balance, &node.coefficients, node.parameter, &node.tangent)
+                walk.branch_along(balance, &node.coefficients, node.parameter, &node.tangent)
             {
                 is_centre |= self.is_centre(&path);
                 self.keep(balance, path, paths);

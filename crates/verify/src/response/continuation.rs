@@ -191,7 +191,7 @@ fn linearised(balance: &HarmonicBalance, point: &DVector<f64>) -> Option<Lineari
 }
 
 /// Coefficients and parameter as one vector.
-fn joined(coefficients: &DVector<f64>, parameter: f64) -> DVector<f64> {
+fn stacked(coefficients: &DVector<f64>, parameter: f64) -> DVector<f64> {
     coefficients.clone().push(parameter)
 }
 
@@ -263,7 +263,7 @@ impl ContinuationSettings {
     ) -> Option<BranchNode> {
         let weights = self.weights(balance, &from.coefficients);
         let (start, end) =
-            (joined(&from.coefficients, from.parameter), joined(&to.coefficients, to.parameter));
+            (stacked(&from.coefficients, from.parameter), stacked(&to.coefficients, to.parameter));
         let way = &end - &start;
         let length = weights.norm(&way);
         if length == 0.0 {
@@ -274,7 +274,7 @@ impl ContinuationSettings {
     }
 
     /// The whole branch through a motion at a parameter.
-    pub fn through(
+    pub fn branch_through(
         &self,
         balance: &HarmonicBalance,
         coefficients: &DVector<f64>,
@@ -282,11 +282,11 @@ impl ContinuationSettings {
     ) -> Option<BranchPath> {
         let mut direction = DVector::zeros(balance.size() + 1);
         direction[balance.size()] = self.range[1] - self.range[0];
-        self.along(balance, coefficients, parameter, &direction)
+        self.branch_along(balance, coefficients, parameter, &direction)
     }
 
     /// The whole branch through a motion, its first direction given.
-    pub fn along(
+    pub fn branch_along(
         &self,
         balance: &HarmonicBalance,
         coefficients: &DVector<f64>,
@@ -295,7 +295,7 @@ impl ContinuationSettings {
     ) -> Option<BranchPath> {
         let weights = self.weights(balance, coefficients);
         let direction = direction / weights.norm(direction);
-        let start = weights.node(balance, joined(coefficients, parameter), &direction)?;
+        let start = weights.node(balance, stacked(coefficients, parameter), &direction)?;
         let mut backward = start.clone();
         backward.tangent *= -1.0;
         // The last row of the bordered equations has turned round.
@@ -320,7 +320,7 @@ impl ContinuationSettings {
     /// The motions by which a branch that ends with the range comes back to it, where it is
     /// followed beyond as far as `wide`: a resonance whose peak lies outside has two of its
     /// branches inside, and one of them may be hard to come by otherwise.
-    pub(super) fn returns(
+    pub(super) fn reentries(
         &self,
         balance: &HarmonicBalance,
         path: &BranchPath,
@@ -402,11 +402,11 @@ impl ContinuationSettings {
             let here = &nodes[nodes.len() - 1];
             let weights = self.weights(balance, &here.coefficients);
             let tangent = &here.tangent / weights.norm(&here.tangent);
-            let start = joined(&here.coefficients, here.parameter);
+            let start = stacked(&here.coefficients, here.parameter);
             let guess = &start + &tangent * length;
             let found = self.corrected(balance, &guess, &tangent, weights).filter(|(node, _)| {
                 let next = &node.tangent / weights.norm(&node.tangent);
-                let moved = weights.norm(&(joined(&node.coefficients, node.parameter) - &start));
+                let moved = weights.norm(&(stacked(&node.coefficients, node.parameter) - &start));
                 weights.dot(&next, &tangent) > SHARPEST && moved < 1.5 * length
             });
             let Some((node, iterations)) = found else {
@@ -475,7 +475,8 @@ impl ContinuationSettings {
             return None;
         }
         let [low, high] = self.range;
-        let born = hopf::near(balance.driven, here.coefficients[0], near, [small, high - low])?;
+        let born =
+            hopf::hopf_point_near(balance.driven, here.coefficients[0], near, [small, high - low])?;
         let far = (born.parameter - here.parameter).abs() > BESIDE * (high - low)
             || (born.position - here.coefficients[0]).abs() > small;
         if far || !(low..=high).contains(&born.parameter) {
@@ -496,7 +497,7 @@ impl ContinuationSettings {
         weights: Weights,
     ) -> bool {
         let scaled =
-            |node: &BranchNode| weights.scaled(&joined(&node.coefficients, node.parameter));
+            |node: &BranchNode| weights.scaled(&stacked(&node.coefficients, node.parameter));
         let [target, from, to] = [first, here, next].map(scaled);
         weights.scaled(&first.tangent).dot(&(&to - &from)) > 0.0 && passes(&target, &from, &to)
     }
@@ -518,11 +519,11 @@ impl ContinuationSettings {
         let guess = &inside.coefficients + (&outside.coefficients - &inside.coefficients) * part;
         let coefficients = balance.solve(&guess, bound)?;
         let weights = self.weights(balance, &inside.coefficients);
-        let jump = weights.norm(&joined(&(&coefficients - &guess), 0.0));
+        let jump = weights.norm(&stacked(&(&coefficients - &guess), 0.0));
         if jump > self.longest {
             return None;
         }
-        weights.node(balance, joined(&coefficients, bound), &inside.tangent)
+        weights.node(balance, stacked(&coefficients, bound), &inside.tangent)
     }
 
     /// Motions beside a crossing of branches, one on either side: the direction in which the
@@ -555,7 +556,7 @@ impl ContinuationSettings {
         };
         let second = &second / second.norm();
         let direction = DVector::from_fn(size + 1, |index, _| second[index] / scale(index));
-        let start = joined(&at.coefficients, at.parameter);
+        let start = stacked(&at.coefficients, at.parameter);
         let found = [1.0, -1.0].map(|sign| {
             let direction = &direction * sign;
             let guess = &start + &direction * APART;

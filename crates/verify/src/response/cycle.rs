@@ -93,7 +93,7 @@ pub fn true_cycle(
         known: &[],
     };
     let PeriodicOrbit { start, period, path, .. } =
-        shooting.orbit(follow, stability::settled(1e-10))?;
+        shooting.orbit(follow, stability::convergence_test(1e-10))?;
     let positions: Vec<f64> =
         path.samples(SAMPLES + 1).take(SAMPLES).map(|point| point.y[0]).collect();
     let determinant = path.end().y[6].exp();
@@ -106,7 +106,7 @@ pub fn true_cycle(
 /// Simulates the motion from a start for a number of periods of about the guessed frequency.
 /// Returns its frequency by its own return and its positions over that period at equal steps;
 /// `None` if it does not return, escapes, or the budget is spent.
-pub fn settled(
+pub fn settle_cycle(
     driven: &Driven,
     guess: &Guess,
     parameter: f64,

@@ -396,12 +396,12 @@ impl Driven {
 
     /// f as it is on these sides of its jumps, 1 above and -1 below.
     pub fn force_on(&self, at: &[f64; 4], sides: &[f64]) -> f64 {
-        with(at, sides, self.jumps.len(), |arguments| self.force.call(arguments))
+        with_arguments(at, sides, self.jumps.len(), |arguments| self.force.call(arguments))
     }
 
     /// Its derivatives on these sides.
     pub fn slopes_on(&self, at: &[f64; 4], sides: &[f64]) -> [f64; 3] {
-        with(at, sides, self.jumps.len(), |arguments| {
+        with_arguments(at, sides, self.jumps.len(), |arguments| {
             self.slopes.each_ref().map(|slope| slope.call(arguments))
         })
     }
@@ -419,7 +419,7 @@ impl Driven {
 }
 
 /// Calls a function with the arguments of the force and the sides of a number of jumps behind them.
-fn with<T>(
+fn with_arguments<T>(
     [x, v, phase, p]: &[f64; 4],
     sides: &[f64],
     jumps: usize,

@@ -27,7 +27,7 @@ pub struct HopfPoint {
 
 /// The Hopf point near a place and a parameter, measured in these lengths; nothing where Newton's
 /// method does not settle.
-pub fn near(
+pub fn hopf_point_near(
     driven: &Driven,
     position: f64,
     parameter: f64,

@@ -206,7 +206,7 @@ impl PreparedRequest<'_> {
                         if self.driven.self_excited {
                             let guess =
                                 Guess { start, frequency: point.frequency, size: point.peak };
-                            let found = cycle::settled(
+                            let found = cycle::settle_cycle(
                                 &self.driven,
                                 &guess,
                                 point.parameter,

@@ -130,7 +130,7 @@ pub fn follow(
         }
         legs.push(path);
         let turned = match reason {
-            StopReason::Event { event, .. } => run.met(event, until),
+            StopReason::Event { event, .. } => run.pass_event(event, until),
             _ => false,
         };
         if turned || run.t >= until.time() {
@@ -277,7 +277,7 @@ impl<'a> NonsmoothRun<'a> {
     }
 
     /// Goes on behind an event; whether the motion has turned back there.
-    fn met(&mut self, event: usize, until: StopCondition) -> bool {
+    fn pass_event(&mut self, event: usize, until: StopCondition) -> bool {
         let index = match (until, event) {
             (StopCondition::Turn(_), 0) => {
                 self.y[1] = 0.0;
@@ -301,7 +301,7 @@ impl<'a> NonsmoothRun<'a> {
         if side * behind < 0.0 {
             let after = self.acceleration(index, -side);
             self.jump(index, before, after);
-            self.stay();
+            self.check_sticking();
         } else if self.driven.normal(index)[1] != 0.0 {
             self.stick(index);
         } else {
@@ -352,7 +352,7 @@ impl<'a> NonsmoothRun<'a> {
     }
 
     /// Whether what stuck on a jump does so still behind another one.
-    fn stay(&mut self) {
+    fn check_sticking(&mut self) {
         let Some(surface) = self.sliding else { return };
         if let Some(side) =
             [1.0, -1.0].into_iter().find(|side| side * self.rise(surface, *side) > 0.0)

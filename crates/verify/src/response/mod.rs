@@ -534,7 +534,7 @@ impl<'a> PreparedRequest<'a> {
             .collect();
         if branches.is_empty() {
             return Err(match question.interrupt.is_requested() || self.driven.undamped {
-                true => self.nothing(),
+                true => self.no_motion_error(),
                 false => ResponseError::NotFollowed {
                     parameter: question.parameter,
                     range: question.range,
@@ -627,7 +627,7 @@ impl<'a> PreparedRequest<'a> {
             kept.map(|found| Bifurcation { branch: number(found.branch), ..*found }).collect();
         response.branches.retain(|branch| !branch.points.is_empty());
         match response.branches.is_empty() {
-            true => Err(self.nothing()),
+            true => Err(self.no_motion_error()),
             false => Ok(response.with_verdict()),
         }
     }
@@ -683,7 +683,7 @@ impl<'a> PreparedRequest<'a> {
                 }
             }
             let (own, left_out) = ripple::without_ripple(own, &path.nodes, &judged);
-            ripple = Ripple::with(ripple, &left_out);
+            ripple = Ripple::merged_with(ripple, &left_out);
             changes.extend(own.into_iter().map(|(_, kind, node)| (kind, branch, node)));
             let ends = path.ends.iter().zip([path.nodes.first(), path.nodes.last()]);
             let born = ends.filter(|(end, _)| **end == BranchEnd::Rest);
@@ -731,7 +731,7 @@ impl<'a> PreparedRequest<'a> {
     }
 
     /// Why there is nothing.
-    fn nothing(&self) -> ResponseError {
+    fn no_motion_error(&self) -> ResponseError {
         let ResponseRequest { parameter, range, .. } = *self.question;
         match (self.question.interrupt.is_requested(), self.driven.self_excited) {
             (true, _) => ResponseError::Interrupted { parameter, tried: self.tried.get() },

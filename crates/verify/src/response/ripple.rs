@@ -29,7 +29,7 @@ pub struct Ripple {
 
 impl Ripple {
     /// Of these places, with what there is already.
-    pub(super) fn with(ripple: Option<Self>, parameters: &[f64]) -> Option<Self> {
+    pub(super) fn merged_with(ripple: Option<Self>, parameters: &[f64]) -> Option<Self> {
         parameters.iter().fold(ripple, |ripple, parameter| {
             Some(match ripple {
                 None => Self { folds: 1, range: [*parameter; 2] },

@@ -62,7 +62,12 @@ impl PreparedRequest<'_> {
                     size = size.max(extent);
                     seeds.push(seed);
                 }
-                elsewhere.extend(self.settled([place, 0.0], *parameter, &mut seeds, &mut budget));
+                elsewhere.extend(self.add_settled(
+                    [place, 0.0],
+                    *parameter,
+                    &mut seeds,
+                    &mut budget,
+                ));
             }
         }
         size = size.max(size_of(&seeds));
@@ -73,7 +78,7 @@ impl PreparedRequest<'_> {
         };
         for path in &first {
             for (found, parameter) in
-                self.walk(&seeds, size).returns(&balance, path, self.surroundings())
+                self.walk(&seeds, size).reentries(&balance, path, self.surroundings())
             {
                 seeds.push(self.seed(&balance, &found, parameter));
                 size = size.max(balance.extent(&found));
@@ -97,14 +102,14 @@ impl PreparedRequest<'_> {
                     let (sine, cosine) =
                         (std::f64::consts::FRAC_PI_2 * (f64::from(turn) + 0.3)).sin_cos();
                     let start = [radius * size * cosine, -radius * size * omega * sine];
-                    elsewhere.extend(self.settled(start, *parameter, &mut seeds, &mut budget));
+                    elsewhere.extend(self.add_settled(start, *parameter, &mut seeds, &mut budget));
                 }
             }
         }
         elsewhere.sort_by(Elsewhere::in_order);
         elsewhere.dedup();
         if seeds.is_empty() {
-            return Err(self.nothing());
+            return Err(self.no_motion_error());
         }
         Ok((seeds, elsewhere))
     }
@@ -153,7 +158,7 @@ impl PreparedRequest<'_> {
     }
 
     /// Adds where a simulation settles, or says that it does not repeat itself.
-    fn settled(
+    fn add_settled(
         &self,
         start: [f64; 2],
         parameter: f64,

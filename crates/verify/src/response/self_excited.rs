@@ -38,7 +38,7 @@ impl PreparedRequest<'_> {
                 }
                 let parameter = low + (high - low) * f64::from(index) / f64::from(count - 1);
                 self.count([1, 0], seeds.len());
-                for place in self.places(parameter) {
+                for place in self.rest_positions(parameter) {
                     self.count([0, 2 * RINGS as usize + 1], seeds.len());
                     match self.driven.is_balanced() {
                         true => self.cycles_about(place, parameter, &mut seeds),
@@ -50,11 +50,11 @@ impl PreparedRequest<'_> {
                 return Ok(seeds);
             }
         }
-        Err(self.nothing())
+        Err(self.no_motion_error())
     }
 
     /// The places of rest about which something may swing.
-    fn places(&self, parameter: f64) -> Vec<f64> {
+    fn rest_positions(&self, parameter: f64) -> Vec<f64> {
         const SIZES: [f64; 3] = [1.0, 0.03, 30.0];
         let mut found: Vec<f64> = Vec::new();
         for size in SIZES {
@@ -89,7 +89,7 @@ impl PreparedRequest<'_> {
                 if backward {
                     positions[1..].reverse();
                 }
-                let period = path.end().t / self.pace(place, radius, parameter);
+                let period = path.end().t / self.approximate_frequency(place, radius, parameter);
                 seeds.push(Seed {
                     parameter,
                     frequency: std::f64::consts::TAU / period,
@@ -136,7 +136,7 @@ impl PreparedRequest<'_> {
     }
 
     /// About the frequency of a motion so far from rest.
-    fn pace(&self, place: f64, radius: f64, parameter: f64) -> f64 {
+    fn approximate_frequency(&self, place: f64, radius: f64, parameter: f64) -> f64 {
         (self.driven.force(&[place + radius, 0.0, 0.0, parameter]) / radius).sqrt()
     }
 
@@ -153,7 +153,7 @@ impl PreparedRequest<'_> {
         const LONGEST: f64 = 2e3;
         /// Radii away from where it does not come back.
         const GONE: f64 = 1e3;
-        let pace = self.pace(place, radius, parameter);
+        let pace = self.approximate_frequency(place, radius, parameter);
         let speed = radius * pace * if backward { -1.0 } else { 1.0 };
         let scaled = |_: f64, x: f64, v: f64| {
             -self.driven.force(&[place + radius * x, speed * v, 0.0, parameter])

@@ -105,7 +105,7 @@ pub(super) const FAR: f64 = 0.3;
 
 /// Whether shooting has settled so closely, by how far an orbit is from closing and how far
 /// Newton's method would move it.
-pub(super) fn settled(closely: f64) -> impl FnMut(f64, f64) -> bool {
+pub(super) fn convergence_test(closely: f64) -> impl FnMut(f64, f64) -> bool {
     let mut before = f64::INFINITY;
     move |missed, moved| {
         // Near a fold rounding is magnified: what does not shrink any more has come as near as it
@@ -135,7 +135,8 @@ pub fn periodic_motion(
     let solve = |matrix: DMatrix<f64>, missed| matrix.lu().solve(&missed);
     let shooting =
         Shooting { guess, period, rates: None, sizes, solve, most: 12, far: FAR, known: &[] };
-    let PeriodicOrbit { start, monodromy, path, .. } = shooting.orbit(follow, settled(1e-9))?;
+    let PeriodicOrbit { start, monodromy, path, .. } =
+        shooting.orbit(follow, convergence_test(1e-9))?;
     let floquet = Floquet { monodromy, self_excited: false };
     Some(TrueMotion::new(start, omega, floquet, &path.positions(SAMPLES), path.stuck()))
 }

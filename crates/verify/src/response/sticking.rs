@@ -22,7 +22,7 @@ use super::continuation::{BranchEnd, BranchNode, BranchPath};
 use super::jump::{StopCondition, VariationalMotion, follow};
 use super::seeds::Seed;
 use super::stability::{
-    Floquet, SAMPLES, TOLERANCE, TrueMotion, half_of_peak_to_peak, options, settled,
+    Floquet, SAMPLES, TOLERANCE, TrueMotion, convergence_test, half_of_peak_to_peak, options,
 };
 use super::{LONGEST_STEP, MOST_BRANCHES, PreparedRequest};
 use crate::numeric::continuation::ContinuationStep::{Ended, Taken, TooLong};
@@ -132,7 +132,7 @@ impl<'a> PeriodMap<'a> {
         const SETTLED: f64 = 1e-9;
         let mut at = *guess;
         let mut by_parameter = self.by_parameter(&at)?;
-        let mut settled = settled(SETTLED);
+        let mut settled = convergence_test(SETTLED);
         for iteration in 0..MOST {
             let course = self.period(&at)?;
             let (start, _) = self.start(&at);

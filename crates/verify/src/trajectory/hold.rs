@@ -88,7 +88,7 @@ type Regimes = Vec<(Surface, SurfaceRegime)>;
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     /// For each state its place among those that are followed, or its value in terms of them.
-    states: Vec<Result<usize, CompiledFunction>>,
+    all_states: Vec<Result<usize, CompiledFunction>>,
     /// The values of the letters in these.
     numbers: Vec<f64>,
 }
@@ -102,7 +102,7 @@ impl Layout {
             Ok(place) => followed[*place],
             Err(value) => value.call(&arguments),
         };
-        self.states.iter().map(state).collect()
+        self.all_states.iter().map(state).collect()
     }
 }
 
@@ -204,12 +204,16 @@ impl TrajectoryRequest {
         };
         let states: Result<Vec<_>, _> = equations.states.iter().enumerate().map(of_state).collect();
         let Ok(states) = states else { return Ok(None) };
-        let layout = Layout { states, numbers: equations.values.values().copied().collect() };
+        let layout =
+            Layout { all_states: states, numbers: equations.values.values().copied().collect() };
         let start: Vec<f64> = followed.iter().map(|index| state[*index]).collect();
         state.copy_from_slice(&layout.states(from, &start));
         let rates = Rates { states: names.clone(), right: right.clone() };
-        let section =
-            self.section.as_ref().map(|section| section.on(&sliding.fixed)).transpose()?;
+        let section = self
+            .section
+            .as_ref()
+            .map(|section| section.with_fixed_states(&sliding.fixed))
+            .transpose()?;
         let mut events = section.map_or(vec![], |section| section.events(&rates));
         let recorded = events.len();
         events.extend(sliding.events);
@@ -229,7 +233,7 @@ impl TrajectoryRequest {
 
 impl PoincareSection {
     /// This section with these expressions in place of some states.
-    fn on(&self, fixed: &BTreeMap<Symbol, Expr>) -> Result<Self, ExprError> {
+    fn with_fixed_states(&self, fixed: &BTreeMap<Symbol, Expr>) -> Result<Self, ExprError> {
         Ok(match self {
             Self::Every(period) => Self::Every(period.clone()),
             Self::Rising(expression) => Self::Rising(expression.substitute_all(fixed)?),
@@ -396,7 +400,7 @@ fn regimes_at(
     }
     let mut excess = f64::INFINITY;
     loop {
-        if !tie(equations, &mut regimes, &numbers)? {
+        if !tie_frictions(equations, &mut regimes, &numbers)? {
             return Ok(None);
         }
         let Some(sliding) = sliding(equations, &regimes, &numbers)? else {
@@ -450,7 +454,7 @@ fn regimes_at(
 
 /// Gives shares of one size to the frictions that the equations leave open: there are more of them
 /// at rest than independent velocities. `false` where that cannot be told.
-fn tie(
+fn tie_frictions(
     equations: &StateEquations,
     regimes: &mut Regimes,
     numbers: &BTreeMap<Symbol, f64>,

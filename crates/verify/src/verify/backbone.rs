@@ -103,7 +103,7 @@ impl<'a> TrueBackbone<'a> {
     }
 
     /// The end of what is looked at.
-    pub(super) fn farthest(&self) -> f64 {
+    pub(super) fn search_limit(&self) -> f64 {
         f64::min(0.999 * self.largest_amplitude(), self.times * self.given_amplitude().abs())
             .max(self.given_amplitude().abs().min(self.largest_amplitude()))
     }
@@ -134,7 +134,7 @@ impl<'a> TrueBackbone<'a> {
         let at_once = FOR_A_ROOT * physics.rest.evaluations();
         // These places only say where to look, and leave most of the work to what is found there.
         let affordable = || physics.rest.evaluations() + at_once < MOST / 4;
-        let (side, farthest) = (self.given_amplitude().signum(), self.farthest());
+        let (side, farthest) = (self.given_amplitude().signum(), self.search_limit());
         let mut sizes: Vec<f64> = Vec::new();
         let cuts = physics.rest.cuts(-farthest, farthest);
         for &place in cuts.iter().step_by(cuts.len().div_ceil(MOST_PLACES).max(1)) {
@@ -163,7 +163,7 @@ impl<'a> TrueBackbone<'a> {
     pub(super) fn amplitudes(&self) -> Vec<f64> {
         const PER_DECADE: i32 = 4;
         const LINEAR: usize = 8;
-        let (asked, farthest) = (self.given_amplitude().abs(), self.farthest());
+        let (asked, farthest) = (self.given_amplitude().abs(), self.search_limit());
         let mut sizes: Vec<f64> = (-2 * PER_DECADE..=2 * PER_DECADE)
             .map(|k| asked * 10.0_f64.powf(f64::from(k) / f64::from(PER_DECADE)))
             .collect();

@@ -55,7 +55,7 @@ pub(super) fn bounds(
         true => "rises",
         false => "falls",
     };
-    let turn = turns(&course);
+    let turn = first_extremum(&course);
     let text = match (turn, outside) {
         _ if !beyond(largest, least) => format!(
             "{quotient} is {} at every {x} up to {AMPLITUDE}: {FREQUENCY}^2 is that",
@@ -119,7 +119,7 @@ fn course(force: &CentredForce, amplitude: f64) -> Option<Vec<(f64, f64)>> {
 }
 
 /// The first place at which the values turn back by more than rounding.
-fn turns(course: &[(f64, f64)]) -> Option<f64> {
+fn first_extremum(course: &[(f64, f64)]) -> Option<f64> {
     let (mut highest, mut lowest) = (course[0], course[0]);
     let mut rising: Option<bool> = None;
     for &point in course {

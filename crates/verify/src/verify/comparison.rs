@@ -8,11 +8,11 @@ use std::collections::BTreeMap;
 
 use super::backbone::TrueBackbone;
 use super::orbit::TrueMotion;
-use super::reach::reach;
+use super::reach::amplitude_reach;
 use super::validity::{self, AmplitudeReach};
 use super::{
     Verdict, VerificationError, checked_numbers, formula_frequency_along, judge, largest_deviation,
-    meant, numbers_or_reason,
+    numbers_or_reason, orbit_target,
 };
 use crate::decimal::{decimal, significant};
 use crate::expr::Equation;
@@ -192,7 +192,7 @@ pub fn compare(
     let at_first = by_start(first, at);
     let numbers = checked_numbers(first, &at_first)?;
     super::check_digits(oscillator, first, &numbers)?;
-    let meant = meant(oscillator, first, &numbers);
+    let meant = orbit_target(oscillator, first, &numbers);
     let (true_motion, reason) = match super::meant_motion(oscillator, first, &meant, &numbers) {
         Ok(motion) => (Some(motion), None),
         Err(error) if error.leaves_the_truth_open() => (None, Some(error)),
@@ -437,7 +437,7 @@ fn row(
         chosen: found.map_or_else(Vec::new, |found| found.chosen),
         relative_error,
         max_deviation,
-        reach: reach(oscillator, solution, truth, tolerance),
+        reach: amplitude_reach(oscillator, solution, truth, tolerance),
         verdict: true_motion.map(|_| Verdict::from_passed(pass)),
     }
 }

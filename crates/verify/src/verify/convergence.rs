@@ -196,7 +196,7 @@ struct FrequencySeries {
 
 /// The unit of `x` in which the largest Taylor coefficient of the force is of the size of the
 /// linear one, given the coefficients in another unit.
-fn growth(force: &[f64]) -> f64 {
+fn unit_of_growth(force: &[f64]) -> f64 {
     let linear = force[1];
     let rate = |(k, value): (usize, &f64)| (value / linear).abs().powf(1.0 / (k as f64 - 1.0));
     force.iter().enumerate().skip(2).map(rate).fold(0.0, f64::max)
@@ -222,7 +222,7 @@ fn in_the_amplitude(
     // vanish nor explode.
     let mut unit = amplitude.abs();
     for degree in [few, highest] {
-        let rate = growth(&taylor(unit, degree)?);
+        let rate = unit_of_growth(&taylor(unit, degree)?);
         if !rate.is_normal() {
             return None;
         }

@@ -64,8 +64,8 @@ pub(super) fn motions(
     let question = DrivenComparison::new(oscillator, solution, response, at)?;
     let states = question.states();
     let largest = states.iter().find(|state| state.is_stable()).or(states.first());
-    let Some((state, found)) =
-        largest.and_then(|state| Some((*state, question.truth.near(&question.motion, *state)?)))
+    let Some((state, found)) = largest
+        .and_then(|state| Some((*state, question.truth.find_near(&question.motion, *state)?)))
     else {
         return Ok(None);
     };
@@ -171,7 +171,7 @@ impl<'a> DrivenComparison<'a> {
             })
             .collect();
         let judge = |state: &SteadyState, found: Option<&PeriodicOrbit>| match is_held(state) {
-            true => held(*state),
+            true => held_state(*state),
             false => self.truth.compare(&self.motion, *state, found),
         };
         let judged: Vec<JudgedState> =
@@ -198,17 +198,17 @@ impl<'a> DrivenComparison<'a> {
         let mut known: Vec<[f64; 2]> = (0..states.len())
             .filter(|k| !lost(*k))
             .filter_map(|k| found[k].as_ref())
-            .flat_map(|found| self.truth.starts(found))
+            .flat_map(|found| self.truth.initial_states(found))
             .collect();
         let mut another = |state: &SteadyState| {
-            let found = self.truth.another(&self.motion, *state, &known)?;
+            let found = self.truth.find_another(&self.motion, *state, &known)?;
             let judged = judge(state, Some(&found));
             let own = apart(&judged)?;
             let others = states.iter().map(|other| judge(other, Some(&found)));
             if others.filter_map(|other| apart(&other)).any(|other| other < own) {
                 return None;
             }
-            known.extend(self.truth.starts(&found));
+            known.extend(self.truth.initial_states(&found));
             Some(judged)
         };
         let mut all: Vec<JudgedState> = (0..states.len())
@@ -269,7 +269,7 @@ fn slope(
         if apart(&state) > OTHER * judged.state.amplitude {
             return None;
         }
-        let found = question.truth.near(&question.motion, state)?;
+        let found = question.truth.find_near(&question.motion, state)?;
         question.truth.compare(&question.motion, state, Some(&found)).max_deviation
     };
     let errors: Vec<f64> =
@@ -325,7 +325,7 @@ pub(super) fn judge(
 }
 
 /// A motion that dry friction holds where it is.
-fn held(state: SteadyState) -> JudgedState {
+fn held_state(state: SteadyState) -> JudgedState {
     JudgedState {
         state,
         true_amplitude: Some(0.0),
@@ -391,7 +391,7 @@ impl Truth {
     fn as_stable(&self, motion: &SteadyFormula, state: SteadyState) -> Option<PeriodicOrbit> {
         /// Largest relative error of the amplitude of the second motion.
         const NEAR: f64 = 0.3;
-        let found = self.near(motion, state)?;
+        let found = self.find_near(motion, state)?;
         let is_alike = |found: &PeriodicOrbit| found.attracts() == state.is_stable();
         let is_near = |found: &PeriodicOrbit| {
             (state.amplitude / found.harmonic(self.own) - 1.0).abs() <= NEAR
@@ -399,12 +399,12 @@ impl Truth {
         if is_alike(&found) || state.amplitude == 0.0 {
             return Some(found);
         }
-        let second = self.by_newton(motion, state, &self.starts(&found));
+        let second = self.by_newton(motion, state, &self.initial_states(&found));
         second.filter(|second| is_alike(second) && is_near(second)).or(Some(found))
     }
 
     /// The true periodic motion near one by the formula.
-    fn near(&self, motion: &SteadyFormula, state: SteadyState) -> Option<PeriodicOrbit> {
+    fn find_near(&self, motion: &SteadyFormula, state: SteadyState) -> Option<PeriodicOrbit> {
         /// For how long a motion is left to settle.
         const PERIODS: f64 = 200.0;
         let start = [motion.position(0.0, state), motion.velocity(0.0, state)];
@@ -427,7 +427,7 @@ impl Truth {
     }
 
     /// A true periodic motion near one by the formula that is none of the known ones.
-    fn another(
+    fn find_another(
         &self,
         motion: &SteadyFormula,
         state: SteadyState,
@@ -448,7 +448,7 @@ impl Truth {
 
     /// Initial states of a true motion at every period of the drive: all of them are starts of the
     /// same motion.
-    fn starts(&self, found: &PeriodicOrbit) -> Vec<[f64; 2]> {
+    fn initial_states(&self, found: &PeriodicOrbit) -> Vec<[f64; 2]> {
         let part = self.period / f64::from(self.drives);
         let start = |k: u32| found.phase_point_at(part * f64::from(k)).into();
         (0..self.drives).map(start).collect()

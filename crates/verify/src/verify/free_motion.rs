@@ -114,7 +114,7 @@ impl FreeMotion {
             held: None,
             crossings: vec![],
         };
-        followed.look(start.step);
+        followed.take_sample(start.step);
         Ok(followed)
     }
 
@@ -143,7 +143,7 @@ impl FreeMotion {
     }
 
     /// Finds where it turns and where it crosses.
-    fn look(&mut self, step: f64) {
+    fn take_sample(&mut self, step: f64) {
         /// More looks than any motion here needs.
         const MOST: usize = 1_000_000;
         let count = (self.end / step).ceil();

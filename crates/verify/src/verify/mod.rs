@@ -376,7 +376,7 @@ pub fn judge_to(
         return in_time::judge(oscillator, solution, motion, at, tolerance);
     }
     if let Some(response) = &solution.response {
-        repeats(solution)?;
+        check_common_period(solution)?;
         return driven::judge(oscillator, solution, response, at, tolerance);
     }
     if let Some(moving) = off_cycle(solution, at) {
@@ -398,7 +398,7 @@ pub fn judge_to(
     let numbers = checked_numbers(solution, at)?;
     let solution = settled.as_ref().unwrap_or(solution);
     check_digits(oscillator, solution, &numbers)?;
-    let meant = meant(oscillator, solution, &numbers);
+    let meant = orbit_target(oscillator, solution, &numbers);
     let truth = meant_motion(oscillator, solution, &meant, &numbers)?;
     let (found, reason) = numbers_or_reason(oscillator, solution, &numbers);
     let frequency = found.as_ref().map(|found| found.frequency_squared.sqrt());
@@ -468,7 +468,7 @@ pub fn judge_to(
 }
 
 /// An error where the drives have frequencies without a ratio.
-fn repeats(solution: &Solution) -> Result<(), VerificationError> {
+fn check_common_period(solution: &Solution) -> Result<(), VerificationError> {
     let apart = |note: &Note| matches!(note, Note::ForcedWaves { .. });
     match solution.validity.iter().any(apart) {
         true => Err(VerificationError::NeverRepeats),
@@ -511,7 +511,7 @@ fn in_convention_of(
     if solution.parameters.iter().any(|name| !numbers.contains_key(name)) {
         return Ok(None);
     }
-    let meant = OrbitTarget { convention: given, ..meant(oscillator, solution, &numbers) };
+    let meant = OrbitTarget { convention: given, ..orbit_target(oscillator, solution, &numbers) };
     let equilibrium = solution.equilibrium.evaluate(&numbers)?;
     let motion = TrueMotion::follow(oscillator, &meant, &numbers)?;
     let Some(converted) = motion.amplitude_by_the_other(given, equilibrium) else {
@@ -700,7 +700,7 @@ pub fn motions(
         return in_time::motions(oscillator, solution, motion, at).map(Some);
     }
     if let Some(response) = &solution.response {
-        repeats(solution)?;
+        check_common_period(solution)?;
         return driven::motions(oscillator, solution, response, at);
     }
     if let Some(moving) = off_cycle(solution, at) {
@@ -766,7 +766,7 @@ fn true_path(
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
 ) -> Result<TrueMotion, VerificationError> {
-    let meant = meant(oscillator, solution, numbers);
+    let meant = orbit_target(oscillator, solution, numbers);
     let truth = meant_motion(oscillator, solution, &meant, numbers)?;
     match truth.has_path() {
         true => Ok(truth),
@@ -853,7 +853,7 @@ fn formula_motion(
 }
 
 /// Returns the true motion that an answer is meant for.
-fn meant(
+fn orbit_target(
     oscillator: &Oscillator,
     solution: &Solution,
     numbers: &BTreeMap<Symbol, f64>,
@@ -1018,7 +1018,8 @@ fn slope(
         let factor = 0.5_f64.powi(halving);
         let (formula, numbers) = formula_at(factor)?;
         let truth =
-            true_frequency(oscillator, &meant(oscillator, solution, &numbers), &numbers).ok()?;
+            true_frequency(oscillator, &orbit_target(oscillator, solution, &numbers), &numbers)
+                .ok()?;
         let error = (formula / truth - 1.0).abs();
         // A closed form such as (cos(A) - 1)/A^2 loses digits at small amplitudes: what a change of
         // the last bits does to it is no error of the formula.

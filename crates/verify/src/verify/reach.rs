@@ -121,7 +121,7 @@ impl AmplitudeReach {
 
 /// The range from rest in which the frequency stays within the tolerance; `None` where it cannot be
 /// followed.
-pub(super) fn reach(
+pub(super) fn amplitude_reach(
     oscillator: &Oscillator,
     solution: &Solution,
     truth: &TrueBackbone,
@@ -163,8 +163,12 @@ pub(super) fn reach(
             _ => AmplitudeReach::Everywhere(last.copysign(asked)),
         });
     }
-    amplitudes.extend(places_of_law(solution, truth.numbers, asked.signum() * truth.farthest()));
-    amplitudes.retain(|size| *size <= truth.farthest());
+    amplitudes.extend(places_of_law(
+        solution,
+        truth.numbers,
+        asked.signum() * truth.search_limit(),
+    ));
+    amplitudes.retain(|size| *size <= truth.search_limit());
     amplitudes.sort_by(f64::total_cmp);
     if truth.smallest_amplitude() > 0.0 {
         amplitudes.retain(|size| *size > truth.smallest_amplitude());

@@ -102,7 +102,7 @@ impl ReleaseValues {
         Ok(Self { exact: exact.collect(), known, turned, closed_forms_hold: !negative || simple })
     }
 
-    fn put(&self, expression: &Expr) -> Result<Expr, ExprError> {
+    fn evaluate_known(&self, expression: &Expr) -> Result<Expr, ExprError> {
         expression.substitute_all(&self.exact)
     }
 
@@ -120,10 +120,10 @@ impl ReleaseValues {
     }
 
     /// Amplitude and phase in closed form, where there is one that holds.
-    fn closed(&self, modulation: &Modulation) -> Option<[CompiledFunction; 2]> {
+    fn closed_form(&self, modulation: &Modulation) -> Option<[CompiledFunction; 2]> {
         let transient = modulation.transient.as_ref().filter(|_| self.closed_forms_hold)?;
         let compiled = |expression: &Expr| {
-            CompiledFunction::new(&self.put(expression).ok()?, &[Symbol::new("t")]).ok()
+            CompiledFunction::new(&self.evaluate_known(expression).ok()?, &[Symbol::new("t")]).ok()
         };
         Some([compiled(&transient.amplitude)?, compiled(transient.phase.as_ref()?)?])
     }
@@ -151,9 +151,11 @@ impl SlowMotion {
         let equilibrium = solution.equilibrium.evaluate(numbers)?;
         let numbers = ReleaseValues::new(solution, modulation, numbers)?;
         let (a, theta) = (modulation.amplitude, solution.phase());
-        let place = numbers.put(&displacement(solution, theta)?)?;
-        let rates =
-            [numbers.put(&modulation.amplitude_rate)?, numbers.put(&modulation.phase_rate)?];
+        let place = numbers.evaluate_known(&displacement(solution, theta)?)?;
+        let rates = [
+            numbers.evaluate_known(&modulation.amplitude_rate)?,
+            numbers.evaluate_known(&modulation.phase_rate)?,
+        ];
         let moved = |of: &Expr| -> Result<Expr, ExprError> {
             let slopes = [of.differentiate(a)?, of.differentiate(theta)?];
             Ok(&slopes[0] * &rates[0] + &slopes[1] * &rates[1])
@@ -167,7 +169,7 @@ impl SlowMotion {
             return Err(VerificationError::NoSlowFrequency);
         }
         let period = TAU / frequency;
-        let slow = match numbers.closed(modulation) {
+        let slow = match numbers.closed_form(modulation) {
             Some(closed) => SlowSolution::Closed(closed),
             None => {
                 SlowSolution::Followed(followed(a, &rates, start, 2.0 * MOST_PERIODS * period)?)

@@ -8,7 +8,7 @@ use super::backbone::TrueBackbone;
 use super::bounds::bounds;
 use super::convergence::convergence;
 use super::reach;
-use super::{VerificationError, force_of, meant};
+use super::{VerificationError, force_of, orbit_target};
 use crate::conservative::force::CentredForce;
 use crate::conservative::well::Well;
 use crate::decimal::significant;
@@ -81,7 +81,7 @@ pub(super) fn ranges(
     if MethodEntry::for_method(solution.method).sees == ForceRepresentation::Derivatives {
         ranges.extend(convergence(oscillator, solution, numbers));
     }
-    if let Some(reach) = reach::reach(oscillator, solution, &truth, tolerance) {
+    if let Some(reach) = reach::amplitude_reach(oscillator, solution, &truth, tolerance) {
         ranges.push(Range {
             text: reach.in_words(tolerance, solution.amplitude.symbol()),
             outside: reach.leaves_out(amplitude),
@@ -103,7 +103,7 @@ pub(super) fn of_equation(
     let text = well.in_words(solution.amplitude.symbol(), oscillator.coordinate);
     // Past the edge of one well the motion may still be periodic, over several.
     let over_all = beyond
-        && super::true_frequency(oscillator, &meant(oscillator, solution, numbers), numbers)
+        && super::true_frequency(oscillator, &orbit_target(oscillator, solution, numbers), numbers)
             .is_ok();
     Some(match over_all {
         true => Range {
@@ -134,7 +134,7 @@ pub(super) fn backbone<'a>(
     numbers: &'a BTreeMap<Symbol, f64>,
 ) -> TrueBackbone<'a> {
     let well = well_of(oscillator, solution, numbers);
-    TrueBackbone::new(oscillator, &meant(oscillator, solution, numbers), numbers, well)
+    TrueBackbone::new(oscillator, &orbit_target(oscillator, solution, numbers), numbers, well)
 }
 
 /// Whether the motions that an answer is meant for do not begin at rest, but run over several

@@ -15,7 +15,7 @@ pub struct Tables<'m> {
 
 impl<'m> Tables<'m> {
     /// Number of entries of tables with rows of these lengths.
-    pub fn room(rows: usize, lengths: &[usize]) -> usize {
+    pub fn entry_count(rows: usize, lengths: &[usize]) -> usize {
         rows * lengths.iter().sum::<usize>()
     }
 

@@ -152,7 +152,7 @@ impl<'a> Lexer<'a> {
                 (format!("a control character, U+{:04X}", u32::from(letter)), "")
             }
             _ => {
-                let name = match visible(letter) == letter && !letter.is_whitespace() {
+                let name = match printable(letter) == letter && !letter.is_whitespace() {
                     true => format!("`{letter}` (U+{:04X})", u32::from(letter)),
                     false => format!("the character U+{:04X}", u32::from(letter)),
                 };
@@ -245,7 +245,7 @@ pub(super) fn ascii_spelling(letter: char) -> Option<&'static str> {
 }
 
 /// The character itself, or `?` for one that a terminal would not simply show.
-pub(super) fn visible(letter: char) -> char {
+pub(super) fn printable(letter: char) -> char {
     match letter {
         '\t' | '\r' | '\n' => ' ',
         ' '..='~' => letter,

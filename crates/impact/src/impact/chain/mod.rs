@@ -133,7 +133,7 @@ pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulat
     };
     chain.run(start);
     let mut motion = chain.finish(start);
-    motion.fall = taylor::fall(&motion);
+    motion.fall = taylor::time_of_fall_by_series(&motion);
     Ok(motion)
 }
 
@@ -211,7 +211,7 @@ impl<'a> Chain<'a> {
         let mut place = if velocity == 0.0 {
             self.turns.push(TurningPoint { t: 0.0, x });
             if x == 0.0 || self.sticks(x) {
-                return self.held(x);
+                return self.hold_at_rest(x);
             }
             let side = if x > 0.0 { Side::Right } else { Side::Left };
             StretchStart::Turn(side, SwingAngle::new(x.abs()), None)
@@ -358,7 +358,7 @@ impl<'a> Chain<'a> {
         {
             let (swing, reach) = known.unwrap_or_else(|| {
                 let swing = UndampedSwing::new(energy);
-                (swing, swing.reach(&ahead.spot))
+                (swing, swing.stretch_to(&ahead.spot))
             });
             let leg = leg(self.model, &swing, &ahead.spot, reach);
             if !is_positive(leg.time) {
@@ -383,7 +383,7 @@ impl<'a> Chain<'a> {
         let turns =
             match self.model.alpha == 0.0 && self.barriers.iter().flatten().all(out_of_reach) {
                 true => self.undulate(side, from),
-                false => self.rub(side, from),
+                false => self.next_turn_with_friction(side, from),
             };
         turns.or_else(|| match self.stop {
             Some(_) => None,
@@ -412,7 +412,7 @@ impl<'a> Chain<'a> {
             let mean = 0.5 * (before.energy + after.energy);
             let time = leg.time + stretched * (mean - swing.energy);
             self.swing([before.energy, after.energy], time, side, [-before.x, after.x]);
-            self.turned(side, turn, None)?;
+            self.from_turning_point(side, turn, None)?;
             if self.stop.is_some() {
                 return None;
             }
@@ -422,13 +422,13 @@ impl<'a> Chain<'a> {
 
     /// The next turning point with dry friction: half of the viscous damping before it, half after
     /// it; nothing where there is none.
-    fn rub(&mut self, side: Side, from: SwingAngle) -> Option<StretchStart> {
+    fn next_turn_with_friction(&mut self, side: Side, from: SwingAngle) -> Option<StretchStart> {
         let to = side.opposite();
         let quarter = |swing: &UndampedSwing| Leg::free(swing.quarter.time, swing.quarter.area);
         let (before, _) = self.reference(from.energy, StretchKind::FromTurn, quarter)?;
         let angle = match self.model.alpha == 0.0 {
             true => SwingAngle::turn(before.energy).x,
-            false => rubbed(SwingAngle::turn(before.energy).x, self.model.alpha),
+            false => turn_after_friction(SwingAngle::turn(before.energy).x, self.model.alpha),
         };
         if angle <= 0.0 {
             // It comes to rest before the bottom, where friction holds it.
@@ -447,7 +447,7 @@ impl<'a> Chain<'a> {
         }
         let time = before.quarter.time + after.quarter.time;
         self.swing([from.energy, turn.energy], time, to, [-from.x, turn.x]);
-        self.turned(to, turn, None)
+        self.from_turning_point(to, turn, None)
     }
 
     /// From a spot on the way to a side: to the barrier there, or to the turning point.
@@ -457,7 +457,7 @@ impl<'a> Chain<'a> {
             && energy > ahead.spot.energy
         {
             let crossing = |swing: &UndampedSwing| {
-                let (end, start) = (swing.reach(&ahead.spot), swing.reach(&spot));
+                let (end, start) = (swing.stretch_to(&ahead.spot), swing.stretch_to(&spot));
                 Leg {
                     length: 0.5 * (ahead.spot.x - spot.x),
                     ..Leg::free(0.5 * (end.time - start.time), 0.5 * (end.area - start.area))
@@ -474,7 +474,7 @@ impl<'a> Chain<'a> {
         let back = spot.mirrored();
         let model = self.model;
         let found = self.reference(energy, StretchKind::FromPlace, |swing| {
-            leg(model, swing, &back, swing.reach(&back))
+            leg(model, swing, &back, swing.stretch_to(&back))
         });
         let Some((swing, leg)) = found else {
             return self.integrate();
@@ -496,11 +496,11 @@ impl<'a> Chain<'a> {
             };
             (swing, reach)
         });
-        self.turned(to, turn, known)
+        self.from_turning_point(to, turn, known)
     }
 
     /// The pendulum rests at this spot for a moment, or for good.
-    fn turned(
+    fn from_turning_point(
         &mut self,
         side: Side,
         turn: SwingAngle,
@@ -513,7 +513,7 @@ impl<'a> Chain<'a> {
         self.turns.push(TurningPoint { t: self.t, x });
         self.state = [x, 0.0];
         if self.sticks(x) {
-            self.held(x);
+            self.hold_at_rest(x);
             return None;
         }
         if self.settings.rest_energy.is_some_and(|rest| turn.energy <= rest) {
@@ -567,7 +567,7 @@ impl<'a> Chain<'a> {
 
     /// A stretch of the swing between two energies and two places, towards a side.
     fn swing(&mut self, energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) {
-        self.advance(time, Regime::Free, || closed(energies, time, to, places));
+        self.advance(time, Regime::Free, || closed_form_between(energies, time, to, places));
     }
 
     /// The clock goes on by so much, or to the end of the duration.
@@ -584,7 +584,7 @@ impl<'a> Chain<'a> {
     }
 
     /// At rest to the end.
-    fn held(&mut self, x: f64) {
+    fn hold_at_rest(&mut self, x: f64) {
         let end = self.settings.duration;
         if self.settings.keep_path && end > self.t {
             self.path.push_rest([self.t, end], x);
@@ -602,7 +602,7 @@ impl<'a> Chain<'a> {
         let left = Settings { duration: self.settings.duration - self.t, ..*self.settings };
         let [x, velocity] = self.state;
         let motion = taylor::simulate_one(*self.model, Start { x, velocity }, left);
-        self.stop = Some(motion.stop.later(self.t));
+        self.stop = Some(motion.stop.delayed_by(self.t));
         self.integrated = Some(motion);
         None
     }
@@ -623,7 +623,7 @@ impl<'a> Chain<'a> {
                     .filter(|turn| turn.t > 0.0)
                     .map(|turn| TurningPoint { t: from + turn.t, ..*turn }),
             );
-            self.impacts.extend(motion.impacts.iter().map(|impact| impact.later(from)));
+            self.impacts.extend(motion.impacts.iter().map(|impact| impact.delayed_by(from)));
             self.path.extend(&motion.path, from);
         }
         let [end_x, end_velocity] = self.state;
@@ -677,7 +677,7 @@ fn leg(model: &Model, swing: &UndampedSwing, spot: &SwingAngle, reach: Stretch) 
 /// counted to the other side.
 ///
 /// With h = (a + a')/2: sin((a - a')/2) = alpha h/sin h, which has lost the root a' = -a.
-fn rubbed(turn: f64, alpha: f64) -> f64 {
+fn turn_after_friction(turn: f64, alpha: f64) -> f64 {
     let mut next = turn - 2.0 * alpha;
     for _ in 0..MOST_NEWTON {
         let half = 0.5 * (turn + next);
@@ -715,14 +715,14 @@ fn slowness(energy: f64) -> f64 {
 pub(super) fn actions(model: &Model, amplitude: f64) -> (f64, f64) {
     let swing = UndampedSwing::new(SwingAngle::new(amplitude).energy);
     let reach = |side: Side| match model.barrier(side) {
-        Some(x) => swing.reach(&SwingAngle::new(side.sign() * x)).area,
+        Some(x) => swing.stretch_to(&SwingAngle::new(side.sign() * x)).area,
         None => swing.quarter.area,
     };
     (4.0 * swing.quarter.area, 2.0 * (reach(Side::Left) + reach(Side::Right)))
 }
 
 /// The closed form of a stretch between two energies and two places, towards a side.
-fn closed(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) -> ClosedForm {
+fn closed_form_between(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) -> ClosedForm {
     let moduli = energies.map(|energy| (0.5 * energy).sqrt());
     let mean = (moduli[0] * moduli[1]).sqrt();
     let parameter = mean * mean;
@@ -731,7 +731,7 @@ fn closed(energies: [f64; 2], time: f64, to: Side, places: [f64; 2]) -> ClosedFo
     // own.
     let phase = |energy: f64, place: f64| {
         let (sine, _) = SwingAngle::new(place).phase(energy);
-        middle.reach(&SwingAngle::new(2.0 * (mean * sine).clamp(-1.0, 1.0).asin())).time
+        middle.stretch_to(&SwingAngle::new(2.0 * (mean * sine).clamp(-1.0, 1.0).asin())).time
     };
     let [start, end] = [0, 1].map(|index| phase(energies[index], places[index]));
     ClosedForm::Swing {

@@ -95,7 +95,7 @@ impl UndampedSwing {
 
     /// From the bottom to this spot, on the way to the right; beyond the turning point as far as
     /// that.
-    pub fn reach(&self, spot: &SwingAngle) -> Stretch {
+    pub fn stretch_to(&self, spot: &SwingAngle) -> Stretch {
         let (sine, cosine) = spot.phase(self.energy);
         if cosine == 0.0 {
             return Stretch {
@@ -175,7 +175,7 @@ mod tests {
             for part in [-0.999_999, -0.6, -0.1, 1e-9, 0.2, 0.5, 0.9, 0.999] {
                 let x: f64 = part * amplitude;
                 let phi = ((0.5 * x).sin() / m.sqrt()).asin();
-                let found = swing.reach(&SwingAngle::new(x));
+                let found = swing.stretch_to(&SwingAngle::new(x));
                 let time = ellipf(phi, m).unwrap();
                 let area = 4.0 * (ellipeinc(phi, m).unwrap() - (1.0 - m) * time);
                 assert!(
@@ -214,8 +214,8 @@ mod tests {
             let energy = SwingAngle::new(amplitude).energy;
             let step = 1e-5 * energy;
             let [below, above] = [energy - step, energy + step]
-                .map(|energy| UndampedSwing::new(energy).reach(&SwingAngle::new(x)).area);
-            let time = UndampedSwing::new(energy).reach(&SwingAngle::new(x)).time;
+                .map(|energy| UndampedSwing::new(energy).stretch_to(&SwingAngle::new(x)).area);
+            let time = UndampedSwing::new(energy).stretch_to(&SwingAngle::new(x)).time;
             assert!(((above - below) / (2.0 * step) / time - 1.0).abs() < 1e-7, "{amplitude} {x}");
         }
     }

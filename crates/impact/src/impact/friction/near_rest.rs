@@ -175,7 +175,7 @@ fn followed(model: &Model, x: f64, duration: f64) -> Result<Simulation, Friction
 }
 
 /// The final stop by Coulomb's law, and the number of half swings before it.
-fn stop(alpha: f64, amplitude: f64) -> Result<(TurningPoint, usize), FrictionError> {
+fn final_stop(alpha: f64, amplitude: f64) -> Result<(TurningPoint, usize), FrictionError> {
     let mut duration = 50.0;
     loop {
         let motion = swing(alpha, Friction::Exact, -amplitude, duration)?;
@@ -191,7 +191,7 @@ fn stop(alpha: f64, amplitude: f64) -> Result<(TurningPoint, usize), FrictionErr
 }
 
 pub(super) fn near_rest(alpha: f64, amplitude: f64) -> Result<NearRest, FrictionError> {
-    let (stop, half_swings) = stop(alpha, amplitude)?;
+    let (stop, half_swings) = final_stop(alpha, amplitude)?;
     let creep = creep(alpha, stop.x)?;
     let until = (stop.t + (8.0 / creep.rate_linear).min(40.0)).max(TAU);
     let coulomb = swing(alpha, Friction::Exact, -amplitude, until)?;

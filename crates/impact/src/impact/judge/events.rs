@@ -16,7 +16,7 @@ use super::Coordinate;
 use crate::impact::model::{Model, Side, Start};
 use crate::impact::simulation::{
     ContactRecord, Integrator, Regime, Settings, Simulation, SimulationPath, SimulationStop,
-    TurningPoint, enter, scaled,
+    TurningPoint, begin_contact, scaled,
 };
 use crate::numeric::ode::{
     self, Event, EventOccurrence, IntegrationError, StopReason, Trajectory, integrate_phases,
@@ -341,7 +341,7 @@ fn contacts_and_turns(
     if let Regime::Contact(side) | Regime::Detached(side) = first {
         let depth = model.depth(start.x).map_or(0.0, |(_, depth)| depth);
         let speed = side.sign() * start.velocity;
-        enter(&mut impacts, (model, settings), side, 0.0, [depth, speed]);
+        begin_contact(&mut impacts, (model, settings), side, 0.0, [depth, speed]);
     }
     let mut turns = Vec::new();
     if start.velocity == 0.0 {
@@ -352,7 +352,7 @@ fn contacts_and_turns(
         match meanings.get(phase).and_then(|list| list.get(event)) {
             Some(&JudgeEvent::Touch(side)) => {
                 let speed = (side.sign() * state.v).max(0.0);
-                enter(&mut impacts, (model, settings), side, state.t, [0.0, speed]);
+                begin_contact(&mut impacts, (model, settings), side, state.t, [0.0, speed]);
             }
             Some(JudgeEvent::Release) => {
                 if let Some(impact) = impacts.last_mut() {
@@ -365,7 +365,7 @@ fn contacts_and_turns(
                     && let Some(Regime::Contact(side)) =
                         pushed_into(model, region, state.x, direction)
                 {
-                    enter(&mut impacts, (model, settings), side, state.t, [0.0, 0.0]);
+                    begin_contact(&mut impacts, (model, settings), side, state.t, [0.0, 0.0]);
                 }
                 turns.push(TurningPoint {
                     t: state.t,

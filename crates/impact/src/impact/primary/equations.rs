@@ -56,7 +56,7 @@ pub(super) struct PhaseSystem {
 }
 
 /// An expression of this file.
-fn own(text: &str) -> Expr {
+fn parsed(text: &str) -> Expr {
     parse_expression(text).unwrap_or_else(|_| Expr::zero())
 }
 
@@ -66,9 +66,9 @@ fn derive() -> Result<Accelerations, MechanicsError> {
         "R*y'^2/2 + ((y' + x'*cos(x))^2 + (x'*sin(x))^2)/2",
         "kappa*y^2/2 + 1 - cos(x)",
     )?;
-    mechanism.dissipation = own("delta*y'^2/2 + zeta*x'^2");
+    mechanism.dissipation = parsed("delta*y'^2/2 + zeta*x'^2");
     mechanism.forces =
-        [(Symbol::new("x"), own("P + G")), (Symbol::new("y"), own("f*sin(eta*t)"))].into();
+        [(Symbol::new("x"), parsed("P + G")), (Symbol::new("y"), parsed("f*sin(eta*t)"))].into();
     let equations = mechanism.equations()?;
     let accelerations = equations.accelerations()?;
     let [x, y] = accelerations.as_slice() else {
@@ -108,7 +108,7 @@ impl PrimaryEquations {
     }
 
     /// The system of a phase, built when it is first met.
-    fn once(
+    fn cached_system(
         &self,
         phase: PhaseKey,
         build: impl FnOnce() -> Result<PhaseSystem, PrimaryError>,
@@ -126,19 +126,23 @@ impl PrimaryEquations {
     fn friction(&self, direction: f64) -> [Expr; 2] {
         let torque = match self.case.model.friction {
             _ if self.case.model.alpha == 0.0 => Expr::zero(),
-            Friction::Exact => own("alpha") * Expr::from(direction as i64),
-            Friction::Arctangent => own(&format!("alpha*2/pi*atan({STEEPNESS}*x')")),
+            Friction::Exact => parsed("alpha") * Expr::from(direction as i64),
+            Friction::Arctangent => parsed(&format!("alpha*2/pi*atan({STEEPNESS}*x')")),
         };
-        let power = &torque * &own("x'");
+        let power = &torque * &parsed("x'");
         [-torque, power]
     }
 
     /// Rates of the accounts: viscous, friction, contact, dashpot, force.
     fn accounts(&self, friction: Expr, contact: Expr) -> [Expr; ACCOUNTS] {
-        [own("2*zeta*x'^2"), friction, contact, own("delta*y'^2"), own("f*sin(eta*t)*y'")]
+        [parsed("2*zeta*x'^2"), friction, contact, parsed("delta*y'^2"), parsed("f*sin(eta*t)*y'")]
     }
 
-    fn put(&self, expression: &Expr, values: &[(&str, Expr)]) -> Result<Expr, PrimaryError> {
+    fn substitute_values(
+        &self,
+        expression: &Expr,
+        values: &[(&str, Expr)],
+    ) -> Result<Expr, PrimaryError> {
         let values: BTreeMap<Symbol, Expr> =
             values.iter().map(|(name, value)| (Symbol::new(name), value.clone())).collect();
         Ok(expression.substitute_all(&values).map_err(MechanicsError::from)?)
@@ -183,22 +187,22 @@ impl PrimaryEquations {
     /// The torque on a pendulum at rest, which friction must hold: x'' + y'' cos x + sin x = P + G
     /// with x'' = 0.
     fn torque_at_rest(&self) -> Expr {
-        own("P") - own("sin(x)") - own("cos(x)") * self.accelerations.held.clone()
+        parsed("P") - parsed("sin(x)") - parsed("cos(x)") * self.accelerations.held.clone()
     }
 
     /// Away from the barriers, moving in this direction where dry friction asks for one.
     pub(super) fn flight(&self, direction: f64) -> Result<Rc<PhaseSystem>, PrimaryError> {
-        self.once((None, direction), || self.flight_system(direction))
+        self.cached_system((None, direction), || self.flight_system(direction))
     }
 
     fn flight_system(&self, direction: f64) -> Result<PhaseSystem, PrimaryError> {
         let [torque, power] = self.friction(direction);
-        let mut right = vec![own("x'")];
+        let mut right = vec![parsed("x'")];
         let put = |acceleration: &Expr| {
-            self.put(acceleration, &[("P", Expr::zero()), ("G", torque.clone())])
+            self.substitute_values(acceleration, &[("P", Expr::zero()), ("G", torque.clone())])
         };
         let [x, y] = [put(&self.accelerations.free[0])?, put(&self.accelerations.free[1])?];
-        right.extend([x, own("y'"), y]);
+        right.extend([x, parsed("y'"), y]);
         right.extend(self.accounts(power, Expr::zero()));
         self.followed(&["x", "x'", "y", "y'"], "t", &right, &[])
     }
@@ -210,7 +214,7 @@ impl PrimaryEquations {
         place: f64,
         direction: f64,
     ) -> Result<Rc<PhaseSystem>, PrimaryError> {
-        self.once((Some(side), direction), || self.contact_system(side, place, direction))
+        self.cached_system((Some(side), direction), || self.contact_system(side, place, direction))
     }
 
     fn contact_system(
@@ -220,21 +224,26 @@ impl PrimaryEquations {
         direction: f64,
     ) -> Result<PhaseSystem, PrimaryError> {
         let [torque, power] = self.friction(direction);
-        let put = |acceleration: &Expr| self.put(acceleration, &[("G", torque.clone())]);
+        let put =
+            |acceleration: &Expr| self.substitute_values(acceleration, &[("G", torque.clone())]);
         let [x, y] = [put(&self.accelerations.free[0])?, put(&self.accelerations.free[1])?];
-        let mut rates = vec![x, own("y'"), y, Expr::one()];
-        rates.extend(self.accounts(power, own("mu*x'^2*w^3")));
+        let mut rates = vec![x, parsed("y'"), y, Expr::one()];
+        rates.extend(self.accounts(power, parsed("mu*x'^2*w^3")));
         let right = regularised(&rates, side).map_err(MechanicsError::from)?;
         self.followed(&["w", "x'", "y", "y'", "t"], "s", &right, &[("x_c", place)])
     }
 
     /// The main mass alone with the pendulum held at x; the torque on the pendulum is what friction
     /// must hold.
-    pub(super) fn held(&self, x: f64, contact: f64) -> Result<(PhaseSystem, Expr), PrimaryError> {
+    pub(super) fn equations_when_held(
+        &self,
+        x: f64,
+        contact: f64,
+    ) -> Result<(PhaseSystem, Expr), PrimaryError> {
         let still = [("x'", Expr::zero())];
-        let mut right = vec![own("y'"), self.accelerations.held.clone()];
+        let mut right = vec![parsed("y'"), self.accelerations.held.clone()];
         for account in self.accounts(Expr::zero(), Expr::zero()) {
-            right.push(self.put(&account, &still)?);
+            right.push(self.substitute_values(&account, &still)?);
         }
         let followed = self.followed(&["y", "y'"], "t", &right, &[("x", x), ("P", contact)])?;
         Ok((followed, self.torque_at_rest()))
@@ -248,7 +257,10 @@ impl PrimaryEquations {
         direction: f64,
     ) -> Result<f64, PrimaryError> {
         let [torque, _] = self.friction(direction);
-        let rate = self.put(&self.accelerations.free[0], &[("P", Expr::zero()), ("G", torque)])?;
+        let rate = self.substitute_values(
+            &self.accelerations.free[0],
+            &[("P", Expr::zero()), ("G", torque)],
+        )?;
         let [x, velocity, y, speed] = state;
         let values =
             self.numbers_and(&[("t", t), ("x", x), ("x'", velocity), ("y", y), ("y'", speed)]);

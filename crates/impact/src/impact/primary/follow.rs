@@ -72,9 +72,9 @@ pub fn simulate_primary(
             PrimaryRegime::Free(direction) => run.fly(direction)?,
             PrimaryRegime::Contact(side, direction) => run.touch(side, direction)?,
             PrimaryRegime::LetGo(side, direction) => run.let_go(side, direction)?,
-            PrimaryRegime::Held => run.hold()?,
+            PrimaryRegime::Held => run.follow_held()?,
         };
-        run.settle();
+        run.close_accounts();
         match reason {
             PathEnd::Interrupted => break PrimaryStop::Interrupted,
             PathEnd::Reached | PathEnd::Event(_) => {}
@@ -129,7 +129,7 @@ struct PrimaryRun<'a> {
     astray: f64,
 }
 
-fn own(text: &str) -> Expr {
+fn parsed(text: &str) -> Expr {
     parse_expression(text).unwrap_or_else(|_| Expr::zero())
 }
 
@@ -139,7 +139,7 @@ fn number(value: f64) -> Expr {
 }
 
 fn offset(name: &str, place: f64) -> Expr {
-    own(name) - number(place)
+    parsed(name) - number(place)
 }
 
 impl<'a> PrimaryRun<'a> {
@@ -215,7 +215,7 @@ impl<'a> PrimaryRun<'a> {
                 false => velocity,
             };
             if side.sign() * push > 0.0 {
-                self.enter(side, direction);
+                self.begin_contact(side, direction);
             }
         }
         Ok(())
@@ -248,7 +248,7 @@ impl<'a> PrimaryRun<'a> {
     }
 
     fn fly(&mut self, direction: f64) -> Result<PathEnd, PrimaryError> {
-        let mut events = vec![Event::record(own("y'"))];
+        let mut events = vec![Event::record(parsed("y'"))];
         let mut sides = Vec::new();
         for side in [Side::Left, Side::Right] {
             if let Some(place) = self.case.model.barrier(side) {
@@ -259,12 +259,12 @@ impl<'a> PrimaryRun<'a> {
         let turning = events.len();
         match self.case.sticks() {
             true => events.extend(self.end_of_slip(direction)),
-            false => events.push(Event::record(own("x'"))),
+            false => events.push(Event::record(parsed("x'"))),
         }
-        let reason = self.glide(direction, &events, Some(turning))?;
+        let reason = self.follow_free(direction, &events, Some(turning))?;
         if let PathEnd::Event(event) = reason {
             match sides.get(event.wrapping_sub(1)) {
-                Some(side) => self.enter(*side, direction),
+                Some(side) => self.begin_contact(*side, direction),
                 None => self.turn_back(0.0)?,
             }
         }
@@ -273,7 +273,7 @@ impl<'a> PrimaryRun<'a> {
 
     /// The events that end a slip in this direction: it comes to rest, or turns out to be none.
     fn end_of_slip(&self, direction: f64) -> [Event; 2] {
-        let forward = Expr::from(direction as i64) * own("x'");
+        let forward = Expr::from(direction as i64) * parsed("x'");
         let unseen = number(ROUNDING * self.case.model.alpha);
         [&forward + &Expr::zero(), forward + unseen].map(|speed| Event::stop(speed).falling())
     }
@@ -281,7 +281,7 @@ impl<'a> PrimaryRun<'a> {
     /// Away from every force of a barrier until one of these events; the first of them are the
     /// turning points of the main mass, those of the pendulum have this number where they are
     /// looked for.
-    fn glide(
+    fn follow_free(
         &mut self,
         direction: f64,
         events: &[Event],
@@ -322,7 +322,7 @@ impl<'a> PrimaryRun<'a> {
         }
     }
 
-    fn enter(&mut self, side: Side, direction: f64) {
+    fn begin_contact(&mut self, side: Side, direction: f64) {
         self.state.x = self.barrier_position(side);
         self.begin_impact(side, 0.0);
         self.regime = PrimaryRegime::Contact(side, direction);
@@ -342,7 +342,7 @@ impl<'a> PrimaryRun<'a> {
         });
     }
 
-    fn leave(&mut self, side: Side, direction: f64) {
+    fn end_contact(&mut self, side: Side, direction: f64) {
         self.state.x = self.barrier_position(side);
         let (t, taken, velocity) = (self.t, self.taken, self.state.velocity);
         if let Some(impact) = self.impacts.last_mut() {
@@ -360,18 +360,18 @@ impl<'a> PrimaryRun<'a> {
         // From a touch without speed the variable w would never leave its zero.
         let w = depth.sqrt().max(if self.state.velocity == 0.0 { 1e-12 } else { 0.0 });
         let mut events = vec![
-            Event::record(own("y'")),
-            Event::stop(own("w")),
+            Event::record(parsed("y'")),
+            Event::stop(parsed("w")),
             Event::stop(offset("t", self.settings.duration)),
         ];
         match self.case.sticks() {
             true => events.extend(self.end_of_slip(direction)),
-            false => events.push(Event::record(own("x'"))),
+            false => events.push(Event::record(parsed("x'"))),
         }
         let pulls = events.len();
         if self.case.model.mu > 0.0 {
             let sign = Expr::from(side.sign() as i64);
-            events.push(Event::stop(own("gamma") + sign * own("mu*x'")).falling());
+            events.push(Event::stop(parsed("gamma") + sign * parsed("mu*x'")).falling());
         }
         let PrimaryState { velocity, y, speed, .. } = self.state;
         let start = self.with_accounts(&[w, velocity, y, speed, self.t], &followed);
@@ -399,7 +399,7 @@ impl<'a> PrimaryRun<'a> {
         self.path.push(self.t, end, PrimarySegment::Contact { path, side, place });
         self.t = end;
         match reason {
-            PathEnd::Event(1) => self.leave(side, direction),
+            PathEnd::Event(1) => self.end_contact(side, direction),
             PathEnd::Event(2) => self.t = self.settings.duration,
             PathEnd::Event(event) if event == pulls => {
                 self.regime = PrimaryRegime::LetGo(side, direction)
@@ -422,12 +422,12 @@ impl<'a> PrimaryRun<'a> {
         let place = self.barrier_position(side);
         let sign = Expr::from(side.sign() as i64);
         let events = [
-            Event::record(own("y'")),
+            Event::record(parsed("y'")),
             Event::stop(offset("x", place)),
-            Event::stop(own("gamma") + sign * own("mu*x'")).rising(),
+            Event::stop(parsed("gamma") + sign * parsed("mu*x'")).rising(),
         ];
         let before = self.state.x;
-        let reason = self.glide(direction, &events, None)?;
+        let reason = self.follow_free(direction, &events, None)?;
         // The elastic energy that the barrier stores on this way is not returned.
         let stored = |x: f64| {
             let depth = (side.sign() * (x - place)).max(0.0);
@@ -435,21 +435,21 @@ impl<'a> PrimaryRun<'a> {
         };
         self.accounts[2] += stored(before) - stored(self.state.x);
         match reason {
-            PathEnd::Event(1) => self.leave(side, direction),
+            PathEnd::Event(1) => self.end_contact(side, direction),
             PathEnd::Event(2) => self.regime = PrimaryRegime::Contact(side, direction),
             _ => {}
         }
         Ok(reason)
     }
 
-    fn hold(&mut self) -> Result<PathEnd, PrimaryError> {
+    fn follow_held(&mut self) -> Result<PathEnd, PrimaryError> {
         let PrimaryState { x, y, speed, .. } = self.state;
         let inside = self.case.model.depth(x);
         let contact =
             inside.map_or(0.0, |(side, depth)| -side.sign() * self.case.model.contact(depth, 0.0));
-        let (followed, torque) = self.equations.held(x, contact)?;
+        let (followed, torque) = self.equations.equations_when_held(x, contact)?;
         let bound = self.case.model.alpha;
-        let mut events = vec![Event::record(own("y'"))];
+        let mut events = vec![Event::record(parsed("y'"))];
         for bound in [bound, (1.0 + ROUNDING) * bound].map(number) {
             events.push(Event::stop(&torque - &bound).rising());
             events.push(Event::stop(&torque + &bound).falling());
@@ -505,7 +505,7 @@ impl<'a> PrimaryRun<'a> {
     }
 
     /// The account at the end of a phase.
-    fn settle(&mut self) {
+    fn close_accounts(&mut self) {
         let energy = self.case.energy(self.state);
         let [viscous, friction, contact, dashpot, force] = self.accounts;
         let astray = energy - self.start_energy + viscous + friction + contact + dashpot - force;

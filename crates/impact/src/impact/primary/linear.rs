@@ -36,7 +36,7 @@ pub struct UndampedAndLocked {
 
 impl Primary {
     /// The two linear cases beside the damper.
-    pub fn others(&self) -> UndampedAndLocked {
+    pub fn undamped_and_locked(&self) -> UndampedAndLocked {
         UndampedAndLocked {
             without: self.single_mass(self.mass),
             locked: self.single_mass(self.mass + 1.0),

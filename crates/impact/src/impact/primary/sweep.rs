@@ -90,7 +90,7 @@ fn row(case: PrimaryCase, settings: &PrimarySettings) -> Result<PrimaryRow, Prim
         impacts: motion.impacts.iter().filter(|impact| impact.entry_time >= since).count(),
         all_impacts: motion.impacts.len(),
         rest_time: motion.rest_time(),
-        others: case.primary.others(),
+        others: case.primary.undamped_and_locked(),
         stop: motion.stop,
     })
 }

@@ -134,7 +134,7 @@ impl SimulationStop {
 
 impl SimulationStop {
     /// The reason with its time shifted.
-    pub(super) fn later(self, time: f64) -> Self {
+    pub(super) fn delayed_by(self, time: f64) -> Self {
         match self {
             Self::Duration | Self::RestEnergy | Self::AtRest => self,
             Self::NotFinite { t } => Self::NotFinite { t: time + t },
@@ -238,7 +238,7 @@ impl ContactRecord {
     }
 
     /// The contact with its times shifted.
-    pub(super) fn later(&self, time: f64) -> Self {
+    pub(super) fn delayed_by(&self, time: f64) -> Self {
         Self {
             entry_time: self.entry_time + time,
             exit_time: self.exit_time.map(|exit| exit + time),
@@ -288,7 +288,7 @@ pub(super) fn scaled(settings: &Settings, model: &Model, start: Start) -> Settin
 ///
 /// A contact left and entered again before x has changed by more than a step may err goes on: the
 /// pendulum is pressed against the barrier and rests there.
-pub(super) fn enter(
+pub(super) fn begin_contact(
     impacts: &mut Vec<ContactRecord>,
     (model, settings): (&Model, &Settings),
     side: Side,

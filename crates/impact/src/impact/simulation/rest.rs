@@ -102,11 +102,13 @@ impl Simulation {
             Ok(RestByTurningPoints::Line { above, below }) => {
                 let time = between(above, below, level);
                 Ok(match may_be_late(above, below, level) {
-                    true => self.fall(above, level).map_or(time, |fall| time.max(fall)),
+                    true => self.time_of_fall(above, level).map_or(time, |fall| time.max(fall)),
                     false => time,
                 })
             }
-            Ok(RestByTurningPoints::Fall(from)) => self.fall(from, level).ok_or(NoRest::NotYetSeen),
+            Ok(RestByTurningPoints::Fall(from)) => {
+                self.time_of_fall(from, level).ok_or(NoRest::NotYetSeen)
+            }
         };
         Rest { amplitude, place, time, last_crossing }
     }
@@ -240,7 +242,7 @@ impl Simulation {
 
     /// When |x| has fallen to the level on the way from a turning point, or the start, to the next,
     /// all counted from the place of rest.
-    pub(in crate::impact) fn fall(&self, from: TurningPoint, level: f64) -> Option<f64> {
+    pub(in crate::impact) fn time_of_fall(&self, from: TurningPoint, level: f64) -> Option<f64> {
         if !self.path_tells_the_fall() {
             return self.fall;
         }

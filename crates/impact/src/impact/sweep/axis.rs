@@ -60,7 +60,7 @@ pub enum AxisError {
     )]
     Form(String),
     /// Neither linear nor logarithmic.
-    #[error("`{name}` is no spacing: after the count stands `log` for equal ratios, or `lin`{}", meant(.nearest))]
+    #[error("`{name}` is no spacing: after the count stands `log` for equal ratios, or `lin`{}", suggestion(.nearest))]
     Spacing {
         /// The value given.
         name: String,
@@ -104,7 +104,7 @@ pub enum AxisError {
     },
 }
 
-fn meant(nearest: &Option<&str>) -> String {
+fn suggestion(nearest: &Option<&str>) -> String {
     nearest.map_or_else(String::new, |name| format!(": did you mean `{name}`?"))
 }
 

@@ -5,7 +5,7 @@ use crate::impact::hertz;
 use crate::impact::model::{Model, Side};
 use crate::impact::polynomial::{bracketed, crossing_of, sign_changes, value, variation};
 use crate::impact::simulation::Regime;
-use crate::impact::simulation::{TurningPoint, enter};
+use crate::impact::simulation::{TurningPoint, begin_contact};
 use crate::impact::taylor::course::StepEvents;
 use crate::impact::taylor::series::{HIGHEST_ORDER, StepEndState};
 
@@ -90,7 +90,7 @@ impl Runner {
         (self.place, self.velocity, self.sine, self.cosine) = (w, velocity, sine, cosine);
         match course.crossing {
             None => self.adapt(),
-            Some(_) => self.leave(side.sign() * velocity),
+            Some(_) => self.leave_contact(side.sign() * velocity),
         }
         true
     }
@@ -212,7 +212,7 @@ impl Runner {
             }
             Some(StepEvent::Release) => {
                 self.place = step.barrier;
-                self.leave(step.side.sign() * velocity);
+                self.leave_contact(step.side.sign() * velocity);
             }
             Some(StepEvent::Detach) => {
                 self.regime = Regime::Detached(step.side);
@@ -228,8 +228,8 @@ impl Runner {
 
     /// Contact begins, at this speed.
     pub(super) fn touch(&mut self, side: Side, speed: f64) {
-        enter(&mut self.impacts, (&self.model, &self.settings), side, self.t, [0.0, speed]);
-        self.press(side, 0.0, speed);
+        begin_contact(&mut self.impacts, (&self.model, &self.settings), side, self.t, [0.0, speed]);
+        self.enter_contact(side, 0.0, speed);
     }
 
     /// Goes over to the equation of the contact after free flight from rest on the barrier, which
@@ -250,11 +250,11 @@ impl Runner {
             }
             false => (0.0, 0.0),
         };
-        self.press(side, (depth - back).max(0.0).sqrt(), speed - taken);
+        self.enter_contact(side, (depth - back).max(0.0).sqrt(), speed - taken);
     }
 
     /// In contact at w with this speed inwards.
-    pub(super) fn press(&mut self, side: Side, w: f64, speed: f64) {
+    pub(super) fn enter_contact(&mut self, side: Side, w: f64, speed: f64) {
         self.regime = Regime::Contact(side);
         let barrier = self.model.barrier(side).unwrap_or_default();
         self.place = w;
@@ -274,7 +274,7 @@ impl Runner {
     }
 
     /// Contact ends at this velocity.
-    pub(super) fn leave(&mut self, velocity: f64) {
+    pub(super) fn leave_contact(&mut self, velocity: f64) {
         if let Some((side, barrier)) = self.side() {
             self.place = barrier;
             if let Some(impact) = self.impacts.last_mut() {

@@ -6,7 +6,7 @@ use super::{LIGHT, Loaded, MOST_IDLE, Runner, SLOWEST_TOUCH, StepEvent, turning_
 use crate::impact::model::Side;
 use crate::impact::polynomial::{bracketed, crossing_of, level_crossing, sign_changes, value};
 use crate::impact::simulation::Regime;
-use crate::impact::simulation::{TurningPoint, enter};
+use crate::impact::simulation::{TurningPoint, begin_contact};
 use crate::impact::taylor::angle::sine_and_cosine;
 use crate::impact::taylor::course::StepEvents;
 use crate::impact::taylor::series::{HIGHEST_ORDER, StepEndState, TIME_TERMS};
@@ -117,18 +117,24 @@ impl Runner {
             }
             Some(StepEvent::Onset(side)) => {
                 let depth = side.sign() * rise(x, end);
-                enter(&mut self.impacts, (&self.model, &self.settings), side, start, [0.0, 0.0]);
+                begin_contact(
+                    &mut self.impacts,
+                    (&self.model, &self.settings),
+                    side,
+                    start,
+                    [0.0, 0.0],
+                );
                 self.begin_contact_from_rest(side, elapsed, [depth, side.sign() * v_end]);
             }
             Some(StepEvent::Touch(side) | StepEvent::Settle(side)) => {
                 (self.place, self.velocity) = (self.model.barrier(side).unwrap_or(x_end), 0.0);
                 self.fly();
             }
-            Some(StepEvent::Release) => self.leave(v_end),
+            Some(StepEvent::Release) => self.leave_contact(v_end),
             Some(StepEvent::Reattach) => {
                 if let Regime::Detached(side) = self.regime {
                     let barrier = self.model.barrier(side).unwrap_or_default();
-                    self.press(
+                    self.enter_contact(
                         side,
                         (side.sign() * (self.place - barrier)).max(0.0).sqrt(),
                         side.sign() * v_end,

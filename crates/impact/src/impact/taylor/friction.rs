@@ -22,14 +22,14 @@ impl Runner {
     pub(super) fn turn(&mut self) {
         let force = self.force_at_rest();
         if force.abs() <= self.model.alpha * (1.0 + 4.0 * f64::EPSILON) {
-            self.wait();
+            self.stay_held();
         } else {
             self.direction = force.signum();
         }
     }
 
     /// Held by friction until the excitation tears it loose, or to the end.
-    fn wait(&mut self) {
+    fn stay_held(&mut self) {
         let (start, x, _) = self.now();
         let field = self.force_at_rest() - self.model.field(start, x) - x.sin();
         let (release, direction) =

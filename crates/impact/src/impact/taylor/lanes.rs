@@ -112,7 +112,7 @@ pub(in crate::impact) fn follow(
             let Some(entry) = pool.get_mut(place) else {
                 continue;
             };
-            match entry.1.wants() {
+            match entry.1.next_equation() {
                 Some(StepEquation::Flight) => flights.push(place),
                 Some(StepEquation::Contact) => contacts.push(place),
                 None => {
@@ -149,7 +149,7 @@ pub(in crate::impact) fn follow(
         let mut lengths = [0.0; LANES];
         for (lane, &place) in group[..count].iter().enumerate() {
             if let Some((_, runner)) = pool.get_mut(place) {
-                lengths[lane] = runner.reach(proposed[lane]);
+                lengths[lane] = runner.step_length(proposed[lane]);
             }
         }
         arch.dispatch(Evaluation {

@@ -40,7 +40,7 @@ use super::model::{Friction, Model, Side, Start};
 use super::polynomial::{Roots, near_sign_changes};
 use super::simulation::{
     ContactRecord, Integrator, REST_FRACTION, Regime, Settings, Simulation, SimulationPath,
-    SimulationStop, TurningPoint, enter, first_swing, has_rested, scaled,
+    SimulationStop, TurningPoint, begin_contact, first_swing, has_rested, scaled,
 };
 use angle::sine_and_cosine;
 use course::{Courses, StepEvents, courses};
@@ -147,14 +147,14 @@ pub(super) fn simulate_one(model: Model, start: Start, settings: Settings) -> Si
     let mut inputs = Inputs::<1>::new();
     let mut found = Courses::<1>::new();
     let (order, terms) = (runner.order(), runner.terms());
-    while let Some(equation) = runner.wants() {
+    while let Some(equation) = runner.next_equation() {
         runner.inputs(0, &mut inputs);
         match equation {
             StepEquation::Flight => recurrences::flight(&inputs, order, terms, &mut series),
             StepEquation::Contact => recurrences::contact(&inputs, order, terms, &mut series),
         }
         let [proposed] = step_lengths(&series.velocity, order, &inputs.size, &inputs.allowed);
-        let length = runner.reach(proposed);
+        let length = runner.step_length(proposed);
         let ends = series.ends(&inputs, &[length], order, equation);
         courses(&series, (order, equation), &inputs, &[length], &ends, &mut found);
         runner.advance(ends.lane(0), found.lane(0), || series.lane(order, 0));
@@ -164,7 +164,7 @@ pub(super) fn simulate_one(model: Model, start: Start, settings: Settings) -> Si
 
 /// The fall to a tenth of the first swing, where that may be the rest and no path tells it: it is
 /// followed with its path, again or, for a chain, for once.
-pub(super) fn fall(simulation: &Simulation) -> Option<f64> {
+pub(super) fn time_of_fall_by_series(simulation: &Simulation) -> Option<f64> {
     let from = simulation.untold_fall()?;
     let start = match from.t > 0.0 {
         true => Start { x: from.x, velocity: 0.0 },
@@ -177,7 +177,7 @@ pub(super) fn fall(simulation: &Simulation) -> Option<f64> {
     }
     let again = simulate_one(simulation.model, start, settings);
     let level = REST_FRACTION * first_swing(&simulation.model, simulation.start);
-    let fall = again.fall(TurningPoint { t: 0.0, x: start.x }, level)?;
+    let fall = again.time_of_fall(TurningPoint { t: 0.0, x: start.x }, level)?;
     Some(from.t + fall)
 }
 
@@ -235,10 +235,10 @@ impl Runner {
         }
         if let Some((side, depth)) = model.depth(start.x) {
             let speed = side.sign() * start.velocity;
-            enter(&mut runner.impacts, (&model, &settings), side, 0.0, [depth, speed]);
+            begin_contact(&mut runner.impacts, (&model, &settings), side, 0.0, [depth, speed]);
             match model.would_pull(speed) {
                 true => runner.regime = Regime::Detached(side),
-                false => runner.press(side, depth.sqrt(), speed),
+                false => runner.enter_contact(side, depth.sqrt(), speed),
             }
         }
         if model.sticks() {
@@ -274,7 +274,7 @@ impl Runner {
             steps: self.steps,
             fall: None,
         };
-        simulation.fall = fall(&simulation);
+        simulation.fall = time_of_fall_by_series(&simulation);
         simulation
     }
 
@@ -301,7 +301,7 @@ impl Runner {
     }
 
     /// The series wanted next; nothing once the run has ended.
-    fn wants(&mut self) -> Option<StepEquation> {
+    fn next_equation(&mut self) -> Option<StepEquation> {
         if self.stop.is_some() {
             return None;
         }
@@ -372,7 +372,7 @@ impl Runner {
 
     /// The length of the step in its unit, if the series reaches so far: it ends there if nothing
     /// happens before.
-    fn reach(&mut self, proposed: f64) -> f64 {
+    fn step_length(&mut self, proposed: f64) -> f64 {
         self.proposed = proposed;
         let longest = match self.regime {
             Regime::Contact(_) => LONGEST_CONTACT_STEP,

@@ -419,7 +419,9 @@ fn resolved(
     let mut found: Vec<f64> = knots.first().copied().into_iter().collect();
     for pair in knots.windows(2) {
         let in_the_middle = infinite_middle && pair.contains(&0.0);
-        if in_the_middle || settled(force.value, pair[0], pair[1], 0.0, MOST_PANELS).is_some() {
+        if in_the_middle
+            || converged_value(force.value, pair[0], pair[1], 0.0, MOST_PANELS).is_some()
+        {
             found.push(pair[1]);
             continue;
         }
@@ -428,7 +430,9 @@ fn resolved(
             if found.len() + open.len() > MOST_KNOTS {
                 return Err(PeriodError::Waves);
             }
-            if halvings == HALVINGS || settled(force.value, from, to, 0.0, FEW_PANELS).is_some() {
+            if halvings == HALVINGS
+                || converged_value(force.value, from, to, 0.0, FEW_PANELS).is_some()
+            {
                 found.push(to);
                 continue;
             }
@@ -461,7 +465,7 @@ fn integral_within(
     negligible: f64,
     most_panels: usize,
 ) -> Result<f64, QuadratureError> {
-    if let Some(value) = settled(function, from, to, negligible, MOST_PANELS) {
+    if let Some(value) = converged_value(function, from, to, negligible, MOST_PANELS) {
         return Ok(value);
     }
     match integrate_within(function, &[from, to], [TOLERANCE, 0.0], most_panels) {
@@ -478,7 +482,7 @@ fn integral_within(
 
 /// The value at which the integral settles while panels are doubled, or from which on doubling no
 /// longer brings it closer, which is where the rounding of the force itself begins.
-fn settled(
+fn converged_value(
     function: &dyn Fn(f64) -> f64,
     from: f64,
     to: f64,

@@ -505,8 +505,8 @@ impl<S: Sample> Leg<'_, '_, S> {
                 }
                 continue;
             }
-            let moved = first.then(|| self.moved(&state, step.length));
-            let Some(happenings) = self.happenings(&step, &mut watches, moved.as_ref()) else {
+            let moved = first.then(|| self.extrapolated(&state, step.length));
+            let Some(happenings) = self.located_events(&step, &mut watches, moved.as_ref()) else {
                 return LegEnd::Stopped(StopReason::NonFinite { time });
             };
             trajectory.steps.push(step);
@@ -607,7 +607,7 @@ impl<S: Sample> Leg<'_, '_, S> {
 
     /// The start of a step, moved on for so long at the rates that it has: what is at rest stays
     /// where it is.
-    fn moved(&self, start: &S, length: f64) -> S {
+    fn extrapolated(&self, start: &S, length: f64) -> S {
         let mut values = start.values();
         let mut rates = values.clone();
         (self.equations.rates)(start.time(), &values, &mut rates);
@@ -638,7 +638,7 @@ impl<S: Sample> Leg<'_, '_, S> {
 
     /// The events inside the step in the order of time, as states, and whether they rise; `None`
     /// where an event function is not finite.
-    fn happenings(
+    fn located_events(
         &self,
         step: &TrajectoryStep<S>,
         watches: &mut [SignTracker],

@@ -166,7 +166,7 @@ impl DrivenAveraging<'_> {
             _ => Ok(None),
         };
         for resonance in candidates.iter().copied() {
-            let Some(waves) = waves_at(resonance)?.filter(DriveWaves::reach) else {
+            let Some(waves) = waves_at(resonance)?.filter(DriveWaves::is_nonzero) else {
                 continue;
             };
             if let Some(ratio) = near {
@@ -183,9 +183,11 @@ impl DrivenAveraging<'_> {
         let scaling = self.scaling(1).ok();
         let mut others = vec![];
         for resonance in drive.resonances() {
-            let projected = waves_at(resonance)?.is_some_and(|waves| waves.reach());
+            let projected = waves_at(resonance)?.is_some_and(|waves| waves.is_nonzero());
             if projected
-                || scaling.as_ref().is_some_and(|scaling| self.asked.reaches(resonance, scaling))
+                || scaling
+                    .as_ref()
+                    .is_some_and(|scaling| self.asked.drives_resonance(resonance, scaling))
             {
                 others.push(resonance);
             }
@@ -204,7 +206,7 @@ struct DriveWaves {
 
 impl DriveWaves {
     /// Whether anything reaches the motion.
-    fn reach(&self) -> bool {
+    fn is_nonzero(&self) -> bool {
         self.sine.iter().chain(&self.cosine).any(|wave| !wave.is_zero())
     }
 }
@@ -310,18 +312,18 @@ impl<'a> ResonantEquation<'a> {
     }
 
     /// Over `2 omega0`.
-    fn halved(&self, expression: &Expr) -> Result<Expr, ExprError> {
+    fn over_twice_omega0(&self, expression: &Expr) -> Result<Expr, ExprError> {
         Expr::divide(expression, &(Expr::from(2) * &self.projected.omega0))?.expand()
     }
 
     fn answer(self, waves: &DriveWaves) -> Result<Solution, Refusal> {
         let (a, p) = (Expr::from(self.a), Expr::from(i64::from(self.p)));
-        let rate = self.halved(&self.projected.sine)?;
-        let bend = self.halved(&self.projected.cosine)?;
+        let rate = self.over_twice_omega0(&self.projected.sine)?;
+        let bend = self.over_twice_omega0(&self.projected.cosine)?;
         // a psi'/p
         let phase = (Expr::divide(&(Expr::from(self.sigma) * &a), &p)? - &bend).expand()?;
         let halves = |waves: &[Expr; 2], sign: i64| -> Result<[Expr; 2], ExprError> {
-            let of = |wave: &Expr| (Expr::from(sign) * self.halved(wave)?).expand();
+            let of = |wave: &Expr| (Expr::from(sign) * self.over_twice_omega0(wave)?).expand();
             Ok([of(&waves[0])?, of(&waves[1])?])
         };
         let turning = [halves(&waves.sine, 1)?, halves(&waves.cosine, -1)?];
@@ -424,7 +426,8 @@ impl<'a> ResonantEquation<'a> {
         response: &Response,
     ) -> Result<Vec<DerivationLine>, ExprError> {
         let letters = DerivationLetters::avoiding(&self.oscillator.names());
-        let mut lines = self.projected.along(self.oscillator, &Expr::from(self.a), &letters)?;
+        let mut lines =
+            self.projected.derivation_lines(self.oscillator, &Expr::from(self.a), &letters)?;
         let theta = Expr::from(self.oscillator.phase());
         let turned = &(Expr::from(i64::from(self.p)) * theta) + &Expr::from(self.phase);
         lines.push(

@@ -51,8 +51,8 @@ pub(super) fn of_term(
         match both {
             [false, false] => outside = &outside * factor,
             [true, true] => return None,
-            [true, false] if of_position.takes(factor, coordinate) => {}
-            [false, true] if of_velocity.takes(factor, velocity) => {}
+            [true, false] if of_position.absorb(factor, coordinate) => {}
+            [false, true] if of_velocity.absorb(factor, velocity) => {}
             [true, false] => positions.push(factor.clone()),
             [false, true] => velocities.push(factor.clone()),
         }
@@ -205,7 +205,7 @@ fn arctangent_coefficient(product: &Expr, variable: Symbol, size: &Expr, k: usiz
                 slope.as_ref()?;
             }
             _ if !factor.contains(variable) => outside = &outside * factor,
-            _ if power.takes(factor, variable) => {}
+            _ if power.absorb(factor, variable) => {}
             _ => return None,
         }
     }

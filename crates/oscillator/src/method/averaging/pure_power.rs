@@ -111,7 +111,7 @@ fn taken_apart<const N: usize>(term: &Expr, variables: [Symbol; N]) -> Option<(E
             variables.iter().zip(&mut powers).filter(|(name, _)| factor.contains(**name));
         match (inside.next(), inside.next()) {
             (None, _) => outside = &outside * factor,
-            (Some((name, power)), None) => power.takes(factor, *name).then_some(())?,
+            (Some((name, power)), None) => power.absorb(factor, *name).then_some(())?,
             (Some(_), Some(_)) => return None,
         }
     }
@@ -266,7 +266,7 @@ impl SlowEquations {
     }
 
     /// Whether the amplitude only grows.
-    fn grows(&self) -> bool {
+    fn always_grows(&self) -> bool {
         let mut terms = self.amplitude_rate.terms().iter();
         !self.amplitude_rate.is_zero() && terms.all(|term| !term.has_leading_minus())
     }
@@ -321,7 +321,7 @@ pub(super) fn solve(
     let harmonic = shape.last_harmonic();
     let mut validity = vec![cut, Note::AlongTrueMotion { harmonic }];
     validity.extend(action::notes(oscillator, parts));
-    validity.extend(slow.grows().then_some(Note::Grows));
+    validity.extend(slow.always_grows().then_some(Note::Grows));
     let (modulation, named) = slow.released(&names, small_with);
     let first = Definition { symbol: names.first, meaning: Expr::number(shape.first.clone()) };
     Ok(Solution {

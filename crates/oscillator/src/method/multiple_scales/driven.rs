@@ -177,7 +177,7 @@ pub(in crate::method) struct DrivenRequest<'a> {
 
 impl DrivenRequest<'_> {
     /// The ratio of the frequencies, where they are numbers and no resonance is asked for.
-    fn near(&self, scaling: &Scaling) -> Option<f64> {
+    fn frequency_ratio(&self, scaling: &Scaling) -> Option<f64> {
         match self.resonance {
             Some(_) => None,
             None => ratio_of(&self.drive.frequency, &scaling.force.linear_in_full()),
@@ -191,7 +191,7 @@ impl DrivenRequest<'_> {
 
     /// The resonances that may be meant, the likeliest first.
     fn candidates(&self, scaling: &Scaling) -> Vec<(u32, u32)> {
-        match (self.resonance, self.near(scaling)) {
+        match (self.resonance, self.frequency_ratio(scaling)) {
             (Some(asked), _) => vec![asked],
             (None, Some(ratio)) => by_distance(self.drive.resonances(), ratio),
             (None, None) => {
@@ -208,7 +208,11 @@ impl DrivenRequest<'_> {
     }
 
     /// Whether the drive reaches the motion at a resonance.
-    pub(in crate::method) fn reaches(&self, resonance: (u32, u32), scaling: &Scaling) -> bool {
+    pub(in crate::method) fn drives_resonance(
+        &self,
+        resonance: (u32, u32),
+        scaling: &Scaling,
+    ) -> bool {
         if !is_ratio(resonance) {
             return false;
         }
@@ -226,9 +230,9 @@ impl DrivenRequest<'_> {
     pub(in crate::method) fn answer(&self, scaling: &Scaling) -> Result<Solution, Refusal> {
         let candidates = self.candidates(scaling);
         let first = candidates.first().copied().unwrap_or((1, 1));
-        let reaches = |candidate: &(u32, u32)| self.reaches(*candidate, scaling);
+        let reaches = |candidate: &(u32, u32)| self.drives_resonance(*candidate, scaling);
         let resonance = candidates.iter().copied().find(reaches).unwrap_or(first);
-        if grows(scaling, self.drive, resonance) {
+        if is_driven_at_own_frequency(scaling, self.drive, resonance) {
             let term = self.force().or(self.drive.terms.first());
             let term = term.map_or_else(Expr::zero, |driven| driven.term.clone());
             return Err(Reason::ResonanceWithoutDamping.to(self.method).about(&term));
@@ -238,7 +242,7 @@ impl DrivenRequest<'_> {
             let asked = resonance;
             Reason::NoResonance { asked, others }.to(self.method)
         })?;
-        if let Some(ratio) = self.near(scaling) {
+        if let Some(ratio) = self.frequency_ratio(scaling) {
             is_near(resonance, ratio, self.method)?;
         }
         Ok(found)
@@ -250,12 +254,12 @@ impl DrivenRequest<'_> {
         &self,
         scaling: &Scaling,
     ) -> Option<Result<Solution, Refusal>> {
-        let near = self.near(scaling);
+        let near = self.frequency_ratio(scaling);
         let is_near =
             |resonance| near.is_none_or(|ratio| is_near(resonance, ratio, self.method).is_ok());
         let mut candidates = self.candidates(scaling).into_iter();
         let found = candidates
-            .find(|candidate| is_near(*candidate) && self.reaches(*candidate, scaling))?;
+            .find(|candidate| is_near(*candidate) && self.drives_resonance(*candidate, scaling))?;
         self.answer_at(found, scaling).transpose()
     }
 
@@ -281,7 +285,7 @@ impl DrivenRequest<'_> {
 }
 
 /// Whether a linear force without damping is driven at its own frequency.
-fn grows(scaling: &Scaling, drive: &Drive, (p, q): (u32, u32)) -> bool {
+fn is_driven_at_own_frequency(scaling: &Scaling, drive: &Drive, (p, q): (u32, u32)) -> bool {
     let own = drive.terms.iter().find(|driven| p * driven.multiple == q);
     let squared =
         own.and_then(|driven| drive.frequency_of(driven).integer_power(2).ok()?.expand().ok());
@@ -511,7 +515,7 @@ impl DrivenProblem<'_> {
         definitions.extend(drive.definitions.iter().cloned());
         definitions.extend(forced);
         definitions.extend(scaling.bookkeeping.clone());
-        let backbone = self.unmarked(&backbone(&SlowRates::still(&still.phase), self));
+        let backbone = self.unmarked(&backbone(&SlowRates::constant_part(&still.phase), self));
         let averaged = self.method == Method::Averaging;
         // Averaging has its motion to one order less than its rates.
         let highest = if averaged { scaling.order - 1 } else { scaling.order };

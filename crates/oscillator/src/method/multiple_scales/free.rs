@@ -76,7 +76,7 @@ pub(super) fn solve(
         derivation,
     };
     if let Some(cycles) = &cycles {
-        free.settle(cycles, &mut found)?;
+        free.place_on_cycle(cycles, &mut found)?;
     }
     found.definitions.extend(scaling.bookkeeping.clone());
     found.validity.extend(linear.root.clone().map(Note::Positive));
@@ -147,7 +147,11 @@ impl Free<'_> {
 
     /// Puts the motion on the limit cycle that was chosen; the motion in the amplitude is kept
     /// beside it.
-    fn settle(&self, cycles: &Cycles, found: &mut MultipleScalesResult) -> Result<(), Refusal> {
+    fn place_on_cycle(
+        &self,
+        cycles: &Cycles,
+        found: &mut MultipleScalesResult,
+    ) -> Result<(), Refusal> {
         let (scaling, names) = (self.scaling, self.names);
         let cycle = &cycles.cycles[cycles.number - 1];
         let order = scaling.order as usize;

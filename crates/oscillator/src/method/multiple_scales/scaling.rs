@@ -136,7 +136,8 @@ pub(super) fn scaling(
             Err(error) => return Err(error.into()),
         }
     }
-    if let Some(found) = together(oscillator, parts, options, small, [default[0], highest[0]])? {
+    if let Some(found) = jointly_small(oscillator, parts, options, small, [default[0], highest[0]])?
+    {
         return Ok(found);
     }
     let times = order_of_shift(oscillator) / SHIFT_OF_A_CUBE;
@@ -155,7 +156,7 @@ pub(super) fn scaling(
 /// The expansion in parameters that are small together, or in one that marks all terms but the
 /// linear one of an equation that may have a limit cycle; `None` where the amplitude is to be the
 /// small parameter.
-fn together(
+fn jointly_small(
     oscillator: &Oscillator,
     parts: &Parts,
     options: &Options,

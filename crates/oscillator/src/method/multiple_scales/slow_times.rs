@@ -139,9 +139,9 @@ impl Complex {
     }
 
     pub(super) fn conjugate(&self, amplitude: ComplexAmplitude) -> Self {
-        let mut imaginary = amplitude.exchanged(&self.imaginary);
+        let mut imaginary = amplitude.conjugated(&self.imaginary);
         imaginary.negate();
-        Self { real: amplitude.exchanged(&self.real), imaginary }
+        Self { real: amplitude.conjugated(&self.real), imaginary }
     }
 
     /// Its derivative with respect to a symbol.
@@ -152,7 +152,7 @@ impl Complex {
 
 impl ComplexAmplitude {
     /// `B` and its conjugate exchanged.
-    fn exchanged(self, polynomial: &Polynomial) -> Polynomial {
+    fn conjugated(self, polynomial: &Polynomial) -> Polynomial {
         let mut result = Polynomial::zero();
         for (monomial, number) in polynomial.terms() {
             let (p, q) = (monomial.exponent(self.own), monomial.exponent(self.conjugate));

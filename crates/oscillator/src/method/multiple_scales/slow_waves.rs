@@ -104,7 +104,7 @@ impl SlowRates {
     }
 
     /// The constant part of the waves: `P` or `Q`.
-    pub(super) fn still(waves: &PhaseWaves) -> Polynomial {
+    pub(super) fn constant_part(waves: &PhaseWaves) -> Polynomial {
         waves.get(&0).map_or_else(Polynomial::zero, |waves| waves[0].clone())
     }
 
@@ -186,7 +186,7 @@ pub(super) fn response(
     };
     let found = match rates.iter().all(is_simple) {
         true => {
-            let still = rates.each_ref().map(|waves| unmarked(SlowRates::still(waves)));
+            let still = rates.each_ref().map(|waves| unmarked(SlowRates::constant_part(waves)));
             let waves = rates.each_ref().map(|waves| turning(waves).map(unmarked));
             FrequencyResponse::from_rates(still.each_ref(), &waves, question.sigma, a).cut(cut, a)
         }

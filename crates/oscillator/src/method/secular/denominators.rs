@@ -98,7 +98,7 @@ impl Factored {
     }
 
     /// The product.
-    pub fn times(&self, other: &Self) -> Self {
+    pub fn product(&self, other: &Self) -> Self {
         let mut product = self.clone();
         for &(prime, exponent) in &other.0 {
             product.set(prime, product.exponent(prime) + exponent);
@@ -107,7 +107,7 @@ impl Factored {
     }
 
     /// The quotient, where what the divisor has more of is left out.
-    pub fn over(&self, divisor: &Self) -> Self {
+    pub fn quotient(&self, divisor: &Self) -> Self {
         let left = self
             .0
             .iter()
@@ -173,7 +173,7 @@ impl Factored {
             numerator /= &divisor;
             denominator /= &divisor;
             // Of a prime no more than a word was looked for.
-            left = left.over(&common);
+            left = left.quotient(&common);
         }
     }
 
@@ -354,8 +354,9 @@ impl Growth {
             let mut number = numbers[order - 1].clone();
             if matches!(self, Self::Factorial | Self::FactorialMultiples) {
                 let twice = 2 * order as u64;
-                number =
-                    number.times(&Factored::of_word(twice)).times(&Factored::of_word(twice + 1));
+                number = number
+                    .product(&Factored::of_word(twice))
+                    .product(&Factored::of_word(twice + 1));
             }
             if matches!(self, Self::Multiples | Self::FactorialMultiples) {
                 let last = largest_factor(order);
@@ -382,7 +383,7 @@ impl Growth {
         let fitted = |count: usize| {
             let mut base = Factored::default();
             for (order, own) in known.iter().enumerate().take(count).skip(1) {
-                let rest = own.over(&numbers[order]);
+                let rest = own.quotient(&numbers[order]);
                 for (prime, exponent) in rest.0 {
                     base.set(prime, base.exponent(prime).max(exponent.div_ceil(order as u64)));
                 }
@@ -408,7 +409,7 @@ impl Growth {
             None => {
                 let mut power = base.clone();
                 power.0.iter_mut().for_each(|factor| factor.1 *= order as u64);
-                power.times(&numbers[order])
+                power.product(&numbers[order])
             }
         };
         Some((0..=highest).map(denominator).collect())
@@ -432,7 +433,7 @@ mod tests {
         assert_eq!(number.lowest_terms(integer(0)), (integer(0), integer(1)));
         let common = number.common(&[integer(-36), integer(0), integer(24), integer(12 * 17)]);
         assert_eq!(common.value(), integer(12));
-        assert_eq!(number.over(&common).value(), integer(60_060));
+        assert_eq!(number.quotient(&common).value(), integer(60_060));
         let modulus = Modulus::new(1_073_741_789, 32);
         for number in [
             &number,

@@ -289,7 +289,7 @@ impl<'a> Recursion<'a> {
             *damped = changed(damped, by)?;
         }
         let right_side = changed(&right_side, &variation.right_side)?;
-        self.detuned[order - 1] = detuned(plan, &corrected)?;
+        self.detuned[order - 1] = frequency_factor(plan, &corrected)?;
         if plan.has_velocity {
             self.derived[order - 1] = corrected.derivative()?;
         }
@@ -316,7 +316,7 @@ impl<'a> Recursion<'a> {
 
     fn push_displacement(&mut self, order: usize, displacement: ShortSeries) -> Option<()> {
         let plan = self.plan;
-        self.detuned.push(detuned(plan, &displacement)?);
+        self.detuned.push(frequency_factor(plan, &displacement)?);
         if plan.has_velocity {
             self.derived.push(displacement.derivative()?);
             let velocity = match plan.scheme.detuning {
@@ -383,7 +383,7 @@ impl<'a> Recursion<'a> {
 }
 
 /// `y_n''` or `-y_n`: what the corrections of the frequency multiply.
-fn detuned(plan: &Plan, displacement: &ShortSeries) -> Option<ShortSeries> {
+fn frequency_factor(plan: &Plan, displacement: &ShortSeries) -> Option<ShortSeries> {
     match plan.scheme.detuning {
         Detuning::Acceleration => displacement.second_derivative(),
         Detuning::Displacement => combination(&[(-1, 1, displacement)]),

@@ -589,8 +589,9 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
         let correction = divided(order, correction)?;
         self.result.amplitudes.push(SecularSine { sine, slope, amplitude: correction.clone() });
         self.convolutions.correct(order - 1, &correction, &self.variations);
-        let corrected = self.result.displacement[order - 1].sum(&correction.product(&self.wave()));
-        self.detuned[order - 1] = self.detuned(&corrected);
+        let corrected =
+            self.result.displacement[order - 1].sum(&correction.product(&self.cos_tau()));
+        self.detuned[order - 1] = self.frequency_factor(&corrected);
         self.result.displacement[order - 1] = corrected;
         divided(order, right_side.sum(&correction.product(&change)))
     }
@@ -613,11 +614,11 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
     }
 
     /// `cos tau`.
-    fn wave(&self) -> FourierSeries<R> {
+    fn cos_tau(&self) -> FourierSeries<R> {
         FourierSeries::cos(self.ring.clone(), 1)
     }
 
-    fn detuned(&self, displacement: &FourierSeries<R>) -> FourierSeries<R> {
+    fn frequency_factor(&self, displacement: &FourierSeries<R>) -> FourierSeries<R> {
         match self.scheme.detuning {
             Detuning::Acceleration => displacement.derivative().derivative(),
             Detuning::Displacement => displacement.times(-1),
@@ -635,13 +636,13 @@ impl<'a, R: Ring> OrderByOrder<'a, R> {
         match self.scheme.amplitude {
             AmplitudeKind::Determined => with_phase,
             AmplitudeKind::Free => {
-                with_phase.difference(&with_phase.at_zero().product(&self.wave()))
+                with_phase.difference(&with_phase.at_zero().product(&self.cos_tau()))
             }
         }
     }
 
     fn push_displacement(&mut self, order: usize, displacement: FourierSeries<R>) {
-        let detuned = self.detuned(&displacement);
+        let detuned = self.frequency_factor(&displacement);
         self.detuned.push(detuned);
         self.convolutions.push(self.position, displacement.clone());
         self.result.displacement.push(displacement.clone());

@@ -44,7 +44,7 @@ pub(super) struct PrimeImage {
 impl PrimeImage {
     /// The coefficients of an order; empty where nobody wants them from this prime.
     pub fn displacement(&self, plan: &Plan, order: usize) -> &[u64] {
-        let places = plan.places(order);
+        let places = plan.coefficient_range(order);
         let Some(start) = places.start.checked_sub(self.start) else {
             return &[];
         };
@@ -232,11 +232,11 @@ impl<A: Arithmetic> NullaryFnOnce for ExpandOrders<'_, '_, A> {
 
 impl<'a, A: Arithmetic> Recursion<'a, A> {
     /// Number of entries that all orders take.
-    pub fn room(plan: &Plan) -> usize {
-        let tables = Tables::room(plan.grid.size(), &Self::lengths(plan));
+    pub fn entry_count(plan: &Plan) -> usize {
+        let tables = Tables::entry_count(plan.grid.size(), &Self::lengths(plan));
         tables
             + Self::harmonics(plan)
-                .map(|count| HarmonicTable::room(plan, count))
+                .map(|count| HarmonicTable::entry_count(plan, count))
                 .iter()
                 .sum::<usize>()
     }
@@ -273,9 +273,9 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         let points = plan.grid.size();
         let none = Lanes::default();
         let lengths = Self::lengths(plan);
-        let (tables, rest) = memory.split_at_mut(Tables::room(points, &lengths));
+        let (tables, rest) = memory.split_at_mut(Tables::entry_count(points, &lengths));
         let [harmonics, of_damped] = Self::harmonics(plan);
-        let (motion, damped) = rest.split_at_mut(HarmonicTable::room(plan, harmonics));
+        let (motion, damped) = rest.split_at_mut(HarmonicTable::entry_count(plan, harmonics));
         Self {
             arithmetic,
             plan,

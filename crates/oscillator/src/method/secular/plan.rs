@@ -154,7 +154,7 @@ impl<'a> Plan<'a> {
     }
 
     /// Largest number of harmonics of `y_order`: `1, 3, ...` or `0, 1, 2, ...`.
-    fn reach(&self, order: usize) -> usize {
+    fn harmonics_in_reach(&self, order: usize) -> usize {
         match self.half_wave {
             true => order * self.growth / 2 + 1,
             false => order * self.growth + 2,
@@ -166,13 +166,15 @@ impl<'a> Plan<'a> {
     /// shifts a harmonic by no more than its own reach.
     pub fn harmonics(&self, order: usize) -> usize {
         match self.frequency_alone {
-            true => self.reach(order).min(self.reach(self.last - order) + 1),
-            false => self.reach(order),
+            true => {
+                self.harmonics_in_reach(order).min(self.harmonics_in_reach(self.last - order) + 1)
+            }
+            false => self.harmonics_in_reach(order),
         }
     }
 
     /// The places of an order's coefficients in a list of those of all orders.
-    pub fn places(&self, order: usize) -> Range<usize> {
+    pub fn coefficient_range(&self, order: usize) -> Range<usize> {
         self.starts[order]..self.starts[order] + self.harmonics(order)
     }
 
@@ -181,9 +183,9 @@ impl<'a> Plan<'a> {
     /// computed.
     fn points(&self) -> usize {
         match self.frequency_alone {
-            true => self.reach(self.last) / 2 + self.growth + 3,
+            true => self.harmonics_in_reach(self.last) / 2 + self.growth + 3,
             // One more than there are, for the last order is only looked at in its first harmonic.
-            false => self.reach(self.last) + 1,
+            false => self.harmonics_in_reach(self.last) + 1,
         }
     }
 
@@ -219,7 +221,7 @@ impl<'a> Plan<'a> {
     /// The largest divisor of the elimination at an order, `k^2 - 1`, has no prime factor above
     /// this.
     pub fn largest_factor(&self, order: usize) -> u64 {
-        let highest = self.harmonic(self.reach(order) - 1) as u64 + 1;
+        let highest = self.harmonic(self.harmonics_in_reach(order) - 1) as u64 + 1;
         if self.half_wave { highest / 2 } else { highest }
     }
 
@@ -273,7 +275,7 @@ struct OrderRange {
 
 impl<'m> HarmonicTable<'m> {
     /// Number of entries of so many harmonics.
-    pub fn room(plan: &Plan, count: usize) -> usize {
+    pub fn entry_count(plan: &Plan, count: usize) -> usize {
         let parities = 0..plan.step();
         parities
             .map(|parity| (0..count).map(|index| Self::orders(plan, index, parity)).sum::<usize>())

@@ -289,7 +289,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         let this = &*self;
         let interrupt = this.supervision.interrupt;
         let lot = |places: &[usize]| -> Option<Vec<PrimeImage>> {
-            let mut memory = Memory::zeroed(Recursion::<A>::room(this.plan));
+            let mut memory = Memory::zeroed(Recursion::<A>::entry_count(this.plan));
             let mut recursion =
                 Recursion::new(this.arithmetic, this.plan, interrupt, memory.lanes());
             let mut images = Vec::with_capacity(places.len());
@@ -354,7 +354,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
             let product: Integer =
                 moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
             let known = |count, number: &dyn Fn(&PrimeImage, usize) -> u64| {
-                known(images, count, &remainders, &product, number)
+                denominator_and_digits(images, count, &remainders, &product, number)
             };
             while beginning.frequency.known.len() <= last {
                 let order = beginning.frequency.known.len();
@@ -448,7 +448,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
 
 /// The common denominator of so many numbers and the digits that the largest has before the point;
 /// `None` where the primes are too few.
-fn known<A: Arithmetic>(
+fn denominator_and_digits<A: Arithmetic>(
     images: &[PrimeImage],
     count: usize,
     remainders: &Remainders<A>,
@@ -622,22 +622,23 @@ impl<'a, A: Arithmetic> LiftOrders<'a, A> {
         let mut lifted = Vec::with_capacity(orders.len());
         for order in orders {
             let whole = &motion[order];
-            let mut denominator = whole.over(&excess);
-            let over = self.over(&denominator, of_motion.take());
+            let mut denominator = whole.quotient(&excess);
+            let over = self.weighted_denominator(&denominator, of_motion.take());
             let mut displacement = self.displacement(order, of_motion.insert(over));
             if displacement.is_none() && !excess.is_one() {
                 (excess, denominator) = (Factored::default(), whole.clone());
-                displacement = self.displacement(order, of_motion.insert(self.over(whole, None)));
+                displacement = self
+                    .displacement(order, of_motion.insert(self.weighted_denominator(whole, None)));
             }
             let mut displacement = displacement?;
             let common = denominator.common(&displacement);
             if !common.is_one() {
                 let divisor = common.value();
                 displacement.iter_mut().for_each(|numerator| *numerator /= &divisor);
-                excess = excess.times(&common);
+                excess = excess.product(&common);
             }
             let whole = &frequency[order];
-            let over = self.over(whole, of_frequency.take());
+            let over = self.weighted_denominator(whole, of_frequency.take());
             let constants = self.numbers(of_frequency.insert(over), 2, |image, _, lanes| {
                 (lanes.0[0], lanes.0[1]) = (image.frequency[order], image.frequency_squared[order]);
             });
@@ -646,7 +647,7 @@ impl<'a, A: Arithmetic> LiftOrders<'a, A> {
                 Rational::new_raw(numerator, denominator)
             });
             let [frequency, frequency_squared] = constants.collect::<Vec<_>>().try_into().ok()?;
-            let denominator = denominator.over(&common);
+            let denominator = denominator.quotient(&common);
             let first = match (self.plan.scheme.amplitude, self.plan.wave(order)) {
                 (AmplitudeKind::Determined, Wave::Cosine) => {
                     displacement.get(self.plan.resonant()).cloned()
@@ -675,14 +676,14 @@ impl<'a, A: Arithmetic> LiftOrders<'a, A> {
     }
 
     /// From what the last order needed, where that divides.
-    fn over(
+    fn weighted_denominator(
         &self,
         denominator: &Factored,
         last: Option<WeightedDenominator>,
     ) -> WeightedDenominator {
-        match last.filter(|last| last.denominator.over(denominator).is_one()) {
+        match last.filter(|last| last.denominator.quotient(denominator).is_one()) {
             Some(mut last) => {
-                let ratio = denominator.over(&last.denominator).ladder();
+                let ratio = denominator.quotient(&last.denominator).ladder();
                 for (weight, image) in last.weights.iter_mut().zip(self.images) {
                     *weight = image.modulus.product(*weight, ratio.residue(&image.modulus));
                 }

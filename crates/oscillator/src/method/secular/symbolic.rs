@@ -305,7 +305,7 @@ impl<A: Arithmetic> PrimeSearch<'_, A> {
     /// The numbers of all orders at these points, as far as the work is not stopped.
     fn values(&self, modulus: Modulus, points: &[Vec<usize>]) -> Option<Vec<Vec<u64>>> {
         let mut field = ResidueField::new(self.arithmetic, self.plan, &[modulus])?;
-        let mut memory = Memory::zeroed(Recursion::<A>::room(self.plan));
+        let mut memory = Memory::zeroed(Recursion::<A>::entry_count(self.plan));
         let mut recursion =
             Recursion::new(self.arithmetic, self.plan, self.supervision.interrupt, memory.lanes());
         let own = std::mem::take(&mut field.coefficients);

@@ -9,7 +9,7 @@ use num_traits::{Signed as _, Zero as _};
 
 use super::super::candidate::{
     BITS, INVERSE_BITS, NOISE, NotCertified, blocks, claim_errors, claimed, few_units, inverted,
-    iterate, judged, not_proved, shorten, subtract, unclaimed, units, weight, written_out,
+    iterate, judged, not_proved, shorten, subtract, units, weight, without_claims, written_out,
 };
 use super::super::force::{is_even, is_odd};
 use super::super::formula::JudgedFormula;
@@ -95,7 +95,7 @@ fn certified_cycle(
         cosines: coefficients(&harmonics.cosines),
         sines: coefficients(&harmonics.sines),
         // Many harmonics bring it near in few steps; how many a proof needs is another question.
-        highest: (3 * seen / 2).clamp(15, most(odd)) | 1,
+        highest: (3 * seen / 2).clamp(15, last_harmonic_of_largest_block(odd)) | 1,
         inverse_bits: INVERSE_BITS,
         inverse: vec![],
         sigma: 0,
@@ -188,7 +188,8 @@ pub fn certify_driven(
             list.iter_mut().step_by(2).for_each(|even| *even = Integer::zero());
         }
     }
-    certificate.highest = (3 * seen / 2).clamp(15, most(certificate.odd)) | 1;
+    certificate.highest =
+        (3 * seen / 2).clamp(15, last_harmonic_of_largest_block(certificate.odd)) | 1;
     let certified = proved_by_some_block(&mut certificate, seen)?;
     Ok((certificate, certified))
 }
@@ -202,7 +203,7 @@ fn judged_driven(
     drive: &Drive,
     bits: usize,
 ) -> JudgedFormula {
-    let mut judged = unclaimed([&harmonics.cosines, &harmonics.sines], bits);
+    let mut judged = without_claims([&harmonics.cosines, &harmonics.sines], bits);
     judged.law = solution.title();
     let (Some(response), Some(slow)) = (&solution.response, &solution.modulation) else {
         return judged;
@@ -306,7 +307,7 @@ pub(super) fn proved_by_some_block(
     refine(certificate)
         .map_err(|reason| not_proved(reason, certificate.problem().block().len()))?;
     let mut reason = NotProved::NoContraction(Bound::UNKNOWN);
-    let most = most(certificate.odd);
+    let most = last_harmonic_of_largest_block(certificate.odd);
     for highest in blocks(seen).take_while(|highest| *highest <= most) {
         certificate.highest = highest;
         match proved(certificate) {
@@ -319,7 +320,7 @@ pub(super) fn proved_by_some_block(
 }
 
 /// The last harmonic of the largest block; without symmetry one has twice as many unknowns.
-const fn most(odd: bool) -> usize {
+const fn last_harmonic_of_largest_block(odd: bool) -> usize {
     match odd {
         true => HIGHEST_HARMONIC - 1,
         false => HIGHEST_HARMONIC / 2 - 1,

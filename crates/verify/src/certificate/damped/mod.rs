@@ -218,7 +218,7 @@ impl DampedCertificate {
     /// A law that gives others.
     fn law_is_held(&self, formula: &JudgedFormula) -> Result<bool, &'static str> {
         match &self.drive {
-            None => law::hold(formula, self.bits),
+            None => law::law_matches_frequency(formula, self.bits),
             Some(drive) => {
                 let exact = waves::displacement(&formula.law, &formula.values, drive);
                 law::hold_displacement(exact.as_ref(), formula, self.bits)
@@ -238,7 +238,7 @@ impl DampedCertificate {
         let angles = formula::waves(periods, WORKING);
         let later = |j: usize| match j {
             0 => motion.clone(),
-            _ => motion.turned(&angles[j]),
+            _ => motion.phase_shifted(&angles[j]),
         };
         let mut copies: Vec<FourierSeries> = (0..periods).map(|m| later(2 * m)).collect();
         if alone {
@@ -293,7 +293,7 @@ impl DampedCertificate {
                 let errors = |formula: &JudgedFormula| {
                     truth.errors(
                         &formula.frequency_ball(self.bits),
-                        &turned(formula.motion(self.bits)),
+                        &with_cosine_phase(formula.motion(self.bits)),
                     )
                 };
                 let exponent = Enclosure::from_ball(&self.exponent(&motion, proof.radius)?);
@@ -370,7 +370,7 @@ fn amplitude_of(motion: &FourierSeries, harmonic: usize) -> Ball {
 
 /// The motion with its phase shifted so that the first harmonic is a positive cosine; unchanged if
 /// it has no first harmonic.
-fn turned(motion: FourierSeries) -> FourierSeries {
+fn with_cosine_phase(motion: FourierSeries) -> FourierSeries {
     let (cosine, sine) = (motion.cosine(1), motion.sine(1));
     if sine.is_zero() && cosine.middle.is_positive() {
         return motion;
@@ -378,7 +378,7 @@ fn turned(motion: FourierSeries) -> FourierSeries {
     let square = WORKING.sum(&WORKING.product(&cosine, &cosine), &WORKING.product(&sine, &sine));
     let part = |ball: &Ball| WORKING.quotient(ball, &WORKING.root(&square, 2)?);
     match part(&cosine).zip(part(&sine)) {
-        Some((cosine, sine)) => motion.turned(&[cosine, sine]),
+        Some((cosine, sine)) => motion.phase_shifted(&[cosine, sine]),
         None => motion,
     }
 }

@@ -134,7 +134,11 @@ impl DampedProblem<'_> {
     }
 
     /// The values of an expression along a motion.
-    fn along(&self, expression: &Expr, motion: &FourierSeries) -> Result<FourierSeries, NoValue> {
+    fn values_along(
+        &self,
+        expression: &Expr,
+        motion: &FourierSeries,
+    ) -> Result<FourierSeries, NoValue> {
         let Some(periods) = self.drive else {
             return along(expression, motion);
         };
@@ -207,7 +211,7 @@ pub(super) fn prove(problem: DampedProblem) -> Result<Proof, NotProved> {
         let ball = problem.motion.clone().shortened(ROUGH).widened(within);
         let mut norms = [Bound::ZERO; 5];
         for (norm, expression) in norms.iter_mut().zip(&derivatives) {
-            *norm = problem.along(expression, &ball)?.norm();
+            *norm = problem.values_along(expression, &ball)?.norm();
         }
         Ok(system.curvature(norms, within))
     };
@@ -352,8 +356,8 @@ struct DampedEquations<'a> {
 impl<'a> DampedEquations<'a> {
     fn new(problem: DampedProblem<'a>) -> Result<Self, NotProved> {
         let motion = &problem.motion;
-        let drag = problem.along(problem.damping, motion)?.product(&motion.derivative());
-        let force = problem.along(problem.force, motion)?;
+        let drag = problem.values_along(problem.damping, motion)?.product(&motion.derivative());
+        let force = problem.values_along(problem.force, motion)?;
         Ok(Self {
             squared: WORKING.product(&problem.reciprocal, &problem.reciprocal),
             drag,
@@ -372,8 +376,8 @@ impl<'a> DampedEquations<'a> {
     fn derivative(&self) -> Result<Derivative, NotProved> {
         let problem = &self.problem;
         let slope = problem.force.differentiate(coordinate())?;
-        let damping = problem.along(problem.damping, &problem.motion)?.shortened(ROUGH);
-        let slope = problem.along(&slope, &problem.motion)?.shortened(ROUGH);
+        let damping = problem.values_along(problem.damping, &problem.motion)?.shortened(ROUGH);
+        let slope = problem.values_along(&slope, &problem.motion)?.shortened(ROUGH);
         Ok(Derivative {
             reciprocal: SHORT.converted(&problem.reciprocal, WORKING),
             squared: SHORT.converted(&self.squared, WORKING),
@@ -719,7 +723,7 @@ mod tests {
 
     impl Place {
         fn of(problem: &DampedProblem, motion: &FourierSeries, reciprocal: &Ball) -> Self {
-            let value = |expression| problem.along(expression, motion).expect("a value");
+            let value = |expression| problem.values_along(expression, motion).expect("a value");
             let slope = problem.force.differentiate(coordinate()).expect("a slope");
             let reciprocal = FourierSeries::constant(reciprocal.clone());
             let damping = value(problem.damping);
@@ -882,7 +886,7 @@ mod tests {
         let ball = system.equations.problem.motion.clone().widened(h);
         let slope = |expression: &Expr| expression.differentiate(coordinate()).expect("a slope");
         let norm = |expression: &Expr| {
-            system.equations.problem.along(expression, &ball).expect("a value").norm()
+            system.equations.problem.values_along(expression, &ball).expect("a value").norm()
         };
         let (g, f) = (&certificate.damping, &certificate.force);
         // Of two directions, none, one or both of them the motion's: each has terms of its own.

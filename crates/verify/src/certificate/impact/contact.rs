@@ -301,7 +301,7 @@ fn inverse_root(series: &[Ball]) -> Option<Vec<Ball>> {
 }
 
 /// The place of a barrier and its waves.
-pub(super) fn placed(barrier: &Rational) -> Option<(Ball, [Ball; 2])> {
+pub(super) fn position_and_waves(barrier: &Rational) -> Option<(Ball, [Ball; 2])> {
     let place = WORKING.fraction(barrier);
     let waves = sine_and_cosine(&place)?;
     Some((place, waves))

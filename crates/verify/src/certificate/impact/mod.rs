@@ -21,7 +21,7 @@ mod elliptic;
 
 use num_traits::Signed as _;
 
-use self::contact::{HertzContact, is_positive, placed, sine_and_cosine};
+use self::contact::{HertzContact, is_positive, position_and_waves, sine_and_cosine};
 use super::Enclosure;
 use super::fourier_series::WORKING;
 use crate::exact::Rational;
@@ -115,7 +115,7 @@ pub fn enclose_impact(
     if barrier.abs() >= *amplitude || !horizontal {
         return Err(NotEnclosed::Barrier);
     }
-    let (place, waves) = placed(barrier).ok_or(NotEnclosed::Digits)?;
+    let (place, waves) = position_and_waves(barrier).ok_or(NotEnclosed::Digits)?;
     let [_, cosine] = sine_and_cosine(&release).ok_or(NotEnclosed::Digits)?;
     let speed_squared = WORKING.scaled(&WORKING.difference(&waves[1], &cosine), 2);
     let speed = WORKING.root(&speed_squared, 2).ok_or(NotEnclosed::Digits)?;
@@ -144,9 +144,9 @@ fn flight(amplitude: &Rational, place: &Rational) -> Option<Ball> {
     let waves = |angle: &Rational| sine_and_cosine(&WORKING.fraction(&(angle * &half)));
     let ([modulus, cosine], [sine, cosine_there]) = (waves(amplitude)?, waves(place)?);
     let (one, squared) = (WORKING.integer(1), |ball: &Ball| WORKING.product(ball, ball));
-    let quarter = elliptic::carlson(&Ball::zero(), &squared(&cosine), &one)?;
+    let quarter = elliptic::carlson_rf(&Ball::zero(), &squared(&cosine), &one)?;
     let sine = WORKING.quotient(&sine, &modulus)?;
     let rest = WORKING.difference(&one, &squared(&sine));
-    let beyond = elliptic::carlson(&rest, &squared(&cosine_there), &one)?;
+    let beyond = elliptic::carlson_rf(&rest, &squared(&cosine_there), &one)?;
     Some(WORKING.sum(&quarter, &WORKING.product(&sine, &beyond)))
 }

@@ -61,13 +61,13 @@ pub struct TrajectoryRequest {
     pub duration: f64,
     /// The Poincaré section at which states are recorded beside the requested times.
     pub section: Option<PoincareSection>,
-    /// From when on: what is before that has not settled.
+    /// Start of the recording: the motion before it has not settled.
     pub after: f64,
     /// Relative error of a step.
     pub tolerance: f64,
     /// Steps after which it ends.
     pub step_limit: usize,
-    /// Who may ask it to end.
+    /// The interrupt.
     pub interrupt: Interrupt,
 }
 
@@ -85,7 +85,7 @@ pub struct EnergyWithPowers {
 pub struct Trajectory {
     /// The initial value problem that was solved.
     pub course: TrajectoryRequest,
-    /// By which integrator it was followed.
+    /// The integration method.
     pub integrator: Integrator,
     /// The balance of energy; nothing where there is no energy.
     pub balance: Option<EnergyBalance>,
@@ -142,7 +142,7 @@ pub enum TrajectoryError {
     /// The equations cannot be followed.
     #[error(transparent)]
     System(#[from] SystemError),
-    /// No accelerations.
+    /// The mechanism has no accelerations.
     #[error(transparent)]
     Mechanics(#[from] MechanicsError),
     /// A step of algebra failed.
@@ -231,7 +231,7 @@ impl TrajectoryRequest {
         }
     }
 
-    /// Puts a state at its start: `x`, `x'`.
+    /// Sets the initial value of a state: `x`, `x'`.
     ///
     /// # Errors
     /// A name that is no state.

@@ -26,7 +26,7 @@ pub(super) struct Inverse {
 }
 
 impl Inverse {
-    /// Of entries that are integers times `2^-bits`, and a first row of the weight `2^sigma`.
+    /// Takes entries that are integers times `2^-bits`, and a first row of the weight `2^sigma`.
     pub(super) fn from_entries(entries: &[Vec<Integer>], bits: usize, sigma: i32) -> Self {
         let rows = |balls: Balls| {
             let row =

@@ -65,8 +65,7 @@ pub enum NotCertified {
         "the driving frequency {0} is no fraction: a certificate needs to know the period exactly"
     )]
     DrivingFrequency(String),
-    /// No steady motion by the formula, or no true one that it leads to, or one without an
-    /// amplitude of its own.
+    /// The formula has no steady motion with an amplitude of its own and a true motion near it.
     #[error(
         "at these values no steady motion of the formula has an amplitude and a true motion near"
     )]
@@ -104,7 +103,7 @@ pub enum NotCertified {
     /// A force that could not be taken apart, or had no value.
     #[error(transparent)]
     Oscillator(#[from] OscillatorError),
-    /// Likewise.
+    /// A step of algebra failed.
     #[error(transparent)]
     Expression(#[from] ExprError),
     /// A law that is no expression in the amplitude.
@@ -112,15 +111,15 @@ pub enum NotCertified {
         "`{0}` is no expression in the amplitude: it has numbers at one amplitude after the other alone"
     )]
     Law(String),
-    /// No block proves it, for a reason that no block has a part in.
+    /// The proof fails for a reason that does not depend on the block.
     #[error("not certified: {0}")]
     NoSeries(NotProved),
-    /// No block proves it.
+    /// The proof fails for every block.
     #[error("not certified: {reason}, with {harmonics} harmonics in the block")]
     NotProved {
         /// The inequality that does not hold.
         reason: NotProved,
-        /// Of the last block.
+        /// Number of harmonics of the last block.
         harmonics: usize,
     },
 }
@@ -496,7 +495,7 @@ pub(super) fn refine(certificate: &mut Certificate, near: Bound) -> Result<(), N
     })
 }
 
-/// So near that the digits of the numbers end.
+/// A bound of some units in the last place of numbers with this many bits.
 pub(super) fn few_units(bits: usize) -> Bound {
     Bound::power_of_two(-(bits as i32)) * Bound::exactly(64.0)
 }

@@ -59,7 +59,7 @@ impl Enclosure {
     }
 }
 
-/// No more than a size whose bound this is, rounded up from the nearest double.
+/// A lower bound of a size whose bound was rounded up from the nearest double.
 const fn below(bound: Bound) -> f64 {
     bound.value().next_down().next_down()
 }
@@ -67,9 +67,9 @@ const fn below(bound: Bound) -> f64 {
 /// The ends between which a size is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SizeBounds {
-    /// No less.
+    /// The lower bound.
     pub lower: f64,
-    /// No more.
+    /// The upper bound.
     pub upper: f64,
 }
 
@@ -128,7 +128,7 @@ pub struct JudgedFormula {
     /// Claimed bounds of `max |X~'| |omega - omega~|`, the largest rate at which the two motions
     /// drift apart.
     pub drift: [Rational; 2],
-    /// Of a driven motion, what is claimed of `|a - a~|`; zeros of others.
+    /// Claimed bounds of `|a - a~|` for a driven motion; zeros for others.
     pub amplitude_error: [Rational; 2],
 }
 
@@ -145,7 +145,7 @@ pub struct Errors {
     pub relative: SizeBounds,
     /// `max |X~'| |omega - omega~|`: what is added to the deviation at most in a unit of time.
     pub drift: SizeBounds,
-    /// Of a driven motion `|a - a~|`, the amplitudes of its own harmonic.
+    /// `|a - a~|` for a driven motion, the amplitudes of its own harmonic.
     pub amplitude: Option<SizeBounds>,
 }
 

@@ -31,7 +31,7 @@ pub(super) const WORKING: Balls = Balls { bits: 224 };
 /// largest such exponent.
 const NEGLIGIBLE: i32 = 120;
 
-/// No series has more harmonics; what is beyond is a part of its tail.
+/// The largest number of harmonics of a series; those beyond are a part of its tail.
 const LONGEST: usize = 1600;
 
 /// The largest number of halvings of an argument; the function of a series of larger norm is
@@ -42,7 +42,7 @@ const MOST_HALVINGS: u32 = 6;
 /// than are kept.
 const STEPS: usize = 3;
 
-/// No Taylor series has more terms.
+/// The largest number of terms of a Taylor series.
 const MOST_TERMS: u32 = 28;
 
 /// One of the functions that a series consists of, by its harmonic.
@@ -94,7 +94,7 @@ impl FourierSeries {
         Self::exactly(vec![value], vec![])
     }
 
-    /// Of these cosines and sines and nothing else.
+    /// The function with these cosines and sines and without a tail.
     pub(super) fn exactly(cosines: Vec<Ball>, sines: Vec<Ball>) -> Self {
         Self { cosines, sines, tail: Bound::ZERO, negligible: NEGLIGIBLE }
     }
@@ -488,8 +488,8 @@ impl FourierSeries {
         self.trimmed()
     }
 
-    /// About `function` of it, from samples; nothing is proved of it. `None` where a sample has no
-    /// value.
+    /// Approximates `function` of this series from samples, without a proof. `None` if a sample has
+    /// no value.
     fn sampled(&self, function: impl Fn(f64) -> f64) -> Option<Self> {
         const DIGITS: f64 = 1e-15;
         let waves = (0..self.length())

@@ -71,16 +71,16 @@ pub struct Certificate {
     pub odd: bool,
     /// `mu` and the coefficients are integers times `2^-bits`.
     pub bits: usize,
-    /// About `1/omega^2`.
+    /// Approximate `1/omega^2`.
     pub mu: Integer,
-    /// About the cosine coefficients of the motion, `c_0` first.
+    /// Approximate cosine coefficients of the motion, `c_0` first.
     pub coefficients: Vec<Integer>,
     /// The last harmonic of the block, odd where `odd`.
     pub highest: usize,
     /// The entries of the inverse are integers times `2^-inverse_bits`.
     pub inverse_bits: usize,
-    /// About the inverse of the derivative on `mu` and the harmonics of the block, row by row; the
-    /// first row is that of `mu`, the first column that of the condition `x(0) = A`.
+    /// Approximate inverse of the derivative on `mu` and the harmonics of the block, row by row;
+    /// the first row belongs to `mu`, the first column to the condition `x(0) = A`.
     pub inverse: Vec<Vec<Integer>>,
     /// The weight of `mu` in the norm is `2^sigma`.
     pub sigma: i32,
@@ -98,11 +98,11 @@ pub struct Certified {
     pub proof: Proof,
     /// `omega`.
     pub frequency: Enclosure,
-    /// Of a limit cycle its characteristic exponent, by whose exponential neighbouring motions
-    /// approach it, where it is negative, or leave it; `None` of a motion whose energy is
-    /// conserved.
+    /// Characteristic exponent of a limit cycle: neighbouring motions approach it exponentially at
+    /// this rate if it is negative, and leave it if it is positive; `None` for a motion whose
+    /// energy is conserved.
     pub exponent: Option<Enclosure>,
-    /// Of a driven motion the amplitude of its own harmonic.
+    /// Amplitude of the own harmonic of a driven motion.
     pub amplitude: Option<Enclosure>,
     /// The number of motions that the symmetries of the equation make of the proved one, itself
     /// among them: with a drive that of another whole number of its periods later, of an equation
@@ -111,7 +111,7 @@ pub struct Certified {
     /// Set if the law of the formula was read as text and gives the numbers that are judged: the
     /// frequency, of a driven motion all.
     pub law_is_held: bool,
-    /// Of the formula, where one is judged.
+    /// Errors of the formula; `None` if none is judged.
     pub formula: Option<Errors>,
 }
 
@@ -128,15 +128,15 @@ pub enum CheckError {
     /// The motion is proved, and something of it is claimed to be smaller than what is proved.
     #[error("not as claimed: {what} is proved to be {} at most, and less is claimed", rounded_up(*proved, 6))]
     ClaimedLess {
-        /// Of which number.
+        /// The name of the number.
         what: &'static str,
         /// The proved upper bound.
         proved: f64,
     },
-    /// Likewise larger.
+    /// The motion is proved, and a number of it is claimed to be larger than the proved value.
     #[error("not as claimed: {what} is proved to be {} at least, and more is claimed", rounded_down(*proved, 6))]
     ClaimedMore {
-        /// Of which number.
+        /// The name of the number.
         what: &'static str,
         /// The proved lower bound.
         proved: f64,
@@ -206,7 +206,7 @@ impl Certificate {
         FourierSeries::exactly(balls.collect(), vec![]).of_digits(self.bits)
     }
 
-    /// Not above `mu`.
+    /// A lower bound of `mu`.
     fn size_of_mu(&self) -> f64 {
         match self.mu.is_positive() {
             true => WORKING.distance_from_zero(&self.mu_ball()),
@@ -214,7 +214,7 @@ impl Certificate {
         }
     }
 
-    /// Not above `|c_1|`.
+    /// A lower bound of `|c_1|`.
     fn size_of_first_harmonic(&self) -> f64 {
         WORKING.distance_from_zero(&self.motion().cosine(1))
     }

@@ -95,9 +95,9 @@ impl From<ExprError> for NotProved {
 
 /// A step of Newton's iteration with the approximate inverse, `B F`.
 pub(super) struct Correction<Place> {
-    /// Of the number, and of the harmonics of the block.
+    /// Corrections of the number, and of the harmonics of the block.
     pub(super) block: Vec<Ball>,
-    /// Of those beyond it, each with its place.
+    /// Corrections of the harmonics beyond it, with their indices.
     pub(super) beyond: Vec<(Place, Ball)>,
 }
 

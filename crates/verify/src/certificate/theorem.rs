@@ -237,7 +237,7 @@ impl<'a> BoundData<'a> {
         (from..=to).step_by(step)
     }
 
-    /// Those beyond the block, up to one.
+    /// The harmonics beyond the block, up to this one.
     fn beyond(&self, to: usize) -> impl Iterator<Item = usize> + use<> {
         self.harmonics(self.certificate.highest + 1, to)
     }

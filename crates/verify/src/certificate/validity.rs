@@ -37,9 +37,9 @@ use crate::values::Values;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Validity {
-    /// From this amplitude on.
+    /// The lower end.
     pub from: Rational,
-    /// Up to this one.
+    /// The upper end.
     pub to: Rational,
     /// `|omega~/omega - 1|` is at most this for every amplitude between them.
     pub within: f64,
@@ -52,15 +52,15 @@ pub struct Validity {
 /// Why a range ends where it does.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RangeEnd {
-    /// It was not asked for more.
+    /// The requested end was reached.
     Asked,
-    /// At this amplitude the formula is off by more, proved.
+    /// The error of the formula is proved to be larger at this amplitude.
     Further(Rational),
     /// The formula is not proved to be within there, and not proved to be beyond either.
     Open(Rational),
     /// There is no proof of the motion there.
     Unproved(Rational, NotCertified),
-    /// It was to stop.
+    /// The computation was interrupted.
     Stopped,
 }
 
@@ -79,7 +79,7 @@ const HEAVIEST: i32 = 4;
 /// proved to be within a tolerance.
 ///
 /// # Errors
-/// No proof at the first amplitude, or a law that is none of the amplitude in closed form.
+/// No proof at the first amplitude, or a law without a closed form in the amplitude.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -200,7 +200,7 @@ impl<'a> Family<'a> {
         })
     }
 
-    /// No amplitude between these has a larger relative error.
+    /// An upper bound of the relative error for all amplitudes between these.
     fn largest_error(&mut self, from: &Rational, to: &Rational) -> Result<f64, NotProved> {
         let two = Integer::from(2);
         let (middle, half) = ((from + to) / &two, (to - from) / &two);

@@ -49,11 +49,11 @@ pub struct TransitionCurve {
 /// The kind of Fourier series of the motion on a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WavesOfMotion {
-    /// Of cosines alone.
+    /// Cosines alone.
     Cosines,
-    /// Of sines alone.
+    /// Sines alone.
     Sines,
-    /// Of both.
+    /// Cosines and sines.
     Both,
 }
 

@@ -190,10 +190,10 @@ pub enum HillError {
         "`{0}` is no sum of waves cos(m*Omega*t), sin(m*Omega*t) of one period, with products of letters before them"
     )]
     NotPeriodic(String),
-    /// No coefficient varies.
+    /// All coefficients are constant.
     #[error("no coefficient depends on the time, so there are no transition curves")]
     Constant,
-    /// Nothing to solve for.
+    /// There is no letter to solve for.
     #[error("there is no letter to solve for: neither the mean stiffness nor the frequency is one")]
     NoUnknown,
     /// Several letters to solve for.
@@ -283,7 +283,7 @@ struct Hill {
     constant: Polynomial,
     small: Vec<Symbol>,
     frequency: Frequency,
-    /// Of the coefficients, in halves of the frequency.
+    /// Highest harmonic of the coefficients, in halves of the frequency.
     highest_harmonic: usize,
     /// `p` and `c` in `phi = Omega*t/2`, the parts of degree 1, 2, ... in what is small.
     graded: Vec<[FourierSeries<Polynomials>; 2]>,

@@ -48,7 +48,7 @@ const REAL: f64 = 1e-10;
 pub struct JudgedCurve {
     /// Index of the curve.
     pub curve: usize,
-    /// By the formula; none where it is not real.
+    /// The value by the formula; `None` if it is not real.
     pub value: Option<f64>,
     /// In truth; none where the tongue does not reach so far.
     pub truth: Option<f64>,
@@ -79,7 +79,7 @@ pub enum TruthError {
     /// A value for a letter that does not occur, or that the curves give.
     #[error("there is a value for `{0}`, which {1}")]
     Unknown(Symbol, &'static str),
-    /// No positive frequency.
+    /// The frequency is not positive.
     #[error("the frequency of the coefficients is {0} there, and must be positive")]
     Frequency(f64),
     /// Coefficients that are no numbers, or too large.
@@ -328,7 +328,7 @@ struct Eigenvalue {
 
 /// `c` and `k` at equally spaced phases, in numbers.
 struct SampledCoefficients {
-    /// Of the coefficients.
+    /// Frequency of the coefficients.
     frequency: f64,
     /// `(c, k)` over two periods.
     samples: Vec<[f64; 2]>,

@@ -34,8 +34,8 @@ use crate::numeric::ode::root::find_root;
 /// Samples for each harmonic, and of all of them: forces of the seventh power are exact.
 const SMOOTH: [usize; 2] = [8, 32];
 
-/// Likewise where the force has corners: with fewer the branch would waver as a corner moves from
-/// sample to sample.
+/// The numbers of harmonics for a force with corners: with fewer the branch would oscillate as a
+/// corner moves from sample to sample.
 const CORNERED: [usize; 2] = [32, 512];
 
 /// The equations for so many harmonics.
@@ -45,7 +45,7 @@ pub struct HarmonicBalance<'a> {
     pub driven: &'a Driven,
     /// H: the highest harmonic.
     pub harmonics: usize,
-    /// From samples to harmonics and back; the number of samples is a power of two.
+    /// The transform from samples to harmonics and back; the number of samples is a power of two.
     transform: Transform,
 }
 

@@ -11,7 +11,7 @@ use super::{MOST_BRANCHES, PreparedRequest};
 /// The relation of a known motion to a branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum KnownMotion {
-    /// It lies on a branch.
+    /// The motion lies on a branch.
     Itself,
     /// Its mirror image lies on this one.
     Mirrored(usize),
@@ -224,7 +224,7 @@ impl PreparedRequest<'_> {
     /// Whether these are motions at one value of the parameter, which need neither drive nor
     /// damping.
     fn is_centre(&self, path: &BranchPath) -> bool {
-        /// Of the range.
+        /// Relative difference, over the range, below which two parameters are equal.
         const NOTHING: f64 = 1e-9;
         let [low, high] = self.question.range;
         let first = path.nodes.first().map_or(low, |node| node.parameter);

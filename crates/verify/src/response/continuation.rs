@@ -60,7 +60,7 @@ impl BranchNode {
 /// Why a branch ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BranchEnd {
-    /// At an end of the range.
+    /// The end of the range.
     Range,
     /// A branch point: beyond it lie the motions of the other branch itself, with another phase or
     /// mirrored.
@@ -69,20 +69,20 @@ pub enum BranchEnd {
     Closed,
     /// The amplitude grows without bound.
     Unbounded,
-    /// No step, however small, leads on.
+    /// No step leads on, however small.
     Lost,
     /// After as many points as are allowed.
     Points,
     /// The harmonics that are kept do not suffice for the motions beyond.
     Harmonics,
-    /// It rests all the time: dry friction bears what drives it.
+    /// The motion rests all the time: dry friction bears the drive.
     Held,
     /// Its amplitude has come to zero: a self-excited motion is born from rest there.
     Rest,
     /// Its period grows without bound: a self-excited motion comes near a place of rest that it
     /// cannot pass.
     Slow,
-    /// Somebody asked for it.
+    /// The computation was interrupted.
     Interrupted,
 }
 
@@ -112,7 +112,7 @@ pub struct ContinuationSettings {
     pub size: f64,
     /// The size of ordinary motions: far beyond it they are unbounded.
     pub ordinary: f64,
-    /// Who may ask it to end.
+    /// The interrupt.
     pub interrupt: Interrupt,
 }
 
@@ -121,12 +121,12 @@ pub struct ContinuationSettings {
 struct Weights {
     coefficients: f64,
     parameter: f64,
-    /// Of the frequency and its place, where it is an unknown.
+    /// The index and the weight of the frequency, if it is an unknown.
     frequency: Option<(usize, f64)>,
 }
 
 impl Weights {
-    /// Of an unknown, of which there are `size`, or behind them of the parameter.
+    /// The weight of an unknown, of which there are `size`, or of the parameter behind them.
     fn weight(&self, index: usize, size: usize) -> f64 {
         match self.frequency {
             Some((place, weight)) if place == index => weight,
@@ -362,7 +362,8 @@ impl ContinuationSettings {
         balance: &HarmonicBalance,
         coefficients: &DVector<f64>,
     ) -> bool {
-        /// Of the size of the motion: of one that is resolved the last quarter has next to nothing.
+        /// Largest part of the last quarter of the harmonics in the size of the motion: for a
+        /// resolved motion it is negligible.
         const LARGEST: f64 = 0.1;
         self.resolved
             && balance.last_harmonics(coefficients) > LARGEST * balance.extent(coefficients)
@@ -380,8 +381,8 @@ impl ContinuationSettings {
         /// Cosine of the angle between tangents beyond which a step was too long.
         const SHARPEST: f64 = 0.94;
         const ENORMOUS: f64 = 1e4;
-        /// Of the highest frequency of a branch: what is slower is no more than a sum of waves can
-        /// say.
+        /// Ratio to the highest frequency of a branch below which a motion is too slow for a sum of
+        /// harmonics.
         const SLOW: f64 = 0.05;
         let [low, high] = self.range;
         let bound = ENORMOUS * balance.extent(&start.coefficients).max(self.ordinary);
@@ -468,7 +469,8 @@ impl ContinuationSettings {
         here: &BranchNode,
         near: f64,
     ) -> Option<BranchNode> {
-        /// Of the largest motion, and of the range: what is beside.
+        /// Distance, in parts of the largest motion and of the range, within which a motion is
+        /// near.
         const BESIDE: f64 = 0.1;
         let small = BESIDE * self.size.max(self.ordinary);
         if !balance.driven.self_excited || balance.extent(&here.coefficients) > small {

@@ -240,8 +240,8 @@ fn with_sides(
 }
 
 impl Driven {
-    /// Of an oscillator without other parameters than the one that varies; self-excited where time
-    /// does not occur.
+    /// Prepares an oscillator without other parameters than the one that varies; it is self-excited
+    /// if time does not occur.
     ///
     /// # Errors
     /// A drive that is not periodic; several frequencies that are no multiples of one; a derivative
@@ -263,7 +263,7 @@ impl Driven {
         Self::of_frequency(oscillator, frequency, parameter, periods)
     }
 
-    /// Of an oscillator whose motions have this frequency, driven or free.
+    /// Prepares an oscillator whose motions have this frequency, driven or free.
     pub(super) fn of_frequency(
         oscillator: &Oscillator,
         frequency: Expr,
@@ -361,12 +361,12 @@ impl Driven {
         }
     }
 
-    /// Of a jump n_x and n_v: it is where `n_x x + n_v x' = c`.
+    /// The normal `(n_x, n_v)` of a jump, which lies on `n_x x + n_v x' = c`.
     pub fn normal(&self, index: usize) -> [f64; 2] {
         self.jumps[index].normal
     }
 
-    /// Of a jump `n_x x + n_v x' - c`.
+    /// The value of `n_x x + n_v x' - c` for a jump.
     pub fn height(&self, index: usize, [x, v]: [f64; 2], parameter: f64) -> f64 {
         let Jump { normal, level } = &self.jumps[index];
         // The velocity zero is met exactly.
@@ -537,7 +537,7 @@ mod tests {
         }
     }
 
-    /// By the value of the factor on the line, in whatever form.
+    /// A step counts by the value of its factor on the line, in whatever form.
     #[test]
     fn a_step_is_a_jump_where_its_factor_is_not_zero() {
         for (force, jumps) in [

@@ -55,7 +55,7 @@ pub enum ResponseError {
     NoParameter {
         /// The name.
         name: Symbol,
-        /// Those that there are.
+        /// The parameters that there are.
         known: Vec<Symbol>,
     },
     /// The parameter that varies has a value.
@@ -88,7 +88,7 @@ pub enum ResponseError {
         /// Its range.
         range: [f64; 2],
     },
-    /// No periodic motion was found to begin with.
+    /// No periodic motion was found as an initial guess.
     #[error("no periodic motion was found at {parameter} = {}{}", decimal(*.at), if *undamped { ": without damping the amplitude is unbounded at resonance" } else { "" })]
     NoMotion {
         /// The parameter.
@@ -98,7 +98,7 @@ pub enum ResponseError {
         /// Whether nothing damps the motion.
         undamped: bool,
     },
-    /// Somebody asked it to end before there was anything.
+    /// The search was interrupted before there was a branch.
     #[error(
         "interrupted, by hand or a timeout, before a branch was followed: {} starts at {} values of {parameter} were tried, which led to {} motions to begin with",
         .tried.starts,

@@ -116,7 +116,7 @@ impl PreparedRequest<'_> {
     ) -> SteadyMotion {
         let u = &node.coefficients;
         let positions: Vec<f64> = balance.motion(u).iter().map(|point| point[0]).collect();
-        /// Of the motion: less is rounding.
+        /// Relative size below which a harmonic is rounding.
         const NOTHING: f64 = 1e-12;
         let [cosine, sine] = balance.harmonic(u, 1);
         let (amplitude, peak) = (cosine.hypot(sine), half_of_peak_to_peak(&positions));
@@ -159,7 +159,8 @@ impl PreparedRequest<'_> {
         /// Points of a stable part of a branch, and of all of them.
         const EACH: usize = 6;
         const MOST: usize = 30;
-        /// Of the size of the motion: the second where the first leads to another motion.
+        /// Disturbances in parts of the size of the motion: the second is for a first one that
+        /// leads to another motion.
         const DISTURBANCES: [f64; 2] = [1e-2, 1e-5];
         const OTHER: f64 = 0.05;
         const PERIODS: f64 = 1500.0;

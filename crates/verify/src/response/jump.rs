@@ -37,9 +37,9 @@ pub struct VariationalMotion {
 /// The condition at which the integration stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StopCondition {
-    /// For so long.
+    /// After this time.
     Time(f64),
-    /// To where its velocity falls through zero, a largest displacement, or for so long.
+    /// When the velocity falls through zero, at a largest displacement, or after this time.
     Turn(f64),
 }
 
@@ -276,7 +276,7 @@ impl<'a> NonsmoothRun<'a> {
         path.is_complete().then_some(path)
     }
 
-    /// Goes on behind an event; whether the motion has turned back there.
+    /// Continues after an event; returns whether the motion has turned back there.
     fn pass_event(&mut self, event: usize, until: StopCondition) -> bool {
         let index = match (until, event) {
             (StopCondition::Turn(_), 0) => {
@@ -311,7 +311,7 @@ impl<'a> NonsmoothRun<'a> {
         false
     }
 
-    /// Puts it exactly on a jump.
+    /// Projects the state onto a jump.
     fn put_on(&mut self, index: usize) {
         let height = self.driven.height(index, [self.y[0], self.y[1]], self.parameter);
         match self.driven.normal(index) {

@@ -92,10 +92,10 @@ pub struct ResponseRequest {
     pub periods: usize,
     /// The relative error up to which it passes.
     pub tolerance: f64,
-    /// Who may ask it to end.
+    /// The interrupt.
     pub interrupt: Interrupt,
-    /// Who sees how far it has come: of the search for motions to begin with, then of the points
-    /// that are judged, each time anew.
+    /// The observer of the progress: of the search for initial motions, then of the points that are
+    /// judged, each time anew.
     pub progress: Progress,
 }
 

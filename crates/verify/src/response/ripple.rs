@@ -28,7 +28,7 @@ pub struct Ripple {
 }
 
 impl Ripple {
-    /// Of these places, with what there is already.
+    /// Adds the folds at these parameters to those that there are already.
     pub(super) fn merged_with(ripple: Option<Self>, parameters: &[f64]) -> Option<Self> {
         parameters.iter().fold(ripple, |ripple, parameter| {
             Some(match ripple {

@@ -12,7 +12,7 @@ use super::{Elsewhere, PreparedRequest, ResponseError};
 #[derive(Clone, Debug)]
 pub(super) struct Seed {
     pub(super) parameter: f64,
-    /// Of the motion.
+    /// The frequency of the motion.
     pub(super) frequency: f64,
     pub(super) positions: Vec<f64>,
     /// Position and velocity with which it begins, where a simulation has come to it.

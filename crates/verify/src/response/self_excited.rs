@@ -103,7 +103,7 @@ impl PreparedRequest<'_> {
     /// Adds the cycles that turn right of a place of rest where the force jumps on their way. What
     /// sticks cannot be followed backward.
     fn cycles_across_jumps(&self, place: f64, parameter: f64, seeds: &mut Vec<Seed>) {
-        /// Beyond it a motion does not turn back.
+        /// The longest time in which a motion has to turn back.
         const LONGEST: f64 = 1e3;
         const SAMPLES: usize = 512;
         let swing = |radius: f64, (tolerance, _): (f64, usize)| {
@@ -135,13 +135,13 @@ impl PreparedRequest<'_> {
         }
     }
 
-    /// About the frequency of a motion so far from rest.
+    /// Approximate frequency of a motion at this distance from rest.
     fn approximate_frequency(&self, place: f64, radius: f64, parameter: f64) -> f64 {
         (self.driven.force(&[place + radius, 0.0, 0.0, parameter]) / radius).sqrt()
     }
 
-    /// From rest right of a place to the next turning point there, in radii and in times of the
-    /// pace; nothing where it does not turn.
+    /// The half swing from rest right of an equilibrium to the next turning point there, in radii
+    /// and in periods of the approximate frequency; `None` if it does not turn.
     fn swing(
         &self,
         place: f64,

@@ -215,7 +215,7 @@ pub fn half_of_peak_to_peak(positions: &[f64]) -> f64 {
 pub struct SimulationBudget {
     /// Evaluations that are left.
     pub evaluations: usize,
-    /// Looked at after every period.
+    /// The interrupt, tested after every period.
     pub interrupt: Interrupt,
 }
 

@@ -42,7 +42,7 @@ struct ShootingOrbit {
 /// The map of a period in its sizes.
 struct PeriodMap<'a> {
     asked: &'a PreparedRequest<'a>,
-    /// Of position, velocity and parameter.
+    /// The sizes of position, velocity and parameter.
     sizes: ScaledPoint,
 }
 
@@ -67,7 +67,7 @@ impl<'a> PeriodMap<'a> {
 
     /// A period from here; nothing where it cannot be followed.
     fn period(&self, at: &ScaledPoint) -> Option<VariationalMotion> {
-        /// Beyond it a motion without drive does not turn back.
+        /// The longest time in which a motion without drive has to turn back.
         const LONGEST: f64 = 1e3;
         let (start, parameter) = self.start(at);
         let driven = &self.asked.driven;
@@ -341,7 +341,7 @@ impl PreparedRequest<'_> {
         seeds: &[Seed],
         mut path: BranchPath,
     ) -> BranchPath {
-        /// Of the largest motion.
+        /// Ratio to the largest motion below which a motion is small.
         const SMALL: f64 = 1e-3;
         if !self.driven.self_excited {
             return path;

@@ -28,7 +28,7 @@ impl PreparedRequest<'_> {
         seeds: &[Seed],
         size: f64,
     ) -> Vec<Elsewhere> {
-        /// Of the largest motion: what moves less rests.
+        /// Ratio to the largest motion below which a motion is at rest.
         const NOTHING: f64 = 1e-6;
         let mut known: Vec<MotionWithImages> = Vec::new();
         let mut found = Vec::new();
@@ -83,7 +83,7 @@ impl PreparedRequest<'_> {
 
     /// Whether a motion begins as this one or as an image of it, or where the force is the same.
     fn is_one(&self, motion: &MotionWithImages, [x, v]: [f64; 2]) -> bool {
-        /// Of its size.
+        /// Ratio of a difference to the size below which two motions are the same.
         const SAME: f64 = 1e-3;
         let omega = self.driven.frequency_at(motion.parameter);
         motion.starts.iter().any(|start| {

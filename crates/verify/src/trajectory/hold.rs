@@ -38,10 +38,10 @@ const UNSEEN: f64 = 1e-12;
 /// A force that exceeds the friction by so large a part of it leads away from rest at once.
 const CLEARLY: f64 = 1e-3;
 
-/// So often may something be held.
+/// Largest number of sticking phases.
 const MOST_HOLDS: usize = 10_000;
 
-/// So many stretches without length in a row lead nowhere.
+/// Number of consecutive segments of length zero after which the motion is stuck.
 const IDLE: usize = 8;
 
 /// First-order equations in numbers.
@@ -87,7 +87,7 @@ type Regimes = Vec<(Surface, SurfaceRegime)>;
 /// The map from the integrated states to all states.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
-    /// For each state its place among those that are followed, or its value in terms of them.
+    /// The index of each state among the integrated ones, or its value in terms of them.
     all_states: Vec<Result<usize, CompiledFunction>>,
     /// The values of the letters in these.
     numbers: Vec<f64>,
@@ -522,7 +522,7 @@ struct SurfaceRates {
     fixed: BTreeMap<Symbol, Expr>,
     /// The surfaces that the motion stays on.
     on: Vec<usize>,
-    /// Those that do not follow from the ones before.
+    /// The surfaces whose frictions are linearly independent.
     independent: Vec<usize>,
     /// The first letters of the names.
     stem: String,

@@ -14,7 +14,8 @@ use crate::conservative::features::{Feature, Features};
 use crate::expr::{Expr, Function, Node};
 use crate::symbol::Symbol;
 
-/// So many widths away a pulse is nothing in double precision: from there on steps may grow faster.
+/// Number of widths beyond which a pulse vanishes in double precision: from there on steps may grow
+/// faster.
 const FAR: f64 = 32.0;
 
 /// The times between zero and the duration at which a step has to end, in order. Waves alone,

@@ -161,11 +161,10 @@ impl Trajectory {
         })
     }
 
-    /// Of the times at which an expression is largest or least those at which it is zero, to
-    /// rounding, and is not at the turns before and behind, both on the same side; each between
-    /// these two.
+    /// The extrema of an expression at which it is zero, to rounding, and not zero at the extrema
+    /// before and behind, both on the same side; each between these two.
     fn turns_on(&self, expression: &Expr, turns: Vec<f64>) -> Vec<[f64; 3]> {
-        /// Of the largest value.
+        /// Ratio to the largest value below which an extremum is a touch.
         const TOUCH: f64 = 1e-9;
         let Some(function) = self.compiled(expression) else {
             return vec![];

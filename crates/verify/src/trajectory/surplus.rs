@@ -16,7 +16,7 @@
 /// A part of the largest entry that counts as zero.
 const NOTHING: f64 = 1e-9;
 
-/// So many slips are looked at.
+/// Largest number of combinations of slips that are tried.
 const MOST_SLIPS: usize = 20_000;
 
 /// The shares that have one size, each by its number with a sign, for as many as the equations

@@ -38,7 +38,7 @@ const MOST_FOR_ONE: f64 = 3e7;
 const MOST: u64 = 100_000_000;
 
 impl<'a> TrueBackbone<'a> {
-    /// Of the motions that are meant, in a well where it has an end.
+    /// The backbone of the motions that are meant, in a well if it has an end.
     pub(super) fn new(
         oscillator: &'a Oscillator,
         meant: &OrbitTarget,

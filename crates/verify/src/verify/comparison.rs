@@ -91,7 +91,7 @@ pub struct Comparison {
     pub tolerance: f64,
     /// The methods that apply, in the order of [`Method::ALL`].
     pub rows: Vec<ComparisonRow>,
-    /// Those that do not.
+    /// The methods that do not apply.
     pub refused: Vec<Refused>,
     /// The ranges of validity, in words, if the true motion is periodic.
     pub validity: Vec<String>,
@@ -101,10 +101,10 @@ pub struct Comparison {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ComparisonError {
-    /// No method applies, each for its reason; the message has that of the first.
+    /// All methods refuse, each for its reason; the message has that of the first.
     #[error("no method applies{}", .0.first().map_or(String::new(), |first| format!(": {}", first.reason)))]
     NoMethod(Vec<Refused>),
-    /// No curve of omega against the amplitude: why not, in words.
+    /// There is no curve of omega against the amplitude, for this reason.
     #[error("there is no curve of {omega} against the amplitude: {0}", omega = FREQUENCY)]
     NoBackbone(&'static str),
     /// There is no true motion to compare with.

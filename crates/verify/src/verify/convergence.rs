@@ -202,7 +202,7 @@ fn unit_of_growth(force: &[f64]) -> f64 {
     force.iter().enumerate().skip(2).map(rate).fold(0.0, f64::max)
 }
 
-/// In the amplitude of a force of the position alone.
+/// The series in the amplitude of a force of the position alone.
 fn in_the_amplitude(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -279,7 +279,7 @@ fn in_a_parameter(
     Some(FrequencySeries { coefficients, unit })
 }
 
-/// Of a limit cycle rounding leaves odd powers where there are none.
+/// Removes odd powers that rounding leaves in the series of a limit cycle.
 fn forget_odd_noise(coefficients: &mut [f64]) {
     let mut odd = (1..coefficients.len()).step_by(2);
     if odd.all(|k| coefficients[k].abs() < 1e-9 * coefficients[k - 1].abs()) {

@@ -41,7 +41,7 @@ use crate::values::Values;
 /// A steady motion of the slow equations beside the true one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JudgedState {
-    /// By the slow equations.
+    /// The steady state by the slow equations.
     pub state: SteadyState,
     /// The amplitude of the true motion; `None` where none was found.
     pub true_amplitude: Option<f64>,
@@ -405,7 +405,7 @@ impl Truth {
 
     /// The true periodic motion near one by the formula.
     fn find_near(&self, motion: &SteadyFormula, state: SteadyState) -> Option<PeriodicOrbit> {
-        /// For how long a motion is left to settle.
+        /// Number of periods in which a motion may settle.
         const PERIODS: f64 = 200.0;
         let start = [motion.position(0.0, state), motion.velocity(0.0, state)];
         let size = motion.size(self.period, state);

@@ -30,9 +30,9 @@ pub(super) struct Start {
 
 /// The representation of a motion.
 enum FreePath {
-    /// From the equation, and held where friction holds it.
+    /// Power series of the equation, with sticking at dry friction.
     Series(Box<Trajectory>),
-    /// By Runge-Kutta on values of the force alone.
+    /// Runge-Kutta on values of the force alone.
     Evaluated(ode::Trajectory),
 }
 
@@ -75,7 +75,7 @@ impl FreeMotion {
     /// Follows the motion.
     ///
     /// # Errors
-    /// It cannot be followed.
+    /// The motion cannot be followed.
     pub(super) fn follow(
         oscillator: &Oscillator,
         numbers: &BTreeMap<Symbol, f64>,

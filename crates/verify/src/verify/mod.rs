@@ -73,7 +73,7 @@ pub const DEFAULT_TOLERANCE: f64 = 0.01;
 pub enum Verdict {
     /// The frequency is within the tolerance.
     Pass,
-    /// It is not, or it is not real.
+    /// The formula is not within the tolerance, or not real.
     Fail,
 }
 
@@ -493,7 +493,7 @@ fn in_another_coordinate(
 /// harmonic `a`. `None` where there is nothing to convert.
 ///
 /// # Errors
-/// No true periodic motion of the amplitude given.
+/// There is no true periodic motion of this amplitude.
 fn in_convention_of(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -663,9 +663,9 @@ pub type TimedState = (f64, f64, f64);
 
 /// The motion by the formula and the true one, at the same instants of one true period.
 pub struct Motions {
-    /// By the formula.
+    /// The motion by the formula.
     pub formula: Vec<TimedState>,
-    /// By Runge-Kutta.
+    /// The motion by Runge-Kutta.
     pub truth: Vec<TimedState>,
     /// Motions whose amplitude changes: times and places of its two envelopes by the formula.
     pub envelope: Option<[Vec<(f64, f64)>; 2]>,

@@ -28,16 +28,16 @@ pub(super) struct OrbitTarget {
     pub(super) convention: AmplitudeConvention,
     /// The neighbourhood of a limit cycle; `None` for a member of a family of periodic motions.
     pub(super) limit_cycle: Option<NearCycle>,
-    /// About which omega to expect where the energy does not tell the period: how long to wait for
-    /// the return, no more.
+    /// Approximate omega if the energy does not give the period: it only limits the time of the
+    /// return.
     pub(super) frequency: Option<f64>,
 }
 
 /// The neighbourhood in which a limit cycle is searched.
 pub(super) struct NearCycle {
-    /// About its amplitude.
+    /// Its approximate amplitude.
     pub(super) amplitude: f64,
-    /// Of cycles close to each other it is the one that attracts, or does not; `None` where either
+    /// Whether the cycle attracts, to choose between cycles close to each other; `None` if either
     /// will do.
     pub(super) attracts: Option<bool>,
 }

@@ -51,21 +51,21 @@ pub(super) fn places_of_law(
 /// The amplitude range in which a formula is within the tolerance; amplitudes have their sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AmplitudeReach {
-    /// At every amplitude looked at, up to this one.
+    /// All amplitudes of the search, up to this one.
     Everywhere(f64),
-    /// Up to this amplitude.
+    /// Amplitudes up to this one.
     UpTo(f64),
     /// Between two amplitudes, of motions over several wells, which do not begin at rest, and of a
     /// law that is outside near rest.
     Between {
-        /// From this one on.
+        /// The lower end.
         from: f64,
-        /// Up to this one, or as far as was looked at.
+        /// The upper end, or the end of the search.
         to: f64,
         /// Whether no crossing was found up there.
         open: bool,
     },
-    /// At no amplitude.
+    /// No amplitude.
     Nowhere,
 }
 
@@ -263,8 +263,8 @@ impl Follow<'_> {
         /// Largest number of bisections in all, and of one interval.
         const MOST: usize = 160;
         const DEEPEST: usize = 8;
-        /// Of the tolerance: where the error is larger, one look at the middle is not enough, for
-        /// it may bend to both sides.
+        /// Ratio of the error to the tolerance beyond which one sample in the middle is not enough,
+        /// because the error may bend to both sides.
         const CLOSE: f64 = 0.3;
         const LOOKS: usize = 3;
         let mut open = vec![(from, to, 0)];

@@ -200,9 +200,9 @@ struct TransientPair {
 
 /// Errors of a formula, over the initial amplitude.
 struct Errors {
-    /// At the turning points.
+    /// The error at the turning points.
     amplitude: Option<f64>,
-    /// At any time.
+    /// The error at any time.
     deviation: Option<f64>,
 }
 

@@ -176,7 +176,7 @@ pub(super) fn why_no_motion(
     numbers: &BTreeMap<Symbol, f64>,
     error: VerificationError,
 ) -> VerificationError {
-    /// As near to the end of the well, relatively, as its place is known.
+    /// Relative distance from the end of the well within which its position is known.
     const ON: f64 = 1e-9;
     let VerificationError::Period(lost) = error else {
         return error;

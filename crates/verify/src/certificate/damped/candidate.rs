@@ -332,7 +332,7 @@ const fn last_harmonic_of_largest_block(odd: bool) -> usize {
 fn digits(seen: usize) -> usize {
     /// A motion of so many harmonics in doubles has all digits.
     const MANY: usize = 120;
-    /// No fewer: those of the doubles.
+    /// The least number of bits: those of doubles.
     const FEWEST: usize = 60;
     (BITS * MANY / seen.max(1)).clamp(FEWEST, BITS)
 }

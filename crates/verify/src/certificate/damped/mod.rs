@@ -52,21 +52,21 @@ pub struct DampedCertificate {
     pub odd: bool,
     /// `reciprocal` and the coefficients are integers times `2^-bits`.
     pub bits: usize,
-    /// About `1/omega`; zero where the drive gives it.
+    /// Approximate `1/omega`; zero if the drive gives it.
     pub reciprocal: Integer,
-    /// About the cosine coefficients of the motion, that of the constant first.
+    /// Approximate cosine coefficients of the motion, the constant first.
     pub cosines: Vec<Integer>,
-    /// About the sine coefficients by harmonic; that of the constant is zero, and of a limit cycle
-    /// that of the first harmonic too.
+    /// Approximate sine coefficients by harmonic; that of the constant is zero, and for a limit
+    /// cycle that of the first harmonic, too.
     pub sines: Vec<Integer>,
     /// The last harmonic of the block, odd where `odd`.
     pub highest: usize,
     /// The entries of the inverse are integers times `2^-inverse_bits`.
     pub inverse_bits: usize,
-    /// About the inverse of the derivative on the block, row by row. The columns are those of the
-    /// equations: the sine of the first harmonic, then of each harmonic the cosine and the sine, as
-    /// far as they are left. The rows are those of the unknowns: `1/omega`, then the same. With a
-    /// drive both are of each harmonic the cosine and the sine.
+    /// Approximate inverse of the derivative on the block, row by row. The columns belong to the
+    /// equations: the sine of the first harmonic, then the remaining cosines and sines of each
+    /// harmonic. The rows belong to the unknowns: `1/omega`, then the same coefficients. With a
+    /// drive both are the cosine and the sine of each harmonic.
     pub inverse: Vec<Vec<Integer>>,
     /// The weight of `1/omega` in the norm is `2^sigma`; zero where the drive gives it.
     pub sigma: i32,

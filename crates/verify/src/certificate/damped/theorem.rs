@@ -228,7 +228,7 @@ pub(super) fn correction(problem: DampedProblem) -> Result<Correction<BasisFunct
     Ok(DampedBoundData::new(problem)?.correction())
 }
 
-/// About the derivative on the block, row by row, for what is not proved.
+/// The approximate derivative on the block, row by row, for steps that need no proof.
 ///
 /// # Errors
 /// As [`prove`].

@@ -31,15 +31,15 @@ use crate::exact::ball::Ball;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ImpactEnclosure {
-    /// From the release to the touch.
+    /// Time from the release to the touch.
     pub time_to_contact: Enclosure,
-    /// At the touch.
+    /// Speed at the touch.
     pub speed: Enclosure,
     /// The greatest depth.
     pub penetration: Enclosure,
-    /// Of the contact.
+    /// Duration of the contact.
     pub duration: Enclosure,
-    /// From the release to the return.
+    /// Period from the release to the return.
     pub period: Enclosure,
 }
 

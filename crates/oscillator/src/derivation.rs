@@ -111,7 +111,7 @@ pub enum DerivationFormula {
         to: Expr,
         /// The integrand.
         integrand: Box<Self>,
-        /// Over which variable.
+        /// The variable of integration.
         variable: Symbol,
     },
     /// `numerator/sqrt(inside)`.
@@ -122,7 +122,7 @@ pub enum DerivationFormula {
         factor: Expr,
         /// The dependent variable.
         of: Symbol,
-        /// By what.
+        /// The variable of differentiation.
         by: Symbol,
     },
 }

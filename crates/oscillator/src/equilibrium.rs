@@ -365,7 +365,7 @@ pub(crate) fn stable_elsewhere(oscillator: &Oscillator) -> Option<OscillatorErro
 enum EquilibriumPosition {
     /// In closed form.
     Exact(Expr),
-    /// By its number alone.
+    /// A numerical value.
     Rounded(f64),
 }
 

@@ -121,7 +121,7 @@ pub enum OscillatorError {
         "the coefficient `{0}` of the acceleration vanishes at rest, so the equation does not determine the motion there"
     )]
     VanishingMass(String),
-    /// There is a force at rest, and nowhere near a stable equilibrium.
+    /// The force at rest is not zero, and there is no stable equilibrium near.
     #[error("the force at rest is `{0}`, not zero, and no stable equilibrium was found")]
     NoEquilibrium(String),
     /// The force is infinite at zero, and pulls there without a motion that would pass.
@@ -141,7 +141,8 @@ pub enum OscillatorError {
         /// Whether it grows as `1/x` and has an even part; otherwise it grows faster.
         uneven: bool,
     },
-    /// There is a force at rest, and stable equilibria only where no motion from rest leads.
+    /// The force at rest is not zero, and stable equilibria lie only out of reach of motions from
+    /// rest.
     #[error(
         "the force at rest is `{force}`, not zero, and no stable equilibrium was found before the force has a pole or ends; beyond there {} {stable}",
         if stable.positions.len() == 1 { "is one at" } else { "are some at" }
@@ -162,7 +163,7 @@ pub enum OscillatorError {
     Unstable {
         /// The coordinate.
         coordinate: Symbol,
-        /// Those that are stable.
+        /// The stable equilibria.
         stable: Equilibria,
         /// Whether motions run through it, over the wells on both sides.
         passed: bool,
@@ -181,7 +182,7 @@ pub enum OscillatorError {
         term: String,
         /// The force to write instead of the root, for a force that pulls back on both sides.
         odd: String,
-        /// For one that is zero where the root has no value, where another term pulls back there.
+        /// Advice for a root without a value at zero, at which another term restores.
         zero: Option<String>,
     },
     /// The given position is no stable equilibrium.
@@ -191,10 +192,10 @@ pub enum OscillatorError {
         coordinate: Symbol,
         /// The given position.
         asked: Expr,
-        /// Those that are stable.
+        /// The stable equilibria.
         stable: Equilibria,
     },
-    /// No linear restoring force.
+    /// The force has no linear restoring part.
     #[error(
         "the linear restoring force is `{0}`: an expansion needs omega0^2 * x with omega0^2 > 0"
     )]
@@ -210,7 +211,7 @@ pub enum OscillatorError {
     /// A term that is no polynomial in coordinate and velocity.
     #[error("the term `{0}` is no polynomial in the coordinate and its velocity")]
     NotPolynomial(Quotation),
-    /// No Taylor series.
+    /// The force has no Taylor series.
     #[error(transparent)]
     Taylor(#[from] TaylorError),
     /// More than one parameter could be small.

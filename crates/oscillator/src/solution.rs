@@ -110,9 +110,9 @@ impl AmplitudeConvention {
 /// A symbol that the program introduced, and what it stands for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Definition {
-    /// For example `omega0`.
+    /// The symbol, for example `omega0`.
     pub symbol: Symbol,
-    /// For example `sqrt(k)`.
+    /// Its meaning, for example `sqrt(k)`.
     pub meaning: Expr,
 }
 
@@ -193,7 +193,7 @@ impl LeadingCycle {
 pub struct Solution {
     /// The equation as it was understood, `x'' + f = 0`.
     pub equation: Equation,
-    /// Who derived it.
+    /// The method of the derivation.
     pub method: Method,
     /// Highest power kept, inclusive, of the small parameter.
     pub order: u32,

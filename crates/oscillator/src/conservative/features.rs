@@ -33,7 +33,7 @@ use crate::symbol::Symbol;
 pub struct Feature {
     /// The position.
     pub place: f64,
-    /// Over what distance the force may turn; zero at a corner, a jump or a pole.
+    /// The distance over which the force may change; zero at a corner, a jump or a pole.
     pub width: f64,
     /// Whether it is a pole, a root or a logarithm: the force turns fast beside it as well, the
     /// faster the closer.
@@ -49,13 +49,13 @@ pub struct Features {
 /// The behaviour of a function that decides where it varies on a short scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FunctionKind {
-    /// It breaks where the argument is zero.
+    /// A corner if the argument is zero.
     Corner,
-    /// It breaks where the argument is plus or minus one.
+    /// A corner if the argument is plus or minus one.
     Inverse,
-    /// It changes when the argument changes by one; whether it does so again and again.
+    /// A change on the scale of one in the argument; the flag says whether it repeats.
     Scale { waves: bool },
-    /// It changes when the argument changes by its own size over this exponent.
+    /// A change on the scale of the argument over this exponent.
     Power(f64),
 }
 

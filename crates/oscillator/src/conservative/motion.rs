@@ -62,9 +62,10 @@ impl CentredForce {
     /// has failed with `error`: at the separatrix that ends the well neither knows what it met. It
     /// takes a search for the rims of the well, so this is for messages.
     pub fn why_no_period(&self, start: f64, error: PeriodError) -> PeriodError {
-        /// As near to the end of the well, relatively, as its place is known.
+        /// Relative distance from the end of the well within which its position is known.
         const ON: f64 = 1e-13;
-        /// So near the time that the motion takes is a quadrature of rounding.
+        /// Relative distance from the end of the well within which the period is an integral of
+        /// rounding errors.
         const NEAR: f64 = 1e-6;
         let lost = matches!(error, PeriodError::Quadrature(_) | PeriodError::Root(_));
         let gone = matches!(

@@ -94,7 +94,7 @@ pub fn passage_at(passages: &[Passage], amplitude: f64) -> Option<&Passage> {
 /// The first amplitude from a bottom at `begin` on at which the potential exceeds a height, before
 /// the end; zero at rest.
 fn beginning(force: &CentredForce, begin: f64, end: Option<f64>, height: f64) -> Option<f64> {
-    /// Of the depth: less is rounding.
+    /// Relative part of the depth below which a difference is rounding.
     const VISIBLE: f64 = 1e-9;
     if begin == 0.0 {
         return Some(0.0);

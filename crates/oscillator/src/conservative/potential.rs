@@ -45,7 +45,7 @@ fn of_term(term: &Expr, coordinate: Symbol) -> Option<Expr> {
 /// `h(g(x)) g'(x)`, whose integral is that of `h` at `g`, for one of the functions that the term is
 /// made of as `g`.
 fn by_substitution(term: &Expr, coordinate: Symbol) -> Option<Expr> {
-    /// So many are tried.
+    /// Largest number of candidates that are tried.
     const CANDIDATES: usize = 8;
     let (outside, inside) = split(term, coordinate);
     let integrand = Expr::product(inside);

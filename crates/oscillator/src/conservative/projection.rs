@@ -386,7 +386,8 @@ mod tests {
     use std::collections::BTreeMap;
     use std::f64::consts::PI;
 
-    /// By quadrature between the corners of the force, which the formulas know nothing of.
+    /// The coefficient by quadrature between the corners of the force, of which the formulas do not
+    /// know.
     fn by_quadrature(text: &str, amplitude: f64, k: usize, corners: &[f64]) -> f64 {
         let force: Expr = text.parse().unwrap();
         let force = CompiledFunction::new(&force, &["x".into()]).unwrap();

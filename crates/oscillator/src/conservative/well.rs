@@ -295,8 +295,8 @@ fn rise_between(force: &CentredForce, from: f64, to: f64) -> Option<f64> {
 /// series, whose remainder is its last term times `q/(1 - q)`.
 fn rise_to_infinity(force: &CentredForce, side: f64, unit: f64) -> Option<f64> {
     const DOUBLINGS: i32 = 1000;
-    /// Of the height: a remainder below this is rounding, one below the other is good enough where
-    /// the force has no digits beyond.
+    /// Relative parts of the height: a remainder below the first is rounding, one below the second
+    /// is small enough if the force has no digits beyond.
     const NEGLIGIBLE: f64 = 1e-14;
     const SMALL: f64 = 1e-8;
     /// A quotient closer to one than this belongs to a potential that grows without end, as a

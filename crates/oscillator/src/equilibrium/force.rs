@@ -28,8 +28,8 @@ use crate::symbol::Symbol;
 /// The strength of the attraction by a force that is infinite at `x = 0`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SingularAttraction {
-    /// So weakly that its potential is finite there, as `sgn(x)/abs(x)^(1/3)`: the motion swings
-    /// through.
+    /// Weak attraction: the potential is finite there, as for `sgn(x)/abs(x)^(1/3)`, and the motion
+    /// passes through.
     Passed,
     /// As `1/x`, and oddly: the potential is that of a logarithm, and the motion the limit of those
     /// of weaker powers, which swing through.

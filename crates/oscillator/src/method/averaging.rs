@@ -529,7 +529,7 @@ struct Projected {
 
 impl Projected {
     /// # Errors
-    /// Nothing restores, or a term whose projection has no closed form.
+    /// There is no restoring force, or a term whose projection has no closed form.
     fn new(oscillator: &Oscillator, small: &SmallTerms, amplitude: &Expr) -> Result<Self, Refusal> {
         let linear = small.linear_part()?;
         let (omega0, root) = linear.linear_frequency(&oscillator.names());

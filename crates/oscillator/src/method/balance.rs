@@ -472,7 +472,7 @@ impl<'a> BalanceProblem<'a> {
         (last <= 1e-9).then_some(state)
     }
 
-    /// At fixed amplitude.
+    /// Newton's method at fixed amplitude.
     fn at_amplitude(&self, start: &BalanceUnknowns, finer: usize) -> Option<BalanceUnknowns> {
         const ITERATIONS: usize = 40;
         let mut direction = DVector::zeros(self.count + 2);
@@ -557,7 +557,7 @@ impl<'a> BalanceProblem<'a> {
         }
         const FINER: usize = 4;
         const FINEST: usize = 64;
-        /// Of ln A: less is no way ahead.
+        /// Smallest step in ln A that counts as progress.
         const AHEAD: f64 = 0.01;
         let mut before = f64::NEG_INFINITY;
         let end = loop {

@@ -42,8 +42,8 @@ pub(super) struct Driven {
     /// The multiple of the driving frequency.
     pub(super) multiple: u32,
     pub(super) quadrature: Quadrature,
-    /// Of a [series](Drive::in_small_motions), by how much its degree is above that of the first
-    /// term.
+    /// The difference of the degree to that of the first term, for a term of a
+    /// [series](Drive::in_small_motions).
     pub(super) above: u32,
     /// The whole term, for messages.
     pub(super) term: Expr,

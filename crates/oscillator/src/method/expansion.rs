@@ -157,7 +157,7 @@ impl Numerator for Polynomial<Integer> {
     }
 }
 
-/// From the numerators of a series over this denominator to polynomials. The denominators of an
+/// Converts the numerators of a series over this denominator to polynomials. The denominators of an
 /// expansion have small prime factors alone: found once, they take the place of a greatest common
 /// divisor for each coefficient.
 fn over_denominator<N: Numerator>(denominator: &Integer) -> impl Fn(&N) -> Polynomial + use<'_, N> {

@@ -280,7 +280,7 @@ fn mean(m: i32, n: i32) -> Rational {
 mod tests {
     use super::*;
 
-    /// By the sum over equal steps, which is exact for waves of few harmonics.
+    /// The means by a sum over equal steps, which is exact for few harmonics.
     #[test]
     fn means_of_powers_of_waves() {
         const STEPS: i32 = 64;

@@ -34,7 +34,8 @@ pub(super) struct FrequencyResponse {
 }
 
 impl FrequencyResponse {
-    /// From `P` and `Q`, and the cosine and sine of each; the detuning stands in `Q`.
+    /// Eliminates the phase from `P` and `Q`, and the cosine and sine of each; the detuning stands
+    /// in `Q`.
     pub(super) fn from_rates(
         [rate, phase]: [&Polynomial; 2],
         [[rate_cos, rate_sin], [phase_cos, phase_sin]]: &[[Polynomial; 2]; 2],
@@ -97,7 +98,7 @@ impl FrequencyResponse {
         }
     }
 
-    /// From a relation alone.
+    /// Takes a relation alone.
     pub(super) fn of_relation(relation: Option<Polynomial>, a: Symbol) -> Self {
         let relation = relation.map(|relation| without_common_powers(&relation));
         let (folds, jumps) =

@@ -107,7 +107,7 @@ fn projections(
     names: &[Symbol],
     motion: &FourierSeries<Polynomials>,
 ) -> Result<Vec<DerivationLine>, Refusal> {
-    /// Beyond so many harmonics one line stands for all.
+    /// Number of harmonics beyond which one line stands for all.
     const MOST_LINES: usize = 8;
     let omega = Expr::symbol("omega").integer_power(2)?;
     let balance = |k: Expr, name: Expr, factor: i64| -> Result<DerivationLine, Refusal> {

@@ -291,9 +291,9 @@ impl Quadratic {
 
 /// The names with which it is written.
 struct ApproximantNames {
-    /// Of P, Q, R, and of the sign.
+    /// The letters of P, Q, R, and of the sign.
     letters: [Symbol; 4],
-    /// Of their coefficients, the variable and the series.
+    /// The stems of their coefficients, of the variable and of the series.
     stems: [String; 3],
     short: [Symbol; 2],
     variable: Monomial,

@@ -125,7 +125,7 @@ impl VariableMass {
         amplitude: f64,
     ) -> Option<Box<dyn Fn(f64) -> f64>> {
         const STEPS: f64 = 16.0;
-        /// So many steps away nothing is oscillating.
+        /// Number of steps beyond which nothing oscillates.
         const FURTHEST: f64 = 1e5;
         if let Some(mass) = &self.mass {
             return Some(Box::new(compiled(oscillator, mass, numbers)?));

@@ -86,8 +86,8 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
     Ok(solution)
 }
 
-/// Puts the first iterate into an answer: its harmonics are exact for polynomials, the lowest of
-/// them otherwise.
+/// Sets the first iterate of an answer: its harmonics are exact for polynomials, the lowest of them
+/// otherwise.
 pub(super) fn first_iterate(
     solution: &mut Solution,
     oscillator: &Oscillator,

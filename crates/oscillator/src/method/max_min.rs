@@ -267,7 +267,7 @@ fn pieces(
     Ok(lines)
 }
 
-/// Of `a + b x^m + c x^n`: where it is stationary, as `x^(n-m) = -m b/(n c)`, and its value there.
+/// The stationary point of `a + b x^m + c x^n` as `x^(n-m) = -m b/(n c)`, and the value there.
 fn stationary_point(
     quotient: &Expr,
     coordinate: Symbol,

@@ -112,7 +112,8 @@ pub struct Options {
     /// The frequency without the motion, to a [higher order](HIGHEST_ORDER_OF_FREQUENCY) in less
     /// time.
     pub frequency_alone: bool,
-    /// Who may stop a long expansion, which then ends with the orders that there are.
+    /// The interrupt and the progress of a long expansion, which ends, if interrupted, with the
+    /// orders that there are.
     ///
     /// ```
     /// # use lindstedt_oscillator as lindstedt;

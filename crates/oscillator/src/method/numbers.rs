@@ -96,8 +96,8 @@ pub enum NoNumbers {
         /// The amplitude.
         amplitude: f64,
     },
-    /// About an unstable equilibrium no root of an implicit relation continues that of its first
-    /// order.
+    /// No root of an implicit relation continues that of its first order about an unstable
+    /// equilibrium.
     #[error("not real: no root continues the frequency of order 1 at this amplitude")]
     NoneOfFirstOrder,
     /// omega^2 is not positive.

@@ -133,8 +133,7 @@ pub(super) fn cosine(coefficient: Polynomial) -> FourierSeries<Polynomials> {
     FourierSeries::cos(POLYNOMIALS, 1).product(&FourierSeries::constant(POLYNOMIALS, coefficient))
 }
 
-/// Puts a law for omega^2 into an answer: as a polynomial where it is one, as a closed form
-/// otherwise.
+/// Sets the law for omega^2 of an answer: a polynomial if it is one, otherwise a closed form.
 pub(super) fn set_law(solution: &mut Solution, law: &Expr) -> Result<(), Refusal> {
     solution.law = match law.to_polynomial(&mut |_| None)? {
         Some(polynomial) => Law::squared(polynomial),
@@ -191,7 +190,7 @@ pub(super) fn note_even_part(
     Ok(())
 }
 
-/// Puts what is said of the even part of the force behind what was said since.
+/// Moves the note of the even part of the force behind the notes that were added since.
 pub(super) fn note_even_part_last(solution: &mut Solution) {
     // False sorts before true, and the others keep their order.
     solution.validity.sort_by_key(|note| matches!(note, Note::EvenPartLeftOut(_)));

@@ -46,7 +46,7 @@ const METHOD: Method = Method::Pade;
 /// The largest degree, of numerator and denominator.
 const LARGEST_DEGREE: u32 = 60;
 
-/// Beyond this degree of the denominator fractions are long, and primes faster.
+/// Degree of the denominator beyond which fractions are long, and primes faster.
 const LARGEST_BY_FRACTIONS: usize = 12;
 
 /// The largest degree of a denominator whose symbols cannot be scaled away: its cofactors are sums

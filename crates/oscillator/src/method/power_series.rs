@@ -26,7 +26,7 @@ pub struct PowerSeries {
 }
 
 impl PowerSeries {
-    /// In the squared amplitude where the series has even powers alone.
+    /// The series of a solution, in the squared amplitude if it has even powers alone.
     pub fn from_solution(solution: &Solution, in_amplitude: bool) -> Self {
         let small = solution.small_parameter;
         let law = solution.law.frequency_squared().cloned();
@@ -122,8 +122,8 @@ impl Resummed {
         options: &Options,
         (method, order): (Method, u32),
     ) -> Result<Option<Self>, Refusal> {
-        /// Beyond, the series is derived without its motion, of which the first correction is all
-        /// that is used.
+        /// Order beyond which the series is derived without its motion, of which only the first
+        /// correction is used.
         const LONG: u32 = 24;
         if options.amplitude == Some(AmplitudeConvention::FirstHarmonic) {
             return Err(Reason::Convention.to(method));
@@ -171,7 +171,7 @@ impl Resummed {
         self.solution.names()
     }
 
-    /// Puts `omega0^2` for a symbol of which `omega0` is the root, so that one of the two is left.
+    /// Replaces a symbol whose root is `omega0` by `omega0^2`, so that one of the two is left.
     pub fn write_squares_by_their_roots(&mut self) {
         for definition in &self.solution.definitions {
             let square =

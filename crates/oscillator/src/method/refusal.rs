@@ -92,10 +92,10 @@ pub enum Reason {
     NoResonance {
         /// Omega : omega0 as asked for.
         asked: (u32, u32),
-        /// Those that there are.
+        /// The resonances that there are.
         others: Vec<(u32, u32)>,
     },
-    /// No linear restoring force, and a term that the methods that need none do not take.
+    /// There is no linear restoring force, and a term that the methods without one do not take.
     NoLinearForce {
         /// The linear force.
         force: Expr,

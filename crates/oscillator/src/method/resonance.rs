@@ -9,7 +9,7 @@ use crate::oscillator::Oscillator;
 use crate::solution::Method;
 use crate::values::Values;
 
-/// Those that are looked for, Omega : omega0.
+/// The resonances that are tried, Omega : omega0.
 pub(super) const RESONANCES: [(u32, u32); 5] = [(1, 1), (2, 1), (1, 2), (3, 1), (1, 3)];
 
 /// The largest of either number that is asked for: the motion needs as many harmonics.

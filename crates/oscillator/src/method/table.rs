@@ -28,11 +28,11 @@ pub struct MethodEntry {
     pub takes: &'static [Choice],
     /// The representation of the force that the method uses.
     pub sees: ForceRepresentation,
-    /// About an equilibrium without a closed form: the degree of the Taylor polynomial with rounded
-    /// coefficients that stands for the force, zero for a polynomial force kept whole; `None` where
-    /// the force is taken as it is. The flag says whether the force is a polynomial.
+    /// The degree of the Taylor polynomial with rounded coefficients that stands for the force
+    /// about an equilibrium without a closed form, zero for a polynomial force kept whole; `None`
+    /// if the force is taken as it is. The flag says whether the force is a polynomial.
     pub rounded_degree: fn(&Options, bool) -> Option<u32>,
-    /// For methods of one term.
+    /// The definition of the frequency of a method of one term.
     pub definition: Option<Definition>,
     /// Whether its law knows the sign of the amplitude; one that does not is written for positive
     /// ones.
@@ -47,13 +47,13 @@ pub struct MethodEntry {
 /// The way in which a motion is evaluated numerically.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionEvaluation {
-    /// By its formula.
+    /// The formula.
     Formula,
-    /// By the formula of an iterate, whose projections of the force may be taken by quadrature.
+    /// The formula of an iterate, whose projections of the force may be taken by quadrature.
     Iterate,
-    /// By solving a balance of harmonics.
+    /// The solution of a balance of harmonics.
     Balance,
-    /// By quadrature of the energy: the true motion.
+    /// Quadrature of the energy: the true motion.
     Exact,
 }
 

@@ -14,9 +14,9 @@ use std::fmt;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Degrees {
-    /// Of numerator and denominator.
+    /// The degrees of numerator and denominator.
     Quotient(u32, u32),
-    /// Of the coefficients P, Q and R of `P + Q f + R f^2`.
+    /// The degrees of the coefficients P, Q and R of `P + Q f + R f^2`.
     Quadratic(u32, u32, u32),
 }
 

@@ -55,7 +55,7 @@ pub enum Counts {
     Harmonics,
     /// The degrees of so many polynomials.
     Degrees(usize),
-    /// Nothing: there is one order.
+    /// There is only one order.
     Nothing,
 }
 

@@ -88,7 +88,7 @@ pub struct Transient {
 }
 
 impl Release {
-    /// To leading order: `a(0) = A`, `psi(0) = 0`.
+    /// The initial values to leading order: `a(0) = A`, `psi(0) = 0`.
     pub fn at_start() -> Self {
         Self { amplitude: Expr::from(AmplitudeConvention::Initial.symbol()), phase: Expr::zero() }
     }

@@ -63,7 +63,7 @@ pub enum Note {
     },
     /// The harmonics of a balance.
     Balanced {
-        /// Those that are kept.
+        /// The harmonics that are kept.
         harmonics: Vec<usize>,
         /// Whether numbers alone solve it.
         by_numbers: bool,
@@ -79,7 +79,7 @@ pub enum Note {
         at_rest: Expr,
         /// `f(x)/x` at the turning point.
         at_turning: Expr,
-        /// For which amplitudes.
+        /// The amplitudes for which it holds.
         range: BoundsHold,
     },
     /// The order through which a quotient agrees with its series.
@@ -130,8 +130,8 @@ pub enum Note {
         resonance: (u32, u32),
         /// Whether the drive is in a coefficient.
         parametric: bool,
-        /// Of several drives the ratio of the one in resonance to omega0; `None` where only sums
-        /// and differences of them are.
+        /// Ratio to omega0 of the drive in resonance among several; `None` if only sums and
+        /// differences of them are in resonance.
         nearest: Option<(u32, u32)>,
         /// The small quantities.
         small: Vec<Expr>,
@@ -304,17 +304,17 @@ pub enum ExactFirstStep {
 /// The instant at which a motion of one term satisfies its equation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CollocationInstant {
-    /// At an eighth of the period.
+    /// An eighth of the period.
     EighthOfPeriod,
     /// The square of the cosine is three quarters.
     CosineSquared,
 }
 
-/// For which amplitudes omega^2 lies between the values of `f(x)/x` at rest and at the turning
+/// The amplitudes for which omega^2 lies between the values of `f(x)/x` at rest and at the turning
 /// point.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BoundsHold {
-    /// For all.
+    /// All amplitudes.
     Always,
     /// As long as the slope of `f(x)/x` keeps its sign.
     While {
@@ -325,14 +325,14 @@ pub enum BoundsHold {
         /// Parameters that need only be positive for that.
         positive: Option<Vec<Symbol>>,
     },
-    /// Up to the place where `f(x)/x` turns back.
+    /// Amplitudes up to the extremum of `f(x)/x`.
     UpTo(f64),
 }
 
 /// The real zeros of a denominator.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Poles {
-    /// It depends on several symbols.
+    /// The range depends on several symbols.
     Unknown,
     /// These values of one product of symbols; none where there are none.
     At {
@@ -359,9 +359,9 @@ pub struct FollowedRoot {
 /// Why a root ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RootEnd {
-    /// It meets the other root.
+    /// The root meets the other one.
     Meets,
-    /// It is infinite.
+    /// The root is infinite.
     Infinite,
 }
 
@@ -370,9 +370,9 @@ pub enum RootEnd {
 pub enum ExactBy {
     /// In closed form.
     ClosedForm,
-    /// By quadrature of the energy, where the inertia depends on the position.
+    /// Quadrature of the energy with a position-dependent inertia.
     EnergyQuadrature,
-    /// By quadrature, because nothing else is known.
+    /// Quadrature, for want of a closed form.
     Quadrature,
     /// As the motion of a linear equation.
     Linear,
@@ -394,7 +394,7 @@ pub struct CornerSide {
 pub enum Position {
     /// In closed form.
     Exact(Expr),
-    /// By its number.
+    /// A numerical value.
     Number(f64),
     /// In closed form, where its value depends on parameters.
     WhereReal(Expr),
@@ -422,7 +422,7 @@ pub struct CrossWell {
 pub enum CrossWellEnd {
     /// Nowhere.
     Never,
-    /// At this amplitude.
+    /// The end at this amplitude.
     At(Position),
     /// Somewhere, as values of letters decide.
     Somewhere,

@@ -150,7 +150,7 @@ impl PolarRates {
     /// The motion without a part of its own, where no force drives it, or dry friction drains more
     /// than a force feeds: about it `B' = lambda B + mu B*`.
     fn rest(&self) -> Option<SteadyState> {
-        /// Near enough, and not so near that rounding counts.
+        /// An amplitude near zero at which rounding does not count yet.
         const NEAR: f64 = 1e-7;
         let size = |waves: &WaveCoefficients| waves.rate[1].hypot(waves.rate[2]);
         let [near, far] = [NEAR, 100.0 * NEAR].map(|amplitude| self.waves(amplitude));

@@ -90,7 +90,7 @@ pub struct SteadyState {
 pub struct SteadyMotions {
     /// The steady motions of the equation.
     pub states: Vec<SteadyState>,
-    /// Those that only the truncation of the slow equations makes.
+    /// The steady motions that only the truncation of the slow equations makes.
     pub spurious: Vec<SteadyState>,
 }
 

@@ -18,7 +18,7 @@ use crate::symbol::Symbol;
 
 /// Slow equations by their orders, with numbers.
 pub(super) struct Orders {
-    /// Of each part of the slow equations the rates that each of its orders adds.
+    /// The rates of each order of each part of the slow equations.
     parts: Vec<Vec<[PlanePolynomial; 2]>>,
     /// The angular frequency of the motion.
     frequency: f64,

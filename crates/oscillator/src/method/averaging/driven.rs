@@ -311,7 +311,7 @@ impl<'a> ResonantEquation<'a> {
         }
     }
 
-    /// Over `2 omega0`.
+    /// Divides an expression by `2 omega0`.
     fn over_twice_omega0(&self, expression: &Expr) -> Result<Expr, ExprError> {
         Expr::divide(expression, &(Expr::from(2) * &self.projected.omega0))?.expand()
     }

@@ -156,7 +156,7 @@ struct Shape {
 }
 
 impl Shape {
-    /// Of the force `sgn(x) |x|^n`.
+    /// The constants of the force `sgn(x) |x|^n`.
     fn new(restoring: &PurePower, oscillator: &Oscillator, parts: &Parts) -> Option<Self> {
         /// The highest harmonic, and the least that is written.
         const MOST: usize = 15;

@@ -118,7 +118,7 @@ impl SmallTerms {
     /// The force as a polynomial in powers of `delta`.
     ///
     /// # Errors
-    /// It is none, or nothing restores.
+    /// The force is not a polynomial, or there is no restoring force.
     pub(super) fn expand(&self, order: u32) -> Result<PerturbedForce, OscillatorError> {
         self.marked.expand(SmallParameter::Parameter(self.delta), order)
     }
@@ -126,7 +126,7 @@ impl SmallTerms {
     /// The linear restoring force alone.
     ///
     /// # Errors
-    /// Nothing restores.
+    /// There is no restoring force.
     pub(super) fn linear_part(&self) -> Result<PerturbedForce, OscillatorError> {
         let mut alone = self.marked.clone();
         alone.force = self.linear.clone();
@@ -147,7 +147,7 @@ impl SmallTerms {
     /// All small terms.
     ///
     /// # Errors
-    /// They would be too long.
+    /// The terms would be too long.
     pub(super) fn without_linear(&self) -> Result<Expr, ExprError> {
         let whole = self.marked.force.substitute(self.delta, &Expr::one())?;
         (&whole - &self.linear).expand()

@@ -306,7 +306,8 @@ pub(super) struct DrivenProblem<'a> {
     definitions: Vec<Definition>,
     pub(super) names: ExpansionSymbols,
     pub(super) sigma: Symbol,
-    /// By the multiple of a drive far from resonance `Lambda` of its cosine, and of its sine.
+    /// The symbols `Lambda` of the cosine and of the sine of each drive far from resonance, by its
+    /// multiple.
     lambda: BTreeMap<u32, [Symbol; 2]>,
     pub(super) taken: Vec<Symbol>,
 }

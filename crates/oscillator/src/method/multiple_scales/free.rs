@@ -97,7 +97,7 @@ struct Free<'a> {
 }
 
 impl Free<'_> {
-    /// Up to the order of the answer.
+    /// Truncates a polynomial after the order of the answer.
     fn cut(&self, polynomial: &Polynomial) -> Polynomial {
         polynomial.truncated(self.names.marker, self.scaling.order as i32)
     }
@@ -145,8 +145,8 @@ impl Free<'_> {
         Expr::from(&self.written(&rate.truncated(self.names.marker, lowest)))
     }
 
-    /// Puts the motion on the limit cycle that was chosen; the motion in the amplitude is kept
-    /// beside it.
+    /// Restricts the motion to the chosen limit cycle; the motion in the amplitude is kept beside
+    /// it.
     fn place_on_cycle(
         &self,
         cycles: &Cycles,

@@ -327,7 +327,7 @@ fn remove(number: &mut Integer, prime: u64, most: u64) -> u64 {
 /// The growth of denominators with the order, beside a factor `c^n`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Growth {
-    /// Not at all.
+    /// No growth beside that factor.
     Power,
     /// As `(2n+1)!`.
     Factorial,
@@ -338,7 +338,7 @@ pub(super) enum Growth {
 }
 
 impl Growth {
-    /// From the one with the shortest numbers on.
+    /// All kinds, that with the shortest numbers first.
     pub const ALL: [Self; 4] =
         [Self::Power, Self::Factorial, Self::Multiples, Self::FactorialMultiples];
 

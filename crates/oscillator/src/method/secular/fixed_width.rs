@@ -27,19 +27,19 @@ pub(super) struct FixedWidthOrder {
 /// The first orders of an expansion in integers of fixed width.
 #[derive(Default)]
 pub(super) struct FirstOrders {
-    /// From order zero on; fewer than asked for where a number does not fit.
+    /// The orders from zero on; fewer than asked for if a number does not fit.
     pub orders: Vec<FixedWidthOrder>,
     /// The derivative of the secular sine in the amplitude, where that is determined.
     pub slope: Option<ShortSeries>,
 }
 
-/// Beyond, two words are too short for anything that is known.
+/// Order beyond which two words are too short.
 const LONG: usize = 28;
 
 /// The orders up to the highest of the plan, or as many as fit; of a long expansion no more than
 /// show how it goes on.
 pub(super) fn beginning(plan: &Plan, interrupt: Interrupt) -> FirstOrders {
-    /// So many orders are enough of a long one.
+    /// Number of orders that are computed of a long expansion.
     const ENOUGH: usize = 16;
     let last = if plan.highest > LONG { ENOUGH } else { plan.highest };
     let mut beginning = FirstOrders::default();

@@ -140,7 +140,7 @@ pub enum SecularError {
         /// The divisor and the ring.
         indivisible: NotInvertible,
     },
-    /// Far more algebra than anyone waits for.
+    /// The expansion would take far too long.
     #[error(
         "the power {degree} in the equation gives {harmonics} harmonics at this order, with coefficients of hundreds of digits"
     )]
@@ -331,7 +331,7 @@ pub(crate) fn expand_polynomials_supervised(
     extent: ExpansionScope,
     supervision: Supervision,
 ) -> Result<SecularExpansion<Polynomials<Integers>>, SecularError> {
-    /// Below, there are few products.
+    /// Number of terms below which there are few products.
     const MANY: usize = 2;
     bounded(force.iter().map(|term| (term.order, term.position + term.velocity)), highest)?;
     if highest >= MANY

@@ -85,7 +85,7 @@ pub(super) struct ResidueField<A> {
 }
 
 impl<A: Arithmetic> ResidueField<A> {
-    /// For up to eight primes; `None` where a divisor is a multiple of one of them.
+    /// Prepares up to eight primes; `None` if a divisor is a multiple of one of them.
     pub fn new(arithmetic: A, plan: &Plan, moduli: &[Modulus]) -> Option<Self> {
         arithmetic.vectorize(Prepare(arithmetic, plan, moduli))
     }
@@ -178,7 +178,7 @@ impl Factors {
         Some(Self { solution, detuning, rising, falling })
     }
 
-    /// For the derivative of a sum of these waves.
+    /// The factors of the derivative of a sum of these waves.
     fn derivative(&self, of: Wave) -> &[Lanes] {
         match of {
             Wave::Cosine => &self.falling,
@@ -189,9 +189,9 @@ impl Factors {
 
 /// Derivatives of all quantities by the amplitude of `y_0`, for limit cycles.
 struct Variation {
-    /// Of each table, its values.
+    /// The values of each table.
     tables: Vec<Vec<Lanes>>,
-    /// Of the right side without the terms with one velocity, and of those.
+    /// The right side without the terms with one velocity, and those terms.
     plain: Vec<Lanes>,
     damped: Vec<Lanes>,
     /// `1/J`.
@@ -389,7 +389,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         Some(())
     }
 
-    /// From the right side of an order its solution, in the same place, and the frequency.
+    /// Replaces the right side of an order by its solution, and computes the frequency.
     #[inline(always)]
     fn solve_order(&mut self, field: &ResidueField<A>, order: usize) -> Option<()> {
         let (residues, resonant) = (&field.residues, self.plan.resonant());

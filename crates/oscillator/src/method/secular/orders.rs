@@ -13,7 +13,7 @@ use crate::series::waves::Wave;
 
 /// One order of the result.
 pub(super) struct ExpansionOrder {
-    /// Of all coefficients of the motion, which have no factor in common with it.
+    /// The common denominator of all coefficients of the motion, in lowest terms.
     pub denominator: Integer,
     pub displacement: Vec<Integer>,
     /// The coefficient of `cos tau`; asked for of limit cycles alone.
@@ -23,7 +23,7 @@ pub(super) struct ExpansionOrder {
 }
 
 impl ExpansionOrder {
-    /// From numbers of a fixed width.
+    /// Converts an order from numbers of fixed width.
     pub fn of_short(plan: &Plan, order: &fixed_width::FixedWidthOrder) -> Self {
         let constant = |series: &ShortSeries| {
             Rational::new_raw(series.numerator(0).into(), series.denominator().into())

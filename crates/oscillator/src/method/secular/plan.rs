@@ -129,7 +129,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// By steps of two, so that neighbouring powers share their work.
+    /// The power by steps of two, so that neighbouring powers share their products.
     fn power(&mut self, base: usize, exponent: u32, needed: usize) -> usize {
         if exponent <= 1 {
             return base;
@@ -287,7 +287,7 @@ impl<'m> HarmonicTable<'m> {
         (plan.last + 1).saturating_sub(plan.first(index, parity)).div_ceil(plan.step())
     }
 
-    /// So many harmonics, in that much [room](Self::room).
+    /// A table of this many harmonics, in memory of [this size](Self::room).
     pub fn new(plan: &Plan, count: usize, entries: &'m mut [Lanes]) -> Self {
         let mut end = 0;
         let mut rows = |parity: usize| -> Vec<OrderRange> {

@@ -54,7 +54,7 @@ pub fn expand(
     extent: ExpansionScope,
     supervision: Supervision,
 ) -> Option<SecularExpansion<Integers>> {
-    /// Below, whole numbers are short enough.
+    /// Order below which integers are short enough.
     const LONG: usize = 8;
     let equation = SecularEquation::new(force, highest, *scheme, extent);
     let plan = equation.plan(highest)?;
@@ -91,7 +91,7 @@ fn slope(
     Some(in_lowest_terms(&numerator, denominator))
 }
 
-/// Up to this order one thread is done before others have begun.
+/// Order up to which one thread is done before others have begun.
 const ALONE: usize = 40;
 
 /// The order to which long expansions are first derived to see how their denominators grow.
@@ -149,7 +149,7 @@ impl Work for ExpandByPrimes<'_> {
     type Output = Option<SecularExpansion<Integers>>;
 
     fn run<A: Arithmetic>(self, arithmetic: A) -> Self::Output {
-        /// So many show how denominators grow.
+        /// Number of orders that show the growth of denominators.
         const SOME: usize = 8;
         let Self { equation, plan, slope, orders: short, supervision } = self;
         let extent = equation.extent;
@@ -513,7 +513,7 @@ impl FirstGuesses {
         [&self.motion, &self.frequency].into_iter().all(fits)
     }
 
-    /// From the orders of a shorter expansion.
+    /// Guesses from the orders of a shorter expansion.
     fn from_orders(orders: &[ExpansionOrder]) -> Option<Self> {
         let mut beginning = Self::default();
         for order in orders {
@@ -563,7 +563,7 @@ impl Guess {
         self.decay = if order >= Self::ENOUGH { (slope + 1.0).min(0.0) } else { 0.0 };
     }
 
-    /// Below so many orders nothing is said of shrinking.
+    /// Least number of orders from which a decrease is inferred.
     const ENOUGH: usize = 8;
 
     /// The binary digits before the point of the largest number of an order, at most; negative
@@ -675,7 +675,7 @@ impl<'a, A: Arithmetic> LiftOrders<'a, A> {
         })
     }
 
-    /// From what the last order needed, where that divides.
+    /// The weighted denominator, from that of the last order if it divides this one.
     fn weighted_denominator(
         &self,
         denominator: &Factored,
@@ -740,7 +740,7 @@ impl<'a, A: Arithmetic> LiftOrders<'a, A> {
 /// A denominator, as the way back needs it.
 struct WeightedDenominator {
     denominator: Factored,
-    /// By which residues are multiplied.
+    /// The factors of the residues.
     weights: Vec<u64>,
     /// Its residue modulo the prime that tests.
     in_test: u64,

@@ -33,7 +33,7 @@ pub(super) struct Sine {
 }
 
 impl Sine {
-    /// From the table `first` on; how many there are is [`Self::TABLES`].
+    /// Tables from `first` on; their number is [`Self::TABLES`].
     pub fn new(first: usize, last: usize) -> Self {
         let product = |left, to| Product { left, right: first, to, needed: last };
         Self {
@@ -54,7 +54,7 @@ pub(super) fn split(
     mut terms: Vec<PlannedTerm>,
     highest: usize,
 ) -> (Option<Rational>, Vec<PlannedTerm>) {
-    /// Below, powers are as fast.
+    /// Number of terms below which powers are as fast.
     const LONG: usize = 6;
     let enough = (LONG..=terms.len()).contains(&highest);
     let rate = if enough { rate(&terms, highest) } else { None };

@@ -40,7 +40,7 @@ use crate::series::waves::Wave;
 
 type Symbols = Polynomials<Integers>;
 
-/// Up to so many points times orders one thread is done before others have begun.
+/// Number of points times orders up to which one thread is done before others have begun.
 const ALONE: usize = 200;
 
 /// The expansion, to the order that it has reached where it is stopped; `None` where the equation
@@ -150,7 +150,7 @@ struct LowerSet {
     points: Vec<Vec<usize>>,
     /// Number of points of each order.
     counts: Vec<usize>,
-    /// For each group the places of all points along a line in its direction, from exponent zero
+    /// The indices of all points along each line in the direction of a group, from exponent zero
     /// on.
     lines: Vec<Vec<Vec<usize>>>,
 }
@@ -204,8 +204,8 @@ impl LowerSet {
         Some(Self { points, counts, lines })
     }
 
-    /// From values at the points of an order, `numbers` side by side at each, to coefficients, in
-    /// place. `inverses` are those of `1, 2, ...`.
+    /// Interpolation from values at the points of an order, `numbers` side by side at each, to
+    /// coefficients, in place. `inverses` are those of `1, 2, ...`.
     fn interpolate(
         &self,
         modulus: &Modulus,
@@ -352,7 +352,7 @@ impl<A: Arithmetic> PrimeSearch<'_, A> {
     fn values_at_points(&self, modulus: Modulus) -> Option<Vec<Vec<u64>>> {
         let points = &self.lower_set.points;
         if points.len() * self.plan.highest > ALONE {
-            /// So many lots for each thread let none of them wait for long.
+            /// Number of lots for each thread, so that none of them waits for long.
             const LOTS: usize = 4;
             let length = points.len().div_ceil(LOTS * threads()).next_multiple_of(WIDTH);
             let lots: Vec<_> = points.chunks(length).collect();

@@ -51,8 +51,8 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// By the actions of a swing of this amplitude, rad, about the bottom between the barriers of
-    /// the model; nothing where the formula says nothing.
+    /// The prediction by the actions of a swing of this amplitude, rad, about the bottom between
+    /// the barriers of the model; `None` if the formula does not apply.
     fn from_actions(model: &Model, amplitude: f64) -> Option<Self> {
         let caged = model.is_caged(0.0, REST_FRACTION * amplitude);
         if model.zeta == 0.0 || model.alpha != 0.0 || amplitude >= PI || caged {
@@ -68,7 +68,7 @@ impl Geometry {
     }
 }
 
-/// So many times the duration of the run are the others followed for: they rest later.
+/// Duration of the comparison runs in durations of the run: they rest later.
 pub const BASELINE_DURATIONS: f64 = 4.0;
 
 /// The rest times beside that of this motion; `None` where there is nothing to compare: no impact,

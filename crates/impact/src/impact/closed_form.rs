@@ -238,9 +238,9 @@ pub(super) fn paper(
 pub struct ImpactQuantity {
     /// Its name.
     pub name: &'static str,
-    /// By Runge-Kutta.
+    /// The value by Runge-Kutta.
     pub runge_kutta: f64,
-    /// By each column, in their order.
+    /// The values by the columns, in their order.
     pub closed_forms: Vec<f64>,
 }
 

@@ -105,7 +105,7 @@ pub enum CollisionError {
         /// The motion that follows, in words.
         what: &'static str,
     },
-    /// At the release, or on the way, the force does not drive the pendulum towards the barrier.
+    /// The force does not drive the pendulum towards the barrier, at the release or on the way.
     #[error(
         "released at rest at x = {release}, the pendulum does not swing to the barrier: the force turns it back at \
          x = {at}; the amplitude must stay inside the well (below pi for sin x)"

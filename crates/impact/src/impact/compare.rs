@@ -38,7 +38,7 @@ pub struct ImpactComparison {
     pub truth: TrueImpact,
 }
 
-/// Who derives the three phases.
+/// The source of the three phases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImpactMethod {
     /// A reading of the paper.

@@ -200,7 +200,7 @@ const SERIES: f64 = 1e-6;
 /// The contact of the derived phases.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DerivedContact {
-    /// By a law under which nothing is lost.
+    /// A contact without losses.
     Elastic(Box<ContactMotion>),
     /// With damping, the force of the swing left out of it.
     Damped(Box<HuntCrossley>),

@@ -110,7 +110,7 @@ pub enum ImpactError {
     /// The method refuses.
     #[error(transparent)]
     Refusal(#[from] Refusal),
-    /// It has no motion at these numbers.
+    /// The answer has no motion at these numbers.
     #[error(transparent)]
     Motion(#[from] NoMotion),
     /// A value that is none.
@@ -122,7 +122,7 @@ pub enum ImpactError {
     /// No amplitude of the law belongs to the release.
     #[error("no amplitude of the law turns round at the release")]
     NoAmplitude,
-    /// No amplitude of the law belongs to the way back.
+    /// No amplitude of the law belongs to the return.
     #[error("no amplitude of the law leaves the barrier with the speed {0}")]
     WayBack(f64),
     /// The derived motion does not touch the barrier.
@@ -144,13 +144,13 @@ pub enum ImpactError {
         /// The position at which it should start.
         release: f64,
     },
-    /// Nothing hits the barrier.
+    /// The pendulum does not hit the barrier.
     #[error(transparent)]
     Collision(#[from] CollisionError),
     /// The true motion could not be followed.
     #[error(transparent)]
     Truth(#[from] TrueImpactError),
-    /// No reading applies.
+    /// None of the versions applies.
     #[error("no closed form: the paper's reading does not apply, {paper}; {}", attempts(.tried))]
     NoReading {
         /// Why not the paper's.

@@ -99,7 +99,7 @@ pub struct MaterialQuestion {
     pub sphere_yield: Option<f64>,
     /// Duration and accuracy of the motions.
     pub settings: Settings,
-    /// By which method they are followed; the picture shows them by the same.
+    /// The method that follows them; pictures use the same one.
     pub integrator: Integrator,
     /// The dampings that nobody gave, which are then the defaults.
     pub defaults: Vec<Parameter>,
@@ -127,7 +127,7 @@ impl Default for MaterialQuestion {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MaterialsError {
-    /// No material.
+    /// There is no material.
     #[error("there is no material: give one as [[material]] with a name and a modulus")]
     NoMaterial,
     /// The design.

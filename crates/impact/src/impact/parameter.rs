@@ -192,7 +192,7 @@ impl UnknownParameter {
 impl FromStr for Parameter {
     type Err = UnknownParameter;
 
-    /// By its name alone: `zeta`.
+    /// Parses the name alone: `zeta`.
     fn from_str(name: &str) -> Result<Self, UnknownParameter> {
         let known = Self::ALL.into_iter().find(|parameter| parameter.name() == name);
         known.ok_or_else(|| UnknownParameter {

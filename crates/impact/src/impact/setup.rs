@@ -62,7 +62,8 @@ pub struct Setup {
     /// The whole force of the barrier as an expression in the depth `d` and in parameters, `gamma`
     /// among them; without it that of Hertz, `gamma*d^(3/2)`.
     pub force: Option<Expr>,
-    /// Who derives the swing of the derived column; without it the first of a few that passes.
+    /// The method that derives the swing of the derived column; if `None`, the first of a few that
+    /// passes.
     pub method: Option<Method>,
     /// Order of the law; without it 2 for the paper's reading, and for the derived column the
     /// lowest that passes.

@@ -18,7 +18,7 @@ pub struct SiImpact {
     pub units: Units,
     /// The stiffness k of the contact, N/m^(3/2).
     pub contact_stiffness: f64,
-    /// From the release to the touch, s.
+    /// Time from the release to the touch, s.
     pub time_to_contact: ImpactQuantity,
     /// The speed at the touch, m/s.
     pub speed: ImpactQuantity,
@@ -26,9 +26,9 @@ pub struct SiImpact {
     pub energy: ImpactQuantity,
     /// The greatest depth, m.
     pub penetration: ImpactQuantity,
-    /// From the touch to the release from the barrier, s.
+    /// Duration of the contact, s.
     pub duration: ImpactQuantity,
-    /// From release to release, s.
+    /// Period from release to release, s.
     pub period: ImpactQuantity,
     /// The greatest force of the contact, its damping included, N; without damping that at the
     /// greatest depth.

@@ -194,7 +194,7 @@ pub fn sweep(
     Ok(summaries)
 }
 
-/// From motions to what came of each: by Taylor series several in one instruction stream.
+/// Summarises motions: by Taylor series several in one instruction stream.
 fn summaries(
     motions: &[(Model, Start)],
     integrator: Integrator,

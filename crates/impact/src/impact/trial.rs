@@ -74,7 +74,7 @@ fn highest_order(method: Method) -> u32 {
     }
 }
 
-/// So many orders in a row that are no closer end the search.
+/// Number of consecutive orders without progress that end the search.
 const PATIENCE: usize = 4;
 
 impl Trial<'_> {

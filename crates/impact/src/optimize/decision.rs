@@ -31,9 +31,9 @@ pub const WITHIN: f64 = 0.01;
 pub enum VariableRole {
     /// Its whole range is as good.
     Flat,
-    /// It lies at its lower limit.
+    /// The variable lies at its lower limit.
     Lower,
-    /// It lies at its upper limit.
+    /// The variable lies at its upper limit.
     Upper,
     /// A constraint stops it.
     Limit,
@@ -346,7 +346,7 @@ impl Probe<'_> {
         }
     }
 
-    /// By motions that are integrated, one-sided at a limit.
+    /// The elasticity by integrated motions, one-sided at a limit.
     fn elasticity(&self, best: &[f64], index: usize) -> Option<f64> {
         const STEP: f64 = 0.01;
         let variable = self.question.variables[index];

@@ -15,9 +15,9 @@ use crate::impact::{
 /// The way in which a design is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Route {
-    /// By closed forms, and by integration where there are none.
+    /// Closed forms, and integration if there are none.
     Chain,
-    /// By integration.
+    /// Integration.
     Integration,
 }
 

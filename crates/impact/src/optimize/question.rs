@@ -115,13 +115,13 @@ pub enum OptimizeError {
     /// Limits that leave nothing.
     #[error("[limits] {0}")]
     Limits(String),
-    /// Nothing to be small.
+    /// There is no objective.
     #[error("[genetic] objective names nothing that is to be small: choose one or more of {}", Objective::ALL.map(Objective::name).join(", "))]
     NoObjective,
     /// An objective that is named twice.
     #[error("[genetic] objective names `{0}` twice")]
     SameObjective(&'static str),
-    /// No run.
+    /// There is no run.
     #[error("[genetic] runs = {0}: a study needs 1 run or more, {MOST_RUNS} at most")]
     Runs(usize),
     /// Options that make no population.
@@ -135,7 +135,7 @@ pub enum OptimizeError {
     /// A design in the middle of the box that makes no motion.
     #[error("{0}")]
     Motion(String),
-    /// No design that rests.
+    /// No design comes to rest.
     #[error(
         "no design in this box comes to rest in the time allowed, {duration} units of 1/omega: {reason}"
     )]
@@ -145,7 +145,7 @@ pub enum OptimizeError {
         /// The reason at the design in the middle of the box.
         reason: String,
     },
-    /// No design that keeps the constraints.
+    /// No design keeps the constraints.
     #[error(
         "no design was found in this box that comes to rest in the time allowed and keeps {constraints}: {nearest}"
     )]

@@ -54,7 +54,7 @@ pub struct SearchRun {
     pub stop: GeneticStop,
 }
 
-/// Who looks on at a study; nobody by default.
+/// The observer of a study; by default there is none.
 pub struct StudyObserver<'a> {
     /// Whether to stop.
     pub stop: &'a (dyn Fn() -> bool + Sync),
@@ -86,7 +86,7 @@ pub struct FiveNumberSummary {
 }
 
 impl FiveNumberSummary {
-    /// Of these values; nothing where there is none. Quartiles lie between values in proportion.
+    /// The summary of these values; `None` if there are none. Quartiles are interpolated.
     pub fn from_values(values: &[f64]) -> Option<Self> {
         let mut values = values.to_vec();
         values.sort_by(f64::total_cmp);
@@ -508,7 +508,8 @@ fn distinct<'a>(
     kept
 }
 
-/// Whom nobody dominates among the fronts of all runs; the loneliest where they are too many.
+/// The designs that are not dominated among the fronts of all runs; the most isolated ones if they
+/// are too many.
 fn merged_front<'a>(found: &[(usize, &'a Found)], most: usize) -> Vec<(usize, &'a Found)> {
     let evaluation =
         |found: &Found| Evaluation { objectives: found.values.clone(), ..Evaluation::default() };

@@ -48,23 +48,23 @@ pub enum ChainError {
         "the chain takes dry friction by Coulomb's law: write friction = \"exact\", or leave out --chain"
     )]
     Arctangent,
-    /// Nothing that swings.
+    /// The damping is too strong for a slowly decaying swing.
     #[error(
         "zeta = {0} is too much for a swing that decays slowly: below {MOST_DAMPING} the chain holds, leave out --chain"
     )]
     Overdamped(f64),
-    /// Over the top.
+    /// The pendulum turns over the top.
     #[error(
         "the pendulum turns over with an energy of {} m g L: the chain is for swings, below 2 m g L; leave out --chain",
         decimal(*.0)
     )]
     TurnsOver(f64),
-    /// At the upright position or beyond it.
+    /// The motion starts at the upright position or beyond it.
     #[error(
         "the motion starts at x = {0}, not below the upright position: the chain begins with a swing, leave out --chain"
     )]
     Upright(f64),
-    /// In the barrier.
+    /// The motion starts inside a barrier.
     #[error("the motion starts inside the {} barrier: the chain begins with a swing, leave out --chain", .0.name())]
     Inside(Side),
 }
@@ -140,10 +140,10 @@ pub fn chain(model: &Model, start: Start, settings: &Settings) -> Result<Simulat
 /// The state at the start of the next stretch.
 #[derive(Debug, Clone, Copy)]
 enum StretchStart {
-    /// At rest on this side at this spot; the swing and how far it reaches to the barrier ahead,
-    /// where they are known.
+    /// Rest on this side at this angle; the swing and its stretch to the barrier ahead, if they are
+    /// known.
     Turn(Side, SwingAngle, Option<(UndampedSwing, Stretch)>),
-    /// At this spot, counted towards this side, with this energy, on the way there.
+    /// Passage of this angle, counted towards this side, with this energy.
     Leaving(Side, SwingAngle, f64),
 }
 
@@ -345,7 +345,7 @@ impl<'a> Chain<'a> {
         (shift * cosine).atan2(1.0 + direction * shift * sine)
     }
 
-    /// From a turning point to the barrier ahead, or to the next turning point.
+    /// Continues from a turning point to the barrier ahead, or to the next turning point.
     fn after_turn(
         &mut self,
         side: Side,
@@ -376,7 +376,7 @@ impl<'a> Chain<'a> {
         self.free(side, turn)
     }
 
-    /// From one turning point to the next, or the next two, where no barrier is in reach.
+    /// Continues from one turning point to the next, or the next two, if no barrier is in reach.
     fn free(&mut self, side: Side, from: SwingAngle) -> Option<StretchStart> {
         let out_of_reach =
             |barrier: &ChainBarrier| barrier.spot.x > 0.0 && barrier.spot.energy >= from.energy;
@@ -450,7 +450,7 @@ impl<'a> Chain<'a> {
         self.from_turning_point(to, turn, None)
     }
 
-    /// From a spot on the way to a side: to the barrier there, or to the turning point.
+    /// Continues from an angle on the way to a side: to the barrier there, or to the turning point.
     fn after_leaving(&mut self, to: Side, spot: SwingAngle, energy: f64) -> Option<StretchStart> {
         let ahead = self.barrier(to);
         if let Some(ahead) = ahead
@@ -583,7 +583,7 @@ impl<'a> Chain<'a> {
         self.t = end;
     }
 
-    /// At rest to the end.
+    /// Ends the motion at rest.
     fn hold_at_rest(&mut self, x: f64) {
         let end = self.settings.duration;
         if self.settings.keep_path && end > self.t {
@@ -645,7 +645,7 @@ impl<'a> Chain<'a> {
     }
 }
 
-/// Not zero, not negative, and a number.
+/// Whether a number is positive and not NaN.
 fn is_positive(value: f64) -> bool {
     value > 0.0
 }

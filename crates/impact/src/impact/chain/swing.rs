@@ -93,8 +93,8 @@ impl UndampedSwing {
         Self { energy, quarter: Stretch { time, area } }
     }
 
-    /// From the bottom to this spot, on the way to the right; beyond the turning point as far as
-    /// that.
+    /// The stretch from the bottom to this angle, on the way to the right; at most to the turning
+    /// point.
     pub fn stretch_to(&self, spot: &SwingAngle) -> Stretch {
         let (sine, cosine) = spot.phase(self.energy);
         if cosine == 0.0 {
@@ -155,7 +155,8 @@ const SMALL: f64 = 1e-3;
 /// of 0.03 from their mean leaves an error of 1e-9.
 const CLOSE: f64 = 0.015;
 
-/// Far more than any argument needs: 4^-40 is below the resolution of a double.
+/// Largest number of duplications, more than any argument needs: 4^-40 is below the resolution of a
+/// double.
 const MOST_DUPLICATIONS: usize = 40;
 
 #[cfg(test)]

@@ -230,7 +230,7 @@ impl HuntCrossley {
 
 /// The coefficient of restitution e, by the product lambda v of damping and speed of touch.
 ///
-/// For small lambda v it is 1 - (2/3) lambda v: below lambda v = 0.15 to 1 %.
+/// For small lambda v the restitution is 1 - (2/3) lambda v: within 1 % below lambda v = 0.15.
 ///
 /// # Errors
 /// [`ContactError::Negative`] for a product that is no number or negative.
@@ -279,7 +279,7 @@ pub fn damping_for(restitution: f64) -> Result<f64, ContactError> {
     }
 }
 
-/// Beyond it the squares of lambda v are no numbers.
+/// The argument beyond which the square of lambda v overflows.
 const LARGEST: f64 = 1e150;
 
 /// psi(z) = 2 (z - ln(1 + z))/z^2 - 1 = -(2/3) z + (1/2) z^2 - (2/5) z^3 + .., for z > -1.
@@ -472,7 +472,7 @@ mod tests {
         )
     }
 
-    /// From a loss of a thousandth to one of 95 %.
+    /// Restitutions from a loss of a thousandth to one of 95 %.
     const RESTITUTIONS: [f64; 8] = [0.999, 0.99, 0.9, 0.7, 0.5, 0.3, 0.1, 0.05];
 
     #[test]

@@ -234,7 +234,7 @@ impl Touch<'_> {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct ContactMotion {
-    /// By which.
+    /// The law.
     pub law: ContactLaw,
     /// The greatest depth D, in the unit of x.
     pub depth: f64,
@@ -377,11 +377,11 @@ impl ContactMotion {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ContactErrors {
-    /// Of the duration, relative, signed.
+    /// Relative error of the duration, with its sign.
     pub duration: f64,
-    /// Of the greatest depth, relative, signed.
+    /// Relative error of the greatest depth, with its sign.
     pub depth: f64,
-    /// Of the greatest force, relative, signed.
+    /// Relative error of the greatest force, with its sign.
     pub peak_force: f64,
     /// The largest difference of depth at the same time since touch, relative to the greatest
     /// depth.

@@ -138,7 +138,7 @@ pub enum ContactError {
         "no oscillation of this form begins with that speed: what acts beside the contact is too strong; take the exact contact"
     )]
     NotOscillating,
-    /// No line for the force.
+    /// The force has no line.
     #[error(transparent)]
     Linearisation(#[from] LinearisationError),
     /// An integral over the force failed.

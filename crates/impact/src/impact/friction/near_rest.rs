@@ -87,9 +87,9 @@ impl Creep {
 /// Rest times of the default pendulum at its barrier, with friction alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RestTimes {
-    /// By Coulomb's law.
+    /// The rest time by Coulomb's law.
     pub coulomb: Result<f64, NoRest>,
-    /// By the arctangent.
+    /// The rest time by the arctangent.
     pub arctangent: Result<f64, NoRest>,
 }
 
@@ -303,7 +303,7 @@ struct WithoutInertia {
 }
 
 impl WithoutInertia {
-    /// From rest at a place where friction holds, |sin x| <= alpha.
+    /// Follows the creep from rest at a position at which friction holds, |sin x| <= alpha.
     fn from_rest(alpha: f64, x: f64, duration: f64) -> Result<Self, FrictionError> {
         const TOLERANCE: f64 = 1e-10;
         let rate = 0.5 * PI / (STEEPNESS * alpha);

@@ -68,7 +68,7 @@ pub struct Deviation {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum TrueImpactError {
-    /// Nothing hits the barrier.
+    /// The pendulum does not hit the barrier.
     #[error(transparent)]
     Collision(#[from] CollisionError),
     /// The run gave up.

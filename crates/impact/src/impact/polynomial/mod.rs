@@ -18,7 +18,7 @@ pub(super) mod lanes;
 use crate::numeric::ode::root::find_root;
 use lanes::{changes_of_sign, crossings, values, values_and_slopes, variations};
 
-/// At most [`Roots::LIMIT`] places in rising order, without allocation; a step of a Taylor series
+/// At most [`Roots::LIMIT`] roots in ascending order, without allocation; a step of a Taylor series
 /// never has more.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Roots {

@@ -207,7 +207,8 @@ impl PrimaryEquations {
         self.followed(&["x", "x'", "y", "y'"], "t", &right, &[])
     }
 
-    /// In the barrier of a side, at its place, in s; it pushes as Hertz and Hunt and Crossley say.
+    /// The system in the barrier of a side, at its position, in s; the force is that of Hertz and
+    /// of Hunt and Crossley.
     pub(super) fn contact(
         &self,
         side: Side,

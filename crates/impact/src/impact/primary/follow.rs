@@ -91,7 +91,7 @@ pub fn simulate_primary(
     Ok(run.finish(stop))
 }
 
-/// So many phases without length in a row are one too many.
+/// Largest number of consecutive phases of length zero.
 const IDLE: usize = 8;
 
 /// The torque or the speed that rounding leaves of zero, in parts of the friction.
@@ -310,7 +310,7 @@ impl<'a> PrimaryRun<'a> {
         Ok(reason)
     }
 
-    /// At rest for a moment: on in the other direction, or held.
+    /// Decides at a moment of rest whether the pendulum turns back or is held.
     fn turn_back(&mut self, contact: f64) -> Result<(), PrimaryError> {
         self.state.velocity = 0.0;
         match self.direction(contact) {

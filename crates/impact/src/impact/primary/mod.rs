@@ -83,7 +83,7 @@ pub struct PrimarySettings {
     /// Whether it ends as soon as the main mass, not driven, can never again swing a tenth of its
     /// start.
     pub stop_at_rest: bool,
-    /// Who may ask it to end.
+    /// The interrupt.
     pub interrupt: Interrupt,
 }
 
@@ -154,10 +154,10 @@ pub struct PrimaryEnergy {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum PrimaryStop {
-    /// At the time asked for.
+    /// The end of the duration.
     #[error("at the end of the duration")]
     Duration,
-    /// At rest, where that was to be the end.
+    /// Rest, if that was to be the end.
     #[error("at rest")]
     AtRest,
     /// After as many phases as were allowed.
@@ -166,7 +166,7 @@ pub enum PrimaryStop {
     /// A step that could not be made.
     #[error("where no next step could be made")]
     Singular,
-    /// Somebody asked for it.
+    /// An interrupt.
     #[error("interrupted")]
     Interrupted,
 }
@@ -219,7 +219,7 @@ pub enum PrimaryError {
     /// A phase that cannot begin.
     #[error(transparent)]
     System(#[from] SystemError),
-    /// No time to follow it.
+    /// The duration is not positive.
     #[error("the duration must be a positive number, not {0}")]
     Duration(f64),
 }

@@ -118,7 +118,7 @@ impl PrimaryParameter {
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum UnknownPrimaryParameter {
-    /// No parameter has this name.
+    /// The name is not that of a parameter.
     #[error(
         "there is no parameter `{name}` of a main mass to sweep: choose one of {}",
         PrimaryParameter::all().map(PrimaryParameter::name).collect::<Vec<_>>().join(", ")

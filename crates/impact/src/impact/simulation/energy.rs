@@ -22,9 +22,9 @@ const MOST_PARTS: f64 = 1e4;
 /// Energies and works, in units of m g L.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EnergyBook {
-    /// At the start.
+    /// The energy at the start.
     pub start: f64,
-    /// At the end.
+    /// The energy at the end.
     pub end: f64,
     /// Work of viscous damping, never positive.
     pub viscous: f64,

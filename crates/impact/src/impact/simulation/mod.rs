@@ -29,7 +29,7 @@ use super::si::greatest;
 use crate::decimal::significant;
 use crate::interrupt::Interrupt;
 
-/// By which method a motion is followed.
+/// The integration method of a motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Integrator {
     /// Power series, the contact in its regularised variable: the fast one.
@@ -37,7 +37,7 @@ pub enum Integrator {
     Taylor,
     /// The library's Runge-Kutta in phases: the judge.
     RungeKutta,
-    /// Not integrated: swing and contact in closed form, one after the other.
+    /// A chain of closed forms: swing and contact, one after the other, without integration.
     Chain,
 }
 
@@ -65,7 +65,7 @@ pub struct Settings {
     pub maximum_steps: usize,
     /// Stop as soon as the energy (units of m g L) is no more than this.
     pub rest_energy: Option<f64>,
-    /// Who may ask the run to stop where it is.
+    /// The interrupt.
     pub interrupt: Interrupt,
     /// Stop as soon as the rest time is known, but for Runge-Kutta, which goes on to the end.
     pub stop_at_rest: bool,
@@ -92,7 +92,7 @@ impl Default for Settings {
 /// Why a run ended. Everything before is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SimulationStop {
-    /// At the end of the duration.
+    /// The end of the duration.
     Duration,
     /// The energy fell to [`Settings::rest_energy`].
     RestEnergy,
@@ -108,7 +108,7 @@ pub enum SimulationStop {
         /// The last time reached.
         t: f64,
     },
-    /// Somebody asked it to.
+    /// An interrupt.
     Interrupted {
         /// The last time reached.
         t: f64,
@@ -333,11 +333,11 @@ pub struct TurningPoint {
 pub struct Simulation {
     /// The model.
     pub model: Model,
-    /// From where.
+    /// The initial state.
     pub start: Start,
     /// The settings of the run.
     pub settings: Settings,
-    /// By which method.
+    /// The integration method.
     pub integrator: Integrator,
     /// The motion as a function of time; empty without [`Settings::keep_path`].
     pub path: SimulationPath,
@@ -384,7 +384,7 @@ pub struct MotionDifference {
     pub displacement: f64,
     /// The largest difference in x'.
     pub velocity: f64,
-    /// Until when they were compared.
+    /// The end of the comparison.
     pub until: f64,
 }
 

@@ -70,7 +70,7 @@ enum Representation {
         /// In contact: the barrier and the sign of its side.
         behind: Option<[f64; 2]>,
     },
-    /// Not moving.
+    /// A constant position.
     Constant { x: f64 },
     /// See the trajectory of Runge and Kutta; in contact it counts from the barrier.
     Judged { origin: f64, sign: f64 },
@@ -182,7 +182,7 @@ impl SimulationPath {
         self.push(span, regime, Representation::Closed(form));
     }
 
-    /// Goes on with another path of power series, whose clock begins at this time.
+    /// Appends another path of power series, whose clock begins at this time.
     pub(in crate::impact) fn extend(&mut self, other: &Self, from: f64) {
         let shift = self.pool.len();
         self.pool.extend_from_slice(&other.pool);

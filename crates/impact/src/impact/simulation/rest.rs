@@ -63,8 +63,8 @@ pub enum NoRest {
     /// The motion has not become small enough.
     #[error("the amplitude stays above 10 % of the first swing until the end of the run")]
     StaysAbove,
-    /// It has become small enough in the last swing, but when is not known before the next turning
-    /// point.
+    /// The motion has become small enough in the last swing, but the time is not known before the
+    /// next turning point.
     #[error("the run ends before the turning point that would show it: a longer duration will")]
     NotYetSeen,
     /// There is no amplitude to begin with.
@@ -82,7 +82,7 @@ pub enum NoRest {
 enum RestByTurningPoints {
     /// The envelope goes through the level between these two.
     Line { above: TurningPoint, below: TurningPoint },
-    /// It creeps from here on.
+    /// A creeping motion from here on.
     Fall(TurningPoint),
 }
 
@@ -326,9 +326,9 @@ fn swing_of(energy: f64) -> Option<f64> {
 /// Whether the motion may still be beyond the level where the straight line of log|x| between two
 /// turning points is at it: where it may not, nobody need know the fall.
 ///
-/// To the level the linear swing of amplitude a takes acos(level/a). Where a turning point is at
-/// least half as far out as the one before, a is twice the level at most: the swing of the pendulum
-/// is longer by a fortieth there, and what damps, viscous or dry, makes it longer by a fifth.
+/// The linear swing of amplitude a takes acos(level/a) to the level. If a turning point is at least
+/// half as far out as the one before, a is twice the level at most: the swing of the pendulum is
+/// longer by a fortieth there, and damping, viscous or dry, makes it longer by a fifth.
 fn may_be_late(above: TurningPoint, below: TurningPoint, level: f64) -> bool {
     let halves = 2.0 * below.x.abs() < above.x.abs();
     halves || between(above, below, level) - above.t < LONGEST_FALL * (level / above.x.abs()).acos()

@@ -19,9 +19,9 @@ use crate::spelling::nearest;
 /// The spacing of the values of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Spacing {
-    /// By equal steps.
+    /// Equal steps.
     Linear,
-    /// By equal ratios.
+    /// Equal ratios.
     Logarithmic,
     /// As they are listed.
     List,
@@ -109,7 +109,7 @@ fn suggestion(nearest: &Option<&str>) -> String {
 }
 
 impl Axis {
-    /// So many values by equal steps, both ends included.
+    /// An axis of `count` values with equal steps, both ends included.
     ///
     /// # Errors
     /// [`AxisError`], for ends that are not finite or one and the same, and for a count below 2 or
@@ -122,7 +122,7 @@ impl Axis {
         Self::range(name, Spacing::Linear, [from, to], count, |part| from + span * part)
     }
 
-    /// So many values by equal ratios, both ends included.
+    /// An axis of `count` values with equal ratios, both ends included.
     ///
     /// # Errors
     /// As [`Axis::linear`]; ends that are zero, or of different signs.

@@ -198,7 +198,7 @@ impl Runner {
         detach.filter(|detach| *detach < end)
     }
 
-    /// Goes on from the end of a step in contact, which has this w and velocity.
+    /// Continues from the end of a step in contact, which has this w and velocity.
     fn go_on(&mut self, step: &ContactStep, event: Option<StepEvent>) {
         let (w, velocity) = (self.place, self.velocity);
         if event != Some(StepEvent::Release) {
@@ -232,8 +232,8 @@ impl Runner {
         self.enter_contact(side, 0.0, speed);
     }
 
-    /// Goes over to the equation of the contact after free flight from rest on the barrier, which
-    /// has taken this time and ends at this depth and speed.
+    /// Changes to the equation of the contact after free flight from rest on the barrier, which has
+    /// taken this time and ends at this depth and speed.
     pub(super) fn begin_contact_from_rest(
         &mut self,
         side: Side,

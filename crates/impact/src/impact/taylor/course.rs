@@ -11,7 +11,7 @@ use crate::impact::polynomial::lanes::{changes_of_sign, crossings};
 /// A place on the way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct StepPoint {
-    /// In the variable of the series.
+    /// The variable of the series.
     pub(super) at: f64,
     /// x or w.
     pub(super) place: f64,
@@ -63,7 +63,7 @@ impl<const L: usize> Points<L> {
 }
 
 impl<const L: usize> Courses<L> {
-    /// Nothing happens in any of the steps.
+    /// No events in any of the steps.
     pub(super) fn new() -> Self {
         Self {
             plain: [true; L],

@@ -18,7 +18,7 @@ impl Runner {
         self.model.field(t, x) - contact
     }
 
-    /// At rest under Coulomb friction: which way it goes on, if at all.
+    /// Decides at rest under Coulomb friction in which direction the motion continues, if at all.
     pub(super) fn turn(&mut self) {
         let force = self.force_at_rest();
         if force.abs() <= self.model.alpha * (1.0 + 4.0 * f64::EPSILON) {

@@ -130,7 +130,7 @@ enum StepEvent {
     Touch(Side),
     /// Turned on the barrier and pushed in: at rest there, and the contact begins from rest.
     Settle(Side),
-    /// From rest on the barrier into it, far enough for the contact force to begin to count.
+    /// The onset of the contact force after a motion from rest on the barrier into it.
     Onset(Side),
     Release,
     /// The contact would begin to pull.
@@ -382,8 +382,8 @@ impl Runner {
         self.length
     }
 
-    /// Goes on with the series at the present moment: its values at the end of the step, and where
-    /// they do not say enough, its coefficients: x and v, or w, v and t.
+    /// Takes the next step of the series: from its values at the end of the step, and, if they do
+    /// not suffice, from its coefficients: x and v, or w, v and t.
     fn advance(
         &mut self,
         end: StepEndState,

@@ -156,7 +156,7 @@ pub(super) struct StepEndState {
     pub(super) time: f64,
     /// A bound on the change of the velocity within the step.
     pub(super) variation: f64,
-    /// Of x, in contact as seen in the mirror.
+    /// Sine and cosine of x, mirrored in contact.
     pub(super) sine: f64,
     pub(super) cosine: f64,
 }

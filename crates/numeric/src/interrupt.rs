@@ -3,7 +3,7 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Somebody who may ask to stop; nobody by default.
+/// A flag that asks a computation to stop; the default never does.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;
@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 pub struct Interrupt(Option<&'static AtomicBool>);
 
 impl Interrupt {
-    /// Asked for by setting this flag.
+    /// Takes the flag that asks for a stop.
     pub fn from_flag(flag: &'static AtomicBool) -> Self {
         Self(Some(flag))
     }
@@ -31,7 +31,7 @@ impl Interrupt {
     }
 }
 
-/// Somebody who sees how far long work has come; nobody by default.
+/// An observer of the progress of a computation; the default has none.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Progress(Option<&'static Counter>);
 
@@ -43,7 +43,7 @@ pub struct Counter {
 }
 
 impl Counter {
-    /// Nothing is known yet.
+    /// A counter without parts.
     pub const fn new() -> Self {
         Self { done: AtomicU64::new(0), all: AtomicU64::new(0) }
     }
@@ -55,7 +55,7 @@ impl Counter {
 }
 
 impl Progress {
-    /// Seen in this counter.
+    /// Takes the counter that shows the progress.
     pub fn from_counter(counter: &'static Counter) -> Self {
         Self(Some(counter))
     }
@@ -85,13 +85,13 @@ impl PartialEq for Progress {
     }
 }
 
-/// Who may stop long work, and who sees how far it has come; nobody by default.
+/// Interrupt and progress of a long computation; the default has neither.
 ///
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Supervision {
-    /// Who may stop it.
+    /// The interrupt.
     pub interrupt: Interrupt,
-    /// Who sees how far it has come.
+    /// The observer of the progress.
     pub progress: Progress,
 }
 

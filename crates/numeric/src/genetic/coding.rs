@@ -14,7 +14,7 @@ pub enum Coding {
     /// A gene is a number.
     #[default]
     Real,
-    /// So many genes, each 0 or 1, are a number.
+    /// Bits: each number is a string of this many genes, 0 or 1.
     Bits(u32),
 }
 

@@ -34,7 +34,7 @@ pub enum Mutation {
 /// D never falls below it.
 pub const SMALLEST_STEP: f64 = 1e-6;
 
-/// So often a child halves D for itself.
+/// Largest number of halvings of D for one child.
 const MOST_HALVINGS: usize = 8;
 
 /// D of the generation after this one, the first of number 0.

@@ -60,7 +60,7 @@ pub fn ranks(all: &[&Evaluation], tolerance: f64) -> Vec<usize> {
     ranks
 }
 
-/// Those whom nobody dominates, by their numbers; of equals the first.
+/// Indices of the points that no other dominates; of equal ones the first.
 pub fn non_dominated(all: &[&Evaluation], tolerance: f64) -> Vec<usize> {
     let stands = |index: &usize| {
         let is_worse = |(place, other): (usize, &&Evaluation)| {

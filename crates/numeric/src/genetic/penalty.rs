@@ -22,12 +22,12 @@ use super::space::Evaluation;
 /// The treatment of points that violate a constraint.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Penalty {
-    /// They count for nothing.
+    /// Points that violate a constraint have an infinite score.
     #[default]
     Death,
-    /// They count for less than any that breaks none.
+    /// Points that violate a constraint rank behind all that violate none.
     FeasibleFirst,
-    /// They pay.
+    /// Points that violate a constraint pay a penalty.
     AugmentedLagrangian {
         /// rho at first.
         initial: f64,
@@ -44,16 +44,16 @@ const LARGEST_WEIGHT: f64 = 1e10;
 pub struct Multipliers {
     /// rho.
     pub weight: f64,
-    /// Of the equalities.
+    /// Multipliers of the equalities.
     pub equalities: Vec<f64>,
-    /// Of the inequalities, none negative.
+    /// Multipliers of the inequalities, none negative.
     pub inequalities: Vec<f64>,
     /// Violation of the best point of the last generation.
     violation: f64,
 }
 
 impl Multipliers {
-    /// Those at the beginning.
+    /// The initial multipliers.
     pub fn new(initial: f64, like: &Evaluation) -> Self {
         Self {
             weight: initial,

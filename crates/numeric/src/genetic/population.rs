@@ -33,9 +33,9 @@ pub struct GeneticOptions {
     pub constraint_tolerance: f64,
     /// The most generations after the random population.
     pub generations: usize,
-    /// Over so many generations the best value is watched.
+    /// Number of generations over which the best value is watched.
     pub stall_generations: usize,
-    /// Below this change it has ceased to change.
+    /// Change of the best value below which the search has stalled.
     pub function_tolerance: f64,
     /// The measure of that change.
     pub stall_test: StallTest,
@@ -72,7 +72,7 @@ pub enum OptionsError {
         "population = {0} cannot cross: a population needs 2 or more, {MOST_INDIVIDUALS} at most"
     )]
     Population(usize),
-    /// Nothing would happen.
+    /// There are no generations.
     #[error("generations = {0}: a run needs 1 or more, {MOST_GENERATIONS} at most")]
     Generations(usize),
     /// Nobody would be left to change.
@@ -85,7 +85,7 @@ pub enum OptionsError {
         /// The population.
         population: usize,
     },
-    /// No fraction.
+    /// The crossover fraction is not between 0 and 1.
     #[error("crossover_fraction must lie between 0 and 1, not {0}")]
     Fraction(f64),
     /// A child short of the better parent.
@@ -93,7 +93,7 @@ pub enum OptionsError {
         "crossover_ratio must be a number of 1 or more, not {0}: the child lies beyond the better parent"
     )]
     Ratio(f64),
-    /// No probability.
+    /// The mutation rate is not a probability.
     #[error("mutation_rate must lie between 0 and 1, not {0}")]
     Rate(f64),
     /// Too few or too many.
@@ -122,7 +122,7 @@ pub enum OptionsError {
         /// The value given.
         value: f64,
     },
-    /// Nothing to watch.
+    /// The window of the stall test is empty.
     #[error("stall_generations must be 1 or more")]
     Window,
     /// Less than the random population.

@@ -60,7 +60,7 @@ impl<F: FnMut(&[f64]) -> Evaluation> BestTracker<F> {
     }
 }
 
-/// So many points drawn evenly from the box; the curve has the best value after every `every` of
+/// Draws this many points evenly from the box; the curve has the best value after every `every` of
 /// them.
 pub fn random_search(
     space: &Space,

@@ -11,7 +11,7 @@ pub struct Space(Vec<[f64; 2]>);
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SpaceError {
-    /// Nothing to vary.
+    /// There is no variable.
     #[error("there is nothing to vary")]
     Empty,
     /// Bounds in the wrong order, equal or no numbers.

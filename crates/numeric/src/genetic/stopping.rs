@@ -29,9 +29,9 @@ pub enum GeneticStop {
     Stalled,
     /// The last generation allowed.
     Generations,
-    /// No evaluations were left for another generation.
+    /// The budget of evaluations is spent.
     Budget,
-    /// Somebody asked it to.
+    /// The run was interrupted.
     Interrupted,
 }
 

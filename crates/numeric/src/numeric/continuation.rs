@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector, DefaultAllocator, Dim, Dyn, LU, OVector};
 pub enum ContinuationStep<Point, End> {
     /// The next point, and the ratio of the next step to this one.
     Taken(Point, f64),
-    /// Nothing: the next one is half as long.
+    /// The step failed, and is repeated with half its length.
     TooLong,
     /// The end of the branch, with its last point if that is not the one before.
     Ended(Option<Point>, End),

@@ -212,7 +212,7 @@ fn ending(
     start: f64,
     state: State,
 ) -> PeriodError {
-    /// So many amplitudes away nothing is swinging.
+    /// Number of amplitudes beyond which a motion does not oscillate.
     const FAR: f64 = 1e6;
     /// Times the force at rest, beyond which it is the speed that drives the motion.
     const DRIVEN: f64 = 1e3;

@@ -184,7 +184,7 @@ pub fn by_differences<const N: usize, Path>(
     sizes: [f64; N],
     mut follow: impl FnMut([f64; N]) -> Option<([f64; N], Path)>,
 ) -> Option<([f64; N], SMatrix<f64, N, N>, Path)> {
-    /// Beside the size: far above the error of integration.
+    /// Step of the differences over the size of a state, far above the error of integration.
     const DIFFERENCE: f64 = 1e-5;
     let (end, path) = follow(start)?;
     let mut derivative = SMatrix::<f64, N, N>::zeros();

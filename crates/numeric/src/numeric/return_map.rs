@@ -57,10 +57,9 @@ pub struct AutonomousEquation<'a> {
     pub acceleration: &'a dyn Fn(f64, f64) -> f64,
     /// The equilibrium about which the motion oscillates.
     pub equilibrium: f64,
-    /// About the amplitude of the cycle looked for: the one nearest to it, by ratio, is found.
-    /// Positive.
+    /// Approximate amplitude of the cycle, positive: the one nearest to it, by ratio, is found.
     pub amplitude: f64,
-    /// About the linear frequency. Positive.
+    /// Approximate linear frequency, positive.
     pub frequency: f64,
 }
 
@@ -68,7 +67,7 @@ pub struct AutonomousEquation<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoLimitCycle {
-    /// There seems to be none.
+    /// There seems to be no limit cycle.
     #[error(
         "no limit cycle with a turning point between x = {from:.3e} and x = {to:.3e}, forward or backward in time"
     )]
@@ -284,8 +283,8 @@ enum NoReturn {
     TooManySteps,
 }
 
-/// From rest at `start` amplitudes to the next turning point on the same side, forward in time or
-/// backward.
+/// The motion from rest at `start` amplitudes to the next turning point on the same side, forward
+/// in time or backward.
 fn swing(
     equation: &AutonomousEquation,
     forward: bool,

@@ -70,7 +70,7 @@ pub enum PeriodError {
         /// The least amplitude, to six digits.
         least: f64,
     },
-    /// No second turning point.
+    /// There is no second turning point.
     #[error(
         "no periodic motion: released at rest from x = {start}, the motion does not turn back before x = {searched:.2e}{}",
         periodic_elsewhere(range)
@@ -113,7 +113,8 @@ pub enum PeriodError {
         /// The unstable equilibrium.
         place: f64,
     },
-    /// So close to the separatrix that rounding decides how long the motion stays there.
+    /// The release is so close to the separatrix that rounding decides how long the motion stays
+    /// there.
     #[error(
         "released at rest from x = {start}, the motion is too close to the separatrix of the unstable equilibrium x = {place} for its \
          period to be computed: on the separatrix it never comes back"
@@ -250,7 +251,7 @@ pub struct TimePerAngle<'a> {
     force: &'a PiecewiseForce<'a>,
     /// Time dilation sqrt(M(x)) of a position-dependent mass, one if there is none.
     weight: &'a dyn Fn(f64) -> f64,
-    /// From the far turning point to the start.
+    /// Positions from the far turning point to the start.
     pub knots: Vec<f64>,
     /// phi at the knots, from -pi/2 to pi/2.
     pub angles: Vec<f64>,
@@ -538,14 +539,15 @@ pub fn turning_point(
     /// Steps per window of the search, and how many amplitudes far it goes.
     const STEPS: usize = 64;
     const FARTHEST: f64 = 1e10;
-    /// So many amplitudes away it is not the waves on the way that are in question, as over one
-    /// summit of a pendulum after the other.
+    /// Number of amplitudes beyond which the waves on the way do not matter, as over one summit of
+    /// a pendulum after the other.
     const FAR: f64 = 100.0;
     /// Number of halvings of an interval on which the force has no integral.
     const HALVINGS: u32 = 60;
     /// Enough for a root at an end of a stretch; one with a pole is halved the sooner.
     const FEW_PANELS: usize = 120;
-    /// About a second; a force of a hundred thousand waves takes less.
+    /// Largest number of evaluations, about a second; a force of a hundred thousand waves takes
+    /// less.
     const MOST_EVALUATIONS: u64 = 20_000_000;
     let evaluations = Cell::new(0_u64);
     let value = |x: f64| {

@@ -26,9 +26,9 @@ pub struct Event<'a, S = State> {
 /// The direction of a zero crossing that counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// From negative to positive.
+    /// Crossings from negative to positive.
     Rising,
-    /// From positive to negative.
+    /// Crossings from positive to negative.
     Falling,
     /// Both.
     Either,
@@ -36,13 +36,13 @@ pub enum Direction {
 
 /// The action at an event.
 pub enum Action<'a, S = State> {
-    /// It is listed in the trajectory; the run goes on.
+    /// The event is recorded, and the run continues.
     Record,
-    /// It is listed and the run ends there.
+    /// The event is recorded, and the run ends.
     Stop,
-    /// It is listed, and the run restarts with another right side and possibly another state: the
-    /// closure gets the state at the event and answers the index of the phase to go on with and the
-    /// state to go on from (its time is not used).
+    /// The event is recorded, and the run restarts with another right side and possibly another
+    /// state: the closure takes the state at the event and returns the index of the next phase and
+    /// its initial state (whose time is not used).
     Switch(Box<dyn Fn(S) -> (usize, S) + 'a>),
 }
 
@@ -74,12 +74,12 @@ impl<'a, S> Event<'a, S> {
         Self { function: Box::new(function), direction: Direction::Either, action }
     }
 
-    /// Only crossings from negative to positive.
+    /// Counts only crossings from negative to positive.
     pub fn rising(self) -> Self {
         Self { direction: Direction::Rising, ..self }
     }
 
-    /// Only crossings from positive to negative.
+    /// Counts only crossings from positive to negative.
     pub fn falling(self) -> Self {
         Self { direction: Direction::Falling, ..self }
     }

@@ -35,7 +35,7 @@ pub struct IntegrationOptions {
     /// Whether the motion has parts of very different speed: an implicit method of lower order then
     /// takes longer steps.
     pub stiff: bool,
-    /// Who may ask the run to stop where it is.
+    /// The interrupt.
     pub interrupt: Interrupt,
 }
 
@@ -277,13 +277,13 @@ pub fn integrate_through<'a, Y: StateVector>(
 pub struct StepLimits<'a, S> {
     /// Times, in order, that no step crosses.
     pub critical: &'a [f64],
-    /// From a step as a function of its fraction the fraction of it that may be kept; nothing for
-    /// all of it.
+    /// Returns the fraction of a step that may be kept, from the step as a function of its
+    /// fraction; `None` keeps all of it.
     pub kept: Option<&'a AcceptedFraction<'a, S>>,
 }
 
-/// From a step as a function of its fraction the fraction of it that may be kept; `None` for all of
-/// it.
+/// A function that returns the fraction of a step that may be kept, from the step as a function of
+/// its fraction; `None` keeps all of it.
 pub type AcceptedFraction<'a, S> = dyn Fn(&dyn Fn(f64) -> S) -> Option<f64> + 'a;
 
 impl<S> StepLimits<'_, S> {

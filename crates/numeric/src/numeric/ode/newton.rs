@@ -30,7 +30,7 @@ use nalgebra::{DefaultAllocator, DimMin, OMatrix, OVector};
 pub enum Progress {
     /// The step was so short that its end is the solution.
     Settled,
-    /// There are steps to come.
+    /// The iteration continues.
     Going,
     /// The step leads to nothing that is looked for.
     Lost,

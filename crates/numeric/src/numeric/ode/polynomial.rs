@@ -62,7 +62,7 @@ pub fn real_zeros(coefficients: &[f64], ends: [f64; 2]) -> Vec<RealZero> {
 
 /// The zeros of a polynomial that is monotonic between these places.
 fn zeros_between(polynomial: &[f64], places: &[f64]) -> Vec<RealZero> {
-    /// Of the sum of the sizes of all terms: a smaller value is rounding.
+    /// Ratio to the sum of the sizes of all terms below which a value is rounding.
     const ROUNDING: f64 = 1e-14;
     let value = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c);
     let size = |x: f64| polynomial.iter().rev().fold(0.0, |sum, c| sum * x.abs() + c.abs());

@@ -21,7 +21,7 @@ pub trait Sample: Clone + Debug {
     /// The dependent variables.
     type Values: StateVector;
 
-    /// From a time and the values at it.
+    /// A sample from a time and the values at it.
     fn new(t: f64, values: &Self::Values) -> Self;
 
     /// The time.

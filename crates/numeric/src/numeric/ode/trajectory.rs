@@ -69,7 +69,7 @@ pub enum StopReason {
         /// The last time reached.
         time: f64,
     },
-    /// Somebody asked the run to stop.
+    /// The run was interrupted.
     Interrupted {
         /// The last time reached.
         time: f64,
@@ -217,7 +217,7 @@ pub(super) struct TrajectoryStep<S: Sample> {
 }
 
 impl<S: Sample> TrajectoryStep<S> {
-    /// From the values at [`FRACTIONS`].
+    /// The interpolant through the values at [`FRACTIONS`].
     pub(super) fn new(phase: usize, start: S, length: f64, values: [S::Values; TERMS]) -> Self {
         let origin = start.values();
         let mut quotient = values;

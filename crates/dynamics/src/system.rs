@@ -120,25 +120,24 @@ pub enum SystemError {
 /// The integration method.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Integrator {
-    /// By the Taylor series of the states, to rounding accuracy.
+    /// The Taylor series of the states, to rounding accuracy.
     #[default]
     Taylor,
-    /// By Verner's Runge-Kutta pair of order 9, which evaluates the right sides and expands
-    /// nothing.
+    /// Verner's Runge-Kutta pair of order 9, which evaluates the right sides and expands nothing.
     RungeKutta,
 }
 
 /// Method, tolerance and limits of an integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SystemOptions {
-    /// By which integrator.
+    /// The integration method.
     pub integrator: Integrator,
     /// Error of a step, relative to the size of each state on it; Runge-Kutta keeps no less than
     /// 1e-14.
     pub tolerance: f64,
     /// Steps after which the run ends; those of Runge-Kutta that had to be repeated count.
     pub step_limit: usize,
-    /// Who may ask the run to stop where it is.
+    /// The interrupt.
     pub interrupt: Interrupt,
 }
 
@@ -218,9 +217,9 @@ pub struct EventCrossing {
 /// Why a path ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathEnd {
-    /// At the time asked for.
+    /// The end time.
     Reached,
-    /// At this event.
+    /// The event of this index.
     Event(usize),
     /// After as many steps as were allowed.
     StepLimit,
@@ -229,17 +228,16 @@ pub enum PathEnd {
     /// A state leaves the range of numbers: it is larger than 1e300, or so large that its rates
     /// are.
     Overflow,
-    /// It stays on a corner: the rates on both sides lead back to it.
+    /// The state stays on a corner: the rates on both sides lead back to it.
     Sticks,
-    /// Somebody asked for it.
+    /// An interrupt.
     Interrupted,
 }
 
 /// The relative tolerances of a step that can be asked for.
 const TOLERANCES: std::ops::RangeInclusive<f64> = 1e-16..=0.1;
 
-/// No state is followed farther: doubles end at 1.8e308, and sums and products within a step need
-/// room.
+/// Largest size of a state: doubles end at 1.8e308, and sums and products within a step need room.
 const LARGEST: f64 = 1e300;
 
 /// A state from which on rates without a value are too large rather than undefined: fourth powers

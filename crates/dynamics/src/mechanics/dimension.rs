@@ -137,7 +137,7 @@ impl Dimension {
         Self::default()
     }
 
-    /// From whole exponents of kilogram, metre and second.
+    /// The dimension with these whole exponents of kilogram, metre and second.
     pub fn from_exponents(exponents: [i64; 3]) -> Self {
         Self(exponents.map(|exponent| Rational::from_integer(exponent.into())))
     }
@@ -147,7 +147,7 @@ impl Dimension {
         self.0.iter().all(Zero::is_zero)
     }
 
-    /// Of a product.
+    /// The dimension of a product.
     #[must_use]
     pub fn times(&self, other: &Self) -> Self {
         let mut product = self.clone();
@@ -155,7 +155,7 @@ impl Dimension {
         product
     }
 
-    /// Of a power.
+    /// The dimension of a power.
     #[must_use]
     pub fn power(&self, exponent: &Rational) -> Self {
         let mut power = self.clone();

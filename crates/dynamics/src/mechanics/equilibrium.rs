@@ -14,7 +14,7 @@ use crate::symbol::Symbol;
 /// The equilibrium position of a coordinate.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RestPosition {
-    /// Here.
+    /// The coordinate has this value.
     At(Expr),
     /// Anywhere: nothing pulls on it.
     Anywhere,
@@ -109,12 +109,12 @@ pub fn equilibria(equations: &EquationsOfMotion) -> Result<Vec<Rest>, MechanicsE
 /// The effect of explicit time dependence at an equilibrium of the autonomous equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DriveAtRest {
-    /// There are none.
+    /// No term depends on the time explicitly.
     Absent,
-    /// They vanish there, as what shakes the pivot of a pendulum upright does: it is a rest, whose
-    /// swings they change.
+    /// The time-dependent terms vanish there, as for a pendulum whose pivot is shaken upright: it
+    /// is an equilibrium, whose oscillations they change.
     Vanishes,
-    /// They act: it is no rest where they do.
+    /// The time-dependent terms act there: it is no equilibrium while they do.
     Acts,
 }
 

@@ -63,7 +63,7 @@ impl Groups {
     /// The dimensionless groups of a mechanism whose units have passed their check.
     ///
     /// # Errors
-    /// Nothing that has the dimension of a time; a step of algebra.
+    /// No quantity has the dimension of a time, or a step of algebra failed.
     ///
     /// ```
     /// # use lindstedt_dynamics as lindstedt;
@@ -440,7 +440,7 @@ impl Scaling<'_> {
         Some((Expr::from(name), GroupRole::Other))
     }
 
-    /// Puts the name in the place of its definition, by way of one of the parameters in it.
+    /// Replaces the definition of a group by its name, by way of one of the parameters in it.
     fn replace(&mut self, definition: &Expr, name: Symbol) -> Result<(), ExprError> {
         let (number, factors) = definition.factors();
         let parameter = |factor: &Expr| {

@@ -81,7 +81,7 @@ pub enum MechanicsError {
     /// A step of algebra failed.
     #[error(transparent)]
     Expression(#[from] ExprError),
-    /// No coordinates, or more than can be written out.
+    /// There are no coordinates, or too many to write the equations out.
     #[error("a mechanism has 1 to {MOST_COORDINATES} coordinates, not {0}")]
     CoordinateCount(usize),
     /// A coordinate that occurs twice.
@@ -95,7 +95,7 @@ pub enum MechanicsError {
     /// A velocity or an acceleration where none belongs.
     #[error("the {part} contains `{name}`: {why}")]
     Derivative {
-        /// Of which part.
+        /// The part of the mechanism.
         part: String,
         /// The symbol.
         name: Symbol,
@@ -129,7 +129,7 @@ pub enum MechanicsError {
     /// A term of a wrong unit.
     #[error(transparent)]
     Unit(#[from] UnitError),
-    /// Nothing among the parameters and the sizes of the motion has the dimension of a time.
+    /// No parameter and no size of the motion has the dimension of a time.
     #[error("no product of powers of {0} is a time: the motion has no time of its own")]
     NoTime(String),
     /// A value for a name that does not occur.

@@ -31,26 +31,26 @@ pub(super) struct Argument {
 /// The behaviour of a function of large or small argument.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum FunctionGrowth {
-    /// It grows with it without bound, and is nothing far below zero: `exp`.
+    /// Growth without bound for large arguments, and decay to zero for small ones: `exp`.
     Growing,
-    /// It grows with its size: `sinh`, `cosh`.
+    /// Growth on both sides: `sinh`, `cosh`.
     GrowingBothWays,
-    /// It keeps still far from zero: `tanh`.
+    /// Saturation far from zero: `tanh`.
     Bounded,
-    /// It comes to rest slowly: `atan`.
+    /// Slow saturation: `atan`.
     Slow,
-    /// It changes when the argument changes by its own size over this: powers, logarithms.
+    /// A change on the scale of the argument over this exponent: powers, logarithms.
     Power(f64),
 }
 
 /// A step this many times as long as a place is wide would not see it.
 const TIMES: f64 = 16.0;
 
-/// Of the largest value of an argument: what it may be off at a place.
+/// Error of an argument over its largest value.
 const ROUNDING: f64 = 1e-13;
 
-/// So many widths away a place is nothing in double precision: from there on steps may end farther
-/// apart.
+/// Number of widths beyond which a narrow place vanishes in double precision: from there on steps
+/// may end farther apart.
 const FAR: f64 = 32.0;
 
 /// The arguments in the right sides that move with the states. Waves are to be seen everywhere,
@@ -147,7 +147,7 @@ impl FunctionGrowth {
     /// The change of the argument that matters where it is so large, give or take so much; nothing
     /// where the function is as good as constant.
     fn change(self, argument: f64, error: f64) -> Option<f64> {
-        /// Beyond it an exponential is nothing, whatever it is multiplied by.
+        /// Argument beyond which an exponential is negligible, whatever its factor.
         const NOTHING: f64 = 150.0;
         match self {
             Self::Growing if argument + error < -NOTHING => None,
@@ -209,7 +209,7 @@ pub(super) fn end_by_values(
     value: impl Fn(f64) -> f64,
 ) -> Option<f64> {
     const CELLS: usize = 32;
-    /// Of the largest value: what the search for a turn may leave of it.
+    /// Relative accuracy of the search for an extremum.
     const CLOSELY: f64 = 1e-9;
     /// Turns of an argument beyond which so many cells do not show them.
     const MOST_TURNS: usize = 8;

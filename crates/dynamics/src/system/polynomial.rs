@@ -72,8 +72,8 @@ fn beyond(series: &[f64], size: f64) -> [f64; 2] {
 /// The first root after `from`, at most `to`, and whether the polynomial grows there; a root at
 /// `from` itself is not counted.
 ///
-/// By bounds: where the constant outweighs all that is added there is no root, where the slope
-/// keeps its sign there is at most one, and everything else is halved.
+/// The first root, by bounds: if the constant outweighs all other terms there is no root, if the
+/// slope keeps its sign there is at most one, and every other interval is halved.
 pub(super) fn first_root(series: &[f64], from: f64, to: f64) -> Option<(f64, bool)> {
     let [constant, slope, ..] = *series else {
         return None;
@@ -121,7 +121,7 @@ pub(super) fn first_root(series: &[f64], from: f64, to: f64) -> Option<(f64, boo
     None
 }
 
-/// So close to where the last root was, the sign is rounding.
+/// Distance from the last root within which the sign is rounding.
 fn apart(from: f64, to: f64) -> f64 {
     1e-14 * (to.abs() + from.abs())
 }

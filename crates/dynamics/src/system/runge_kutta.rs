@@ -26,7 +26,7 @@ use crate::numeric::ode::{
 use crate::series::guard::{Guard, Guards};
 use crate::symbol::{Symbol, fresh_stem};
 
-/// No step can be held to less: an estimate of its error is rounding below that.
+/// Least tolerance of a step: an estimate of its error is rounding below that.
 const SMALLEST_TOLERANCE: f64 = 1e-14;
 
 /// The part of a state that a rate moves it by, at least, in the time of the run, where the rate is

@@ -218,7 +218,7 @@ pub(super) struct TaylorRun<'a> {
     halvings: i32,
 }
 
-/// So often a step is taken back for half of it.
+/// Largest number of consecutive halvings of a step.
 const MOST_HALVINGS: i32 = 12;
 
 /// The values that are restored if a step is taken back.
@@ -279,8 +279,7 @@ impl<'a> TaylorRun<'a> {
         }
     }
 
-    /// Puts the expansion where the next step begins, for it to be computed; answers why the run
-    /// ends there, if it does.
+    /// Sets the expansion at the start of the next step; returns the reason if the run ends there.
     fn before_step(&mut self) -> Option<PathEnd> {
         let over = self.time >= self.duration;
         if !over && self.steps.len() >= self.options.step_limit {
@@ -364,8 +363,8 @@ impl<'a> TaylorRun<'a> {
         reach * 0.5_f64.powi(self.halvings)
     }
 
-    /// Goes so far, or to the first corner or event that stops; answers why the run ends there, if
-    /// it does.
+    /// Advances by this time, or to the first corner or event that stops; returns the reason if the
+    /// run ends there.
     fn advance(&mut self, reach: f64) -> Option<PathEnd> {
         // A corner within the step ends it, and so does an event that stops.
         let mut corner = self.expansion.first_corner(reach);
@@ -433,7 +432,7 @@ impl<'a> TaylorRun<'a> {
     /// Whether the rates where a step has come to are others than its series says: a wall, say,
     /// that could not be seen from its beginning.
     fn has_missed_something(&mut self, last: &StepUndo, now: f64) -> bool {
-        /// Of the size of a state on the step: what its rate there may be off, times the step.
+        /// Largest error of a rate times the step, over the size of the state on it.
         const ASTRAY: f64 = 1e-8;
         // The terms that are left out are within the tolerance, their slopes within as many times
         // it as the next order says.
@@ -558,7 +557,7 @@ impl SystemSeries {
         self.check().is_ok()
     }
 
-    /// Puts the variables where everything is to be expanded.
+    /// Sets the variables about which everything is expanded.
     fn expand_about(&mut self, time: f64, values: &[f64]) {
         for (variable, value) in values.iter().chain([&time]).enumerate() {
             self.tape.set(variable, 0, *value);
@@ -584,8 +583,8 @@ impl SystemSeries {
         &self.outputs[..self.states]
     }
 
-    /// Goes over to the other side of corners that were left behind together with another: the
-    /// motion is beyond them and going on.
+    /// Switches to the other side of corners that were passed together with another one: the motion
+    /// is beyond them and moving away.
     ///
     /// # Errors
     /// The first state whose series has no finite value, or the first of all where a corner has
@@ -739,7 +738,7 @@ impl SystemSeries {
     /// has changed by so much before. One that is zero altogether is no corner to stay on: the
     /// motion goes on.
     fn stays_on(&self, corner: usize, change: f64, length: f64) -> bool {
-        /// Of the change on the other side.
+        /// Ratio to the change on the other side below which a value is rounding.
         const ROUNDING: f64 = 1e-12;
         let Some((series, _)) = self.tape.corners().nth(corner) else {
             return false;
@@ -753,7 +752,7 @@ impl SystemSeries {
         self.tape.corners().map(|(_, side)| side).collect()
     }
 
-    /// Goes to these sides.
+    /// Sets the sides of all corners.
     fn set_sides(&mut self, sides: &[f64]) {
         for (corner, side) in sides.iter().enumerate() {
             if self.tape.corners().nth(corner).is_some_and(|(_, now)| now != *side) {
@@ -762,13 +761,13 @@ impl SystemSeries {
         }
     }
 
-    /// Goes to the other side of a corner.
+    /// Switches to the other side of a corner.
     pub(super) fn cross(&mut self, corner: usize) {
         self.tape.cross(corner);
     }
 }
 
-/// So many of the last terms of a series are looked at: symmetry may leave some of them zero.
+/// Number of last terms of a series that are examined: symmetry may leave some of them zero.
 const LAST: usize = 8;
 
 /// The factor by which a step that is too long for the tolerance is shortened.
@@ -778,7 +777,7 @@ const SHORTER: f64 = 0.9;
 #[derive(Clone, Debug)]
 struct Allowance {
     order: usize,
-    /// For the orders from [`Self::first`] on.
+    /// The bounds for the orders from [`Self::first`] on.
     parts: [f64; LAST],
 }
 

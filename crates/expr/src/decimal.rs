@@ -47,7 +47,8 @@ pub fn rounded(value: f64) -> Rational {
     rounded_to(value, 15)
 }
 
-/// So many significant digits of a number, as a fraction; seventeen tell any two numbers apart.
+/// A number rounded to this many significant digits, as a fraction; seventeen tell any two numbers
+/// apart.
 pub fn rounded_to(value: f64, digits: usize) -> Rational {
     let decimals = digits.saturating_sub(1);
     parsed(&format!("{value:.decimals$e}"))
@@ -65,7 +66,7 @@ fn parsed(text: &str) -> Rational {
     if power < 0 { digits / scale } else { digits * scale }
 }
 
-/// So many significant digits of a fraction, as a fraction, however large or small it is.
+/// A fraction rounded to this many significant digits, as a fraction, however large or small it is.
 pub fn rounded_fraction(value: &Rational, digits: usize) -> Rational {
     let (mantissa, power) = scientific(value, digits);
     Rational::from_integer(mantissa) * Pow::pow(Rational::from_integer(10.into()), power)

@@ -28,7 +28,7 @@ pub struct Values(BTreeMap<Symbol, Expr>);
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ValueError {
-    /// It contains a symbol.
+    /// The value contains a symbol.
     #[error(
         "the value `{value}` of `{name}` contains `{symbol}`: give a number, such as 3/2 or pi/3"
     )]
@@ -40,7 +40,7 @@ pub enum ValueError {
         /// The symbol in it.
         symbol: Symbol,
     },
-    /// It is not finite.
+    /// The value is not finite.
     #[error("the value `{value}` of `{name}` is not a finite number")]
     NotFinite {
         /// The name.

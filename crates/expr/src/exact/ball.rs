@@ -22,7 +22,7 @@ use super::rational::Rational;
 pub struct Ball {
     /// In units of `2^-bits`.
     pub middle: Integer,
-    /// In the unit of the number.
+    /// The radius, in the unit of the number.
     pub radius: Bound,
 }
 
@@ -111,7 +111,7 @@ impl Balls {
         super::rational::to_f64(&self.middle(ball))
     }
 
-    /// No number of the ball is larger.
+    /// An upper bound of the size of all numbers of the ball.
     pub fn magnitude(self, ball: &Ball) -> Bound {
         self.size(&ball.middle) + ball.radius
     }

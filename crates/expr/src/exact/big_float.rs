@@ -146,7 +146,7 @@ impl Mul for &BigFloat {
     }
 }
 
-/// Over zero anything is zero.
+/// Division; anything over zero is zero.
 impl Div for &BigFloat {
     type Output = BigFloat;
 

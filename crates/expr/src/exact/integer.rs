@@ -24,7 +24,7 @@ impl Integer {
         &self.0
     }
 
-    /// From a number of that crate.
+    /// Wraps an integer of the underlying crate.
     pub(super) fn of_inner(value: IBig) -> Self {
         Self(value)
     }
@@ -67,7 +67,7 @@ impl Integer {
     /// The `degree`-th root, rounded towards zero.
     ///
     /// # Panics
-    /// Of an even root of a negative number, and if `degree` is zero.
+    /// An even root of a negative number, or `degree` zero.
     pub fn nth_root(&self, degree: u32) -> Self {
         Self(self.0.nth_root(degree as usize))
     }

@@ -84,8 +84,7 @@ pub trait Ring: Clone + Debug + PartialEq {
     /// Divides all of `elements` by `divisor`, which is not zero.
     ///
     /// # Errors
-    /// No inverse of `divisor`, which depends on nothing but `divisor`; all elements are then as
-    /// they were.
+    /// `divisor` has no inverse, which depends on `divisor` alone; all elements are unchanged.
     fn divide<'a>(
         &self,
         elements: impl IntoIterator<Item = &'a mut Self::Element>,

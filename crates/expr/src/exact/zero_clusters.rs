@@ -29,7 +29,8 @@ pub struct Cluster {
 /// all others, nearest first; `None` where rounding or a multiple zero hides them, or where zero is
 /// a zero.
 pub fn clusters(polynomial: &[BigFloat]) -> Option<Vec<Cluster>> {
-    /// Far more steps than any walk needs: some ten for each zero, wherever it is.
+    /// Largest number of steps, far more than any search needs: some ten for each zero, wherever it
+    /// is.
     const MOST_STEPS: usize = 20_000;
     /// A step of a smaller share of the place looks for what is in the way; one of less than the
     /// second is none.
@@ -160,7 +161,7 @@ impl<'a> ClusterSearch<'a> {
         })
     }
 
-    /// By Newton's steps, the zero ahead of a place, or the middle of two.
+    /// The zero near a point by Newton's method, or the middle of two zeros.
     fn centre(&self, at: &BigFloat, near: &About, count: usize) -> Option<BigFloat> {
         const STEPS: usize = 12;
         /// The last step over the place.
@@ -215,7 +216,7 @@ impl About {
     /// The logarithm of the radius of the largest disc with so many zeros, not far beyond the
     /// place.
     fn radius_of(&self, count: usize) -> Option<f64> {
-        /// Over the place.
+        /// Least logarithm of a distance over that of the point.
         const LEAST: f64 = -100.0;
         /// Two that are farther apart are found one by one.
         const WIDEST: [f64; 2] = [-3.0, -5.0];

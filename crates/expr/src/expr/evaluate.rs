@@ -24,7 +24,7 @@ pub enum EvaluationError {
     /// A symbol without a value.
     #[error("`{0}` has no value here")]
     MissingSymbol(Symbol),
-    /// No real or no finite value at this point.
+    /// The expression has no real or no finite value at this point.
     #[error("`{expression}` has no finite value at {point}")]
     Undefined {
         /// The expression, shortened.
@@ -276,8 +276,8 @@ impl Compiler<'_> {
     /// up for them before it, are beyond double precision; none for other bases and exponents.
     fn shift(&self, base: &Expr, exponent: Option<&Rational>) -> Option<Shift> {
         const LONG: u64 = 200;
-        /// No equation has larger numbers, and they are beyond double precision whatever their
-        /// factor.
+        /// The longest number: no equation has larger ones, and they are beyond double precision
+        /// whatever their factor.
         const LONGEST: u64 = 100_000;
         let size = match base.node() {
             Node::Sum(_) => u64::try_from(self.sizes.get(base).copied()?).ok()?,
@@ -507,7 +507,7 @@ fn bits(number: &Rational) -> i64 {
     number.numer().bits() as i64 - number.denom().bits() as i64 + 1
 }
 
-/// By what a sum is divided before it is raised to a power, and what makes up for it after.
+/// A scale that keeps a large sum within f64 when it is raised to a power, and its compensation.
 struct Shift {
     /// The divisor is `2^bits`.
     bits: u64,

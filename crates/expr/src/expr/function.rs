@@ -609,8 +609,8 @@ mod tests {
         }
     }
 
-    /// By their integrals (NIST Digital Library of Mathematical Functions 10.9.2, 10.32.3,
-    /// 5.9.1, 19.2.8), which share nothing with the library.
+    /// Special functions agree with their integrals (NIST Digital Library of Mathematical Functions
+    /// 10.9.2, 10.32.3, 5.9.1, 19.2.8), which share nothing with the library.
     #[test]
     fn special_functions_are_their_integrals() {
         use lindstedt_numeric::numeric::ode::quadrature::integrate_smooth;

@@ -97,8 +97,8 @@ pub enum Node {
     Pi,
     /// A parameter, coordinate or derivative: `eps`, `x`, `x'`.
     Symbol(Symbol),
-    /// At least two terms, none a sum or zero, at most one a number, no two alike up to a numeric
-    /// factor; in the order in which they print.
+    /// A sum of at least two terms, none a sum or zero, at most one a number, no two alike up to a
+    /// numeric factor; in the order in which they print.
     Sum(Vec<Expr>),
     /// A coefficient, not zero, and at least one factor (at least two where the coefficient is
     /// one). No factor is a number or a product, no two have the same base, a sum among them is
@@ -464,7 +464,7 @@ impl Node {
 
 struct ExprData {
     node: Node,
-    /// Of the whole tree below, so that comparing and hashing look at one word.
+    /// The hash of the whole tree below, so that comparing and hashing look at one word.
     hash: u64,
     /// The number of nodes below, each occurrence counted, as far as that fits.
     size: u32,

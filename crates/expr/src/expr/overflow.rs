@@ -13,7 +13,7 @@ enum Magnitude {
     Finite(f64),
     /// Larger than any number, by this part of it.
     Beyond(Expr),
-    /// No real value, or a pole.
+    /// The value is not real, or it is a pole.
     None,
 }
 

@@ -80,7 +80,7 @@ impl Quotation {
     }
 }
 
-/// In the words of the normal form.
+/// A quotation in the words of the normal form.
 impl From<Expr> for Quotation {
     fn from(expression: Expr) -> Self {
         let words = expression.to_string();

@@ -111,18 +111,18 @@ impl ResultSymbols {
         }
     }
 
-    /// Those that are in force on this thread, where they are not the usual ones.
+    /// The symbols in force on this thread; `None` if they are the usual ones.
     pub fn current() -> Option<Self> {
         Some(IN_FORCE.get()).filter(|letters| *letters != USUAL)
     }
 
-    /// Puts these letters in force on this thread, until what is returned is dropped; unusual ones
-    /// that are in force already stay, for they belong to the equation that was asked about.
+    /// Puts these symbols in force on this thread until the guard is dropped. Unusual ones that are
+    /// in force already stay, because they belong to the equation in question.
     pub fn in_force(self) -> InForce {
         Self::current().unwrap_or(self).exactly()
     }
 
-    /// Puts these letters in force in any case: for work that goes on on another thread.
+    /// Puts these symbols in force in any case: for work that continues on another thread.
     pub(crate) fn exactly(self) -> InForce {
         InForce { before: IN_FORCE.replace(self), of_this_thread: PhantomData }
     }
@@ -132,7 +132,7 @@ impl ResultSymbols {
         IN_FORCE.get()
     }
 
-    /// Those that are not the usual ones: each the symbol of the answer and how it is written.
+    /// The symbols that are not the usual ones: each symbol of the answer and its spelling.
     pub fn renamed(&self) -> impl Iterator<Item = (Symbol, Symbol)> {
         let pairs = [
             (AMPLITUDE, self.amplitude),

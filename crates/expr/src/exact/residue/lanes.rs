@@ -25,7 +25,7 @@ impl Lanes {
 pub trait Arithmetic: Copy + Send + Sync {
     /// The primes lie between half of `2^BITS` and `2^BITS`.
     const BITS: u32;
-    /// Of `Modulus::new`.
+    /// The radix of `Modulus::new`.
     const RADIX: u32;
     /// Digits that may be multiplied by a residue and summed as residues are.
     const DIGIT: u32;

@@ -47,7 +47,7 @@ mod large {
 
     /// A large page, in bytes.
     const PAGE: usize = 2 << 20;
-    /// Below so many bytes the zeros of a whole large page cost more than it spares.
+    /// Number of bytes below which the zeros of a whole large page cost more than it spares.
     const LEAST: usize = PAGE / 2;
 
     /// A mapping with the bytes that are used, from the beginning of a large page on.

@@ -270,7 +270,7 @@ pub fn primes_below(bits: u32, step: u64) -> impl Iterator<Item = u64> {
 mod tests {
     use super::*;
 
-    /// By division alone.
+    /// Tests a prime by division alone.
     fn is_prime_by_division(number: u64) -> bool {
         number > 1 && (2..).take_while(|d| d * d <= number).all(|d| !number.is_multiple_of(d))
     }

@@ -32,7 +32,7 @@ impl Moduli {
         }
     }
 
-    /// Up to eight primes, the last one again in the places that are left.
+    /// Takes up to eight primes; the last one is repeated in the remaining lanes.
     ///
     /// # Panics
     ///

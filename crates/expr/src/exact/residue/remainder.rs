@@ -28,7 +28,7 @@ pub struct Remainders<A> {
 }
 
 impl<A: Arithmetic> Remainders<A> {
-    /// For these primes, at most 2^13.
+    /// Prepares these primes, at most 2^13.
     pub fn new(arithmetic: A, moduli: &[Modulus]) -> Self {
         let product: Integer = moduli.iter().map(|modulus| Integer::from(modulus.prime)).product();
         let blocks = (product.bits() / u64::from(A::DIGIT)) as usize / WIDTH + 1;

@@ -6,7 +6,7 @@ use super::Lanes;
 /// the other: what is formed of them at a point is formed of what lies together.
 pub struct Tables<'m> {
     rows: usize,
-    /// From a row to the next of the same table.
+    /// The distance of the rows of one table.
     stride: usize,
     /// Start of the rows of each table behind those of the tables before it, and their length.
     places: Vec<(usize, usize)>,

@@ -33,7 +33,7 @@ pub struct Convolutions<R: Ring> {
 }
 
 impl<R: Ring> Convolutions<R> {
-    /// No series yet; those to come are over `ring`.
+    /// A graph without series; those to come are over `ring`.
     pub fn new(ring: R) -> Self {
         Self { ring, nodes: vec![], products: HashMap::new() }
     }

@@ -57,7 +57,7 @@ impl HarmonicParity {
 }
 
 impl ShortSeries {
-    /// From numerators over a positive denominator; `None` where they are too long.
+    /// A series from numerators over a positive denominator; `None` if they are too long.
     pub fn new(
         wave: Wave,
         harmonics: HarmonicParity,
@@ -226,7 +226,7 @@ fn exact_quotient(number: i128, divisor: i128) -> i128 {
     }
 }
 
-/// Of a positive number and any other.
+/// Greatest common divisor of a positive number and any other.
 fn greatest_common_divisor(left: i128, right: i128) -> i128 {
     if is_power_of_two(left) {
         return 1 << left.trailing_zeros().min(right.trailing_zeros());
@@ -242,7 +242,7 @@ fn greatest_common_divisor(left: i128, right: i128) -> i128 {
     }
 }
 
-/// Of positive numbers.
+/// Least common multiple of positive numbers.
 fn least_common_multiple(left: i128, right: i128) -> Option<i128> {
     if left == right || right == 1 {
         return Some(left);
@@ -401,8 +401,8 @@ mod tests {
         FourierSeries::from_parts(Integers, cosine, sine).over(&Integer::from(series.denominator))
     }
 
-    /// Of both waves and all kinds of harmonics, with numerators that are no multiples of each
-    /// other.
+    /// Series of both waves and all kinds of harmonics, with numerators that are no multiples of
+    /// each other.
     fn examples() -> Vec<ShortSeries> {
         let mut examples = vec![];
         for wave in [Wave::Cosine, Wave::Sine] {

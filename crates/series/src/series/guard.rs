@@ -80,7 +80,7 @@ pub struct GuardUse {
 }
 
 impl Guards {
-    /// No guards yet; `values` are those of the symbols that count as numbers.
+    /// A list without guards; `values` are those of the symbols that count as numbers.
     pub fn new(values: &BTreeMap<Symbol, f64>) -> Self {
         Self { values: values.clone(), known: vec![] }
     }

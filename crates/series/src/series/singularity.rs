@@ -429,7 +429,7 @@ struct PersistentZero {
     kind: ApproximantKind,
     place: Complex,
     error: f64,
-    /// Of a differential approximant, with its error.
+    /// The exponent by a differential approximant, with its error.
     exponent: Option<(f64, f64)>,
 }
 
@@ -489,7 +489,7 @@ fn followed(
     coefficients: &[BigFloat],
     growth: &Growth,
 ) -> Vec<PersistentZero> {
-    /// So many coefficients show in doubles where to look.
+    /// Number of coefficients from which doubles give a first estimate.
     const FIRST: usize = 48;
     let length = kind.length(coefficients.len());
     let window = (length / 8).max(3);
@@ -499,7 +499,7 @@ fn followed(
     let all = approximants(kind, coefficients, &wanted);
     let at = |below: usize| all.iter().find(|own| own.0 == below).map(|own| &own.1);
     let follow = |start: Complex64| -> Option<PersistentZero> {
-        /// Of so many approximants one may lack the zero.
+        /// Number of approximants one of which may lack the zero.
         const LACKING: usize = 6;
         let mut near = Complex::from_complex64(start, coefficients[0].bits());
         let mut missed = 0;
@@ -708,7 +708,7 @@ fn singularity(found: Vec<PersistentZero>, growth: &Growth, bits: usize) -> Opti
     const WORST_EXPONENT: f64 = 0.02;
     /// A place with more error, relatively, is none.
     const WORST: f64 = 0.05;
-    /// So many coefficients place a singularity whose power is not known.
+    /// Number of coefficients that determine a singularity of unknown exponent.
     const MANY: usize = 32;
     /// Powers of the period below this may be those of a logarithm.
     const SMALL_POWER: f64 = 0.2;
@@ -832,7 +832,7 @@ impl fmt::Display for Estimate {
     }
 }
 
-/// No estimate has more.
+/// Largest number of decimals of an estimate.
 const MOST_DECIMALS: usize = 400;
 
 impl Estimate {
@@ -936,8 +936,8 @@ mod tests {
         assert_eq!(found.exponent.expect("a power").value, ratio(-1, 4));
     }
 
-    /// Of few coefficients too: pairs of all angles and powers, with a real singularity near them,
-    /// at their own distance or within it.
+    /// Few coefficients give a right result or none: pairs of all angles and powers, with a real
+    /// singularity near them, at their own distance or within it.
     #[test]
     fn few_coefficients_say_what_is_so_or_nothing() {
         for degree in [20, 29] {

@@ -103,7 +103,7 @@ pub(super) struct Program {
 }
 
 impl Program {
-    /// Nothing yet; series are to have the orders up to this one.
+    /// An empty program for series up to this order.
     pub(super) fn new(degree: usize) -> Self {
         Self {
             length: degree + 1,
@@ -330,7 +330,7 @@ impl<const L: usize> Tape<L> {
         }
     }
 
-    /// Hands the series of one lane at these places, and those of the corners, to a tape of its
+    /// Copies the series of one lane at these indices, and those of the corners, to a tape of its
     /// own with the same operations.
     pub fn copy_lane_to(&self, lane: usize, places: impl Iterator<Item = usize>, own: &mut Tape) {
         let length = self.program.length;

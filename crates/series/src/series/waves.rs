@@ -23,7 +23,7 @@ use pulp::NullaryFnOnce;
 use crate::exact::residue::sums::multiply;
 use crate::exact::residue::{Arithmetic, Lanes, Residues};
 
-/// Below, the sums are as fast as another halving.
+/// Number of points below which the sums are as fast as another halving.
 const LEAF: usize = 12;
 
 /// Number and symmetry of the points, and the transformation to them.
@@ -36,7 +36,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// For `count` harmonics: the odd ones `1, 3, ...` or all of `0, 1, 2, ...`.
+    /// The points for `count` harmonics: the odd ones `1, 3, ...` or all of `0, 1, 2, ...`.
     pub fn new(count: usize, half_wave: bool) -> Self {
         let mut halvings = 0;
         while count >> (halvings + 1) >= LEAF {

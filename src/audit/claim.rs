@@ -60,7 +60,7 @@ pub enum PrintedStatement {
     Formula(Expr),
     /// The order of the numbers of all entries.
     Trend(Trend),
-    /// No more than the claim itself says.
+    /// The text says no more than the claim itself.
     Words,
 }
 
@@ -176,7 +176,7 @@ pub enum ClaimQuantity {
     Coordinates(Expr),
     /// Options that are to go together.
     Settings(Vec<(String, String)>),
-    /// Nothing: what it needs is not printed.
+    /// No quantity: what it needs is not printed.
     Nothing,
 }
 
@@ -296,10 +296,10 @@ impl ClaimQuantity {
 /// The verdict on a claim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// To every printed digit.
+    /// The claim is reproduced to every printed digit.
     Reproduced,
-    /// To every printed digit, by something that the publication does not say and the program
-    /// found.
+    /// The claim is reproduced to every printed digit under an assumption that the publication does
+    /// not state and the program found.
     UnderAssumption,
     /// Something that is needed is not printed.
     NotReproducible,

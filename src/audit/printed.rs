@@ -12,7 +12,7 @@ use crate::expr::parse_expression;
 /// The rule by which digits are cut or rounded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Rounding {
-    /// To the nearest: `rounded`.
+    /// Rounding to nearest: `rounded`.
     #[default]
     Rounded,
     /// Cut off behind the last one: `cut`.
@@ -43,11 +43,11 @@ impl Rounding {
 /// The relation of a printed number to the true one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relation {
-    /// It is this one.
+    /// The true number is this one.
     Equal,
-    /// It is below, `<` or `<=`.
+    /// The true number is below, `<` or `<=`.
     Below,
-    /// It is above, `>` or `>=`.
+    /// The true number is above, `>` or `>=`.
     Above,
 }
 

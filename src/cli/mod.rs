@@ -185,7 +185,7 @@ enum Formats {
     Pictures,
     /// Pictures and tables of comma-separated values.
     PicturesAndTables,
-    /// No other formats.
+    /// No formats beside those of every result.
     Words,
     /// A single format, whatever the file is called: there is no `--format`.
     One,

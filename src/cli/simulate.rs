@@ -367,7 +367,7 @@ fn motions(
     Ok((motions, settings(arguments, &asked)))
 }
 
-/// Beside each row the rest times of its motion without a barrier and with one that loses nothing.
+/// Adds to each row the rest times of its motion without a barrier and with a lossless one.
 fn add_baseline(
     rows: &mut [Summary],
     motions: &[(Model, Start)],

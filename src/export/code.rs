@@ -76,7 +76,7 @@ pub enum NoCode {
     /// The frequency is solved for.
     #[error("no program: {0}")]
     SolvedByNumbers(String),
-    /// It has no frequency at the values.
+    /// The answer has no frequency at the values.
     #[error("no program: the formula has no motion at these values{}", .0.as_ref().map_or(String::new(), |reason| format!(": {reason}")))]
     NoMotion(Option<String>),
     /// The amplitude changes.
@@ -268,7 +268,7 @@ struct Routine {
 enum Statement {
     /// A variable.
     Variable(Symbol, Value),
-    /// From here on the size of an argument stands for it.
+    /// The size of an argument replaces it from here on.
     Size(Symbol),
     /// Without this being positive there is no value, for the reason given; what the value is
     /// computed with is the second.

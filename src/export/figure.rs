@@ -154,7 +154,7 @@ pub struct Panel<'a> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FigureError {
-    /// No panel, or a panel (named) without a curve.
+    /// There is no panel, or a panel (named) has no curve.
     #[error("nothing to draw in {0}: leave it out or give it data")]
     Empty(String),
     /// A curve (named) with fewer than two points to join.

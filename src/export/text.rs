@@ -246,7 +246,8 @@ pub(super) fn judgement(
     hbar: Symbol,
     tolerance: f64,
 ) -> (String, Vec<(String, String)>) {
-    /// Of the frequency: no order that there is takes such an error into the last digits at once.
+    /// Relative error of the frequency that counts as large: no order takes such an error into the
+    /// last digits at once.
     const LARGE: f64 = 1e-5;
     let at = verification.at.iter();
     let at: Vec<String> =

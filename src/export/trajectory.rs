@@ -157,8 +157,8 @@ pub fn sweep_csv(sweep: &MotionSweep) -> String {
     }
 }
 
-/// Over what is varied: every state on the section, a bifurcation diagram; without a section the
-/// least and the greatest values.
+/// The picture of a sweep over the varied parameter: every state on the section, a bifurcation
+/// diagram; without a section the least and the greatest values.
 ///
 /// # Errors
 /// As [`figure`].

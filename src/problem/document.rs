@@ -265,9 +265,9 @@ pub struct GeneticSection {
     pub penalty_factor: Option<f64>,
     /// Largest deviation of the mass from that of the density, relative.
     pub constraint_tolerance: Option<f64>,
-    /// Over so many generations the best value is watched.
+    /// Number of generations over which the best value is watched.
     pub stall_generations: Option<u32>,
-    /// Below this change of it the search ends.
+    /// Change of the best value below which the search ends.
     pub function_tolerance: Option<f64>,
     /// `average` or `weighted`.
     pub stall_test: Option<String>,
@@ -291,9 +291,9 @@ pub enum Objectives {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BarrierSide {
-    /// At smaller angles.
+    /// The barrier at smaller angles.
     Left,
-    /// At greater angles.
+    /// The barrier at greater angles.
     Right,
 }
 
@@ -368,7 +368,7 @@ pub struct LagrangianSection {
 pub struct Contact {
     /// Dimensionless stiffness; from `[design]` by equation (8) where it is not given.
     pub gamma: Option<f64>,
-    /// For an impact, the whole force of the barrier as an expression in the depth d: `"k*d^2"`.
+    /// The whole force of the barrier for `impact`, as an expression in the depth d: `"k*d^2"`.
     pub force: Option<String>,
     /// Dimensionless contact damping of equation (7).
     pub mu: Option<f64>,
@@ -384,7 +384,7 @@ pub struct Contact {
     pub at_speed: Option<f64>,
     /// c of F = (k + c d') d^(3/2), N s/m^(5/2), in place of mu.
     pub damping: Option<f64>,
-    /// For an impact, the law of the contact in the derived phases; `all` for a table of every law.
+    /// The law of the contact in the derived phases of `impact`; `all` for a table of every law.
     pub law: Option<String>,
     /// The rule by which a line replaces the elastic force; `all` for a table of every law of the
     /// contact.

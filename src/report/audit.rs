@@ -170,7 +170,7 @@ fn finding_blocks(finding: &ClaimFinding) -> Vec<Block<'_>> {
     blocks
 }
 
-/// So many claims, in words.
+/// The number of claims in words.
 fn claims(count: usize) -> String {
     match count {
         1 => "1 claim".to_owned(),

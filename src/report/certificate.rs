@@ -29,9 +29,9 @@ use crate::verify::Verdict;
 /// A certificate of either kind.
 #[derive(Clone, Copy, Debug)]
 pub enum AnyCertificate<'a> {
-    /// Of a motion whose energy is conserved.
+    /// The certificate of a motion whose energy is conserved.
     Motion(&'a Certificate),
-    /// Of a limit cycle, or of a driven motion.
+    /// The certificate of a limit cycle, or of a driven motion.
     Damped(&'a DampedCertificate),
 }
 

@@ -34,7 +34,8 @@ impl ImpactCertificateReport<'_> {
         errors.collect()
     }
 
-    /// Of every closed form whether each of its numbers is proved to be within the tolerance.
+    /// The verdict on every closed form: whether each of its numbers is proved to be within the
+    /// tolerance.
     pub fn verdicts(&self) -> Vec<(PhaseReading, Verdict)> {
         let errors = self.errors();
         let within = |column: usize| {

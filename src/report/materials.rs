@@ -8,8 +8,8 @@ use crate::impact::{
     Parameter, REST_FRACTION, YieldCheck,
 };
 
-/// Below this part of the rest time materials rest at the same time, for what an engineer decides
-/// by it.
+/// Part of the rest time below which materials rest at the same time, for the decision of an
+/// engineer.
 const SAME: f64 = 0.01;
 
 /// Energies that are listed of one material; JSON and tables of comma-separated values have all.
@@ -391,7 +391,7 @@ fn what_it_does(study: &MaterialStudy, held: &[&HeldFixed], ratio_changes: bool)
     })
 }
 
-/// By which factors the first contact differs from the softest to the hardest.
+/// The factors by which the first contact differs from the softest to the hardest material.
 fn what_the_modulus_changes(study: &MaterialStudy) -> Option<String> {
     let [softest, hardest] = study.softest_and_hardest();
     let (soft, hard) = (study.rows[softest].first?, study.rows[hardest].first?);

@@ -78,7 +78,7 @@ pub enum Block<'a> {
     Question(&'a Equation),
     /// The equation as it was typed, if it has no normal form.
     QuestionAsTyped(&'a str),
-    /// Who derived the answer, and what its amplitude measures.
+    /// The method of the answer, and the definition of its amplitude.
     Title {
         /// The method and its order.
         words: String,

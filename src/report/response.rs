@@ -268,7 +268,7 @@ fn sticking(response: &ResponseDiagram, branch: &Branch) -> Option<Block<'static
     )))
 }
 
-/// From where to where, how many points, how many of them stable.
+/// The range of a branch, its number of points, and the number of stable ones, in words.
 fn extent_in_words(response: &ResponseDiagram, branch: &Branch) -> String {
     let points = &branch.points;
     let name = response.question.parameter;

@@ -34,7 +34,8 @@ pub struct TrajectoryReport<'a> {
     pub judge: Option<&'a Trajectory>,
     /// The times at which states are asked for.
     pub samples: &'a [f64],
-    /// Until when it is known to six digits, if not to the end ([`Trajectory::known_until`]).
+    /// The time until which the motion is known to six digits, if that is not its end
+    /// ([`Trajectory::known_until`]).
     pub known_until: Option<f64>,
 }
 

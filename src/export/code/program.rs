@@ -570,7 +570,7 @@ fn displacement_and_velocity(
 /// The transformation of a motion to negative amplitudes, if its formula holds for the size of the
 /// amplitude.
 enum Sign {
-    /// By the formula itself.
+    /// The formula holds for either sign.
     Any,
     /// With the opposite sign.
     Opposite,

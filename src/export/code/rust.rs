@@ -36,7 +36,7 @@ pub(super) const SYNTAX: Syntax = Syntax {
     routine,
 };
 
-/// Of a number written out no power is a method: it has no type of its own.
+/// A power. That of a literal number cannot be a method call: it has no type of its own.
 fn power(base: &Base, exponent: Exponent) -> String {
     let Base { inside, operand, literal } = base;
     let call = |method: &str, argument: &str| match (literal, argument) {

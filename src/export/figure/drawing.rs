@@ -257,8 +257,8 @@ pub(in crate::export) fn power_of_ten(exponent: i32) -> String {
     format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
 }
 
-/// At most [`MOST_POINTS`] points and the last one: of each run the first, the lowest and the
-/// highest.
+/// Thins points to at most [`MOST_POINTS`] and the last one: of each run the first, the lowest and
+/// the highest are kept.
 fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     if points.len() <= MOST_POINTS {
         return points.to_vec();

@@ -379,7 +379,7 @@ pub(super) fn fraction(text: &str, key: &str) -> Result<Rational, JsonError> {
 /// A decimal, `2.5e-33`, that is not negative.
 pub(super) fn decimal(text: &str, key: &str) -> Result<Rational, JsonError> {
     const EXPECTED: &str = "a decimal such as `2.5e-33`, not negative";
-    /// No double is smaller, and none larger.
+    /// Decimal exponents: no double is smaller, and none larger.
     const EXPONENTS: std::ops::RangeInclusive<i32> = -400..=400;
     if text.len() > LONGEST_NUMBER {
         return unexpected(key, EXPECTED);

@@ -154,7 +154,7 @@ pub(super) struct DocumentNames {
 }
 
 impl DocumentNames {
-    /// Those beside the names of an equation, driven or not.
+    /// The names that avoid those of an equation, driven or not.
     pub fn avoiding(own: impl IntoIterator<Item = Symbol>, driven: bool) -> Self {
         let own: Vec<Symbol> = own.into_iter().collect();
         let letters = ResultSymbols::avoiding(&own, driven);

@@ -759,7 +759,7 @@ impl Modulation {
 
 impl Displacement {
     fn read(&self, names: &DocumentNames) -> Result<FourierSeries<Polynomials>, JsonError> {
-        /// No document of ours comes near it; a hostile one must not fill the memory.
+        /// Largest number of a harmonic in a document: a hostile one must not fill the memory.
         const HIGHEST_HARMONIC: usize = 100_000;
         let length = self
             .harmonics

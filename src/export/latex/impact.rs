@@ -10,7 +10,7 @@ use crate::impact::{
     TimeFunction,
 };
 
-/// Of what the phases that follow are.
+/// The head of the phases of a version.
 pub(super) fn reading(reading: PhaseReading) -> String {
     let words = match reading {
         PhaseReading::Paper => "contact speed from the one-term motion",

@@ -112,7 +112,7 @@ fn last_rest(study: &MaterialStudy) -> f64 {
     longest.unwrap_or(study.question.settings.duration)
 }
 
-/// Of the forms that are not as good as the given one the first: mu beside lambda, lambda beside
+/// The first of the forms that are worse than the given one: mu compared with lambda, lambda with
 /// mu.
 fn contrast(study: &MaterialStudy) -> Option<&HeldFixed> {
     let by_mu = |damping: ContactDamping| {

@@ -10,9 +10,9 @@ use crate::optimize::{Objective, Study, Variable, WITHIN};
 /// The most runs that are drawn.
 const DRAWN: usize = 200;
 
-/// For one objective the convergence of all runs beside the searches it is measured by, and the
-/// designs within 1 % of the best in the box, with the best of the runs and the paper's Table 5;
-/// for several the front, the first objective against each other one.
+/// The picture of a search: for one objective the convergence of all runs and of the baselines, and
+/// the designs within 1 % of the best in the box, with the best of the runs and the paper's Table
+/// 5; for several the front, the first objective against each other one.
 ///
 /// # Errors
 /// As [`figure`].
@@ -122,7 +122,8 @@ struct Designs {
     pairs: Vec<[usize; 2]>,
     labels: Vec<String>,
     within: String,
-    /// For each pair: those near the best, the best of each run, the paper's.
+    /// The points of each pair: the designs near the best, the best of each run, those of the
+    /// paper.
     points: Vec<[Points; 3]>,
 }
 

@@ -219,7 +219,7 @@ fn parameter(name: &str) -> [&str; 2] {
     }
 }
 
-/// From where to where: `ζ from 0.01 to 0.05`.
+/// The range of an axis in words: `ζ from 0.01 to 0.05`.
 fn range(axis: &Axis) -> String {
     let [_, symbol] = parameter(axis.name());
     let [from, to] = axis.ends().map(decimal);

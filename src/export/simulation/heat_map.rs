@@ -74,7 +74,7 @@ impl Ruler {
         self.ends[1] >= self.ends[0]
     }
 
-    /// From the edge of the first cell to that of the last, upwards, where there are so many.
+    /// The range from the edge of the first cell to that of the last, upwards.
     fn range(&self, count: usize) -> (f64, f64) {
         let [from, to] = self.ends;
         let half = 0.5 * (to - from) / (count.max(2) - 1) as f64;

@@ -46,7 +46,7 @@ pub struct Report<'a> {
     pub dissipation: Option<&'a Dissipation>,
     /// The pendulum in SI units, where they are known.
     pub units: Option<&'a Units>,
-    /// Until when it is known to six digits, if not to the end
+    /// The time until which the motion is known to six digits, if that is not its end
     /// ([`known_until`](crate::impact::known_until)).
     pub known_until: Option<f64>,
 }

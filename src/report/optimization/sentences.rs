@@ -62,8 +62,8 @@ fn apart(value: f64, reference: f64) -> Option<f64> {
 /// A search that finds a design better by this part has shown that the best one here is no optimum.
 const BETTER: f64 = 1e-3;
 
-/// Who found a better design than the best one of the study, and by which part it is better; `None`
-/// where nobody did.
+/// The search that found a better design than the best one of the study, and the relative
+/// improvement; `None` if there is none.
 fn found_better(study: &Study, decision: &Decision) -> Option<(String, f64)> {
     let own = study.spread()?.best;
     let rivals = study.rivals.iter();

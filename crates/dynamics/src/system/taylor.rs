@@ -542,7 +542,7 @@ impl SystemSeries {
     /// The coefficients of everything about a point.
     ///
     /// # Errors
-    /// As [`Self::settle`].
+    /// As [`Self::switch_corners`].
     pub(super) fn expand(&mut self, time: f64, values: &[f64]) -> Result<(), usize> {
         self.expand_about(time, values);
         self.compute();

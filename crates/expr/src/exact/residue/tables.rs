@@ -19,7 +19,7 @@ impl<'m> Tables<'m> {
         rows * lengths.iter().sum::<usize>()
     }
 
-    /// Tables with rows of these lengths, in that much [room](Self::room).
+    /// Tables with rows of these lengths, in that much [room](Self::entry_count).
     pub fn new(rows: usize, lengths: &[usize], entries: &'m mut [Lanes]) -> Self {
         let mut stride = 0;
         let mut places = Vec::with_capacity(lengths.len());

@@ -15,7 +15,7 @@
 //! stick:   v = 0 and |all other forces| <= alpha, until they exceed it
 //! ```
 //!
-//! A [`Runner`] says which series it needs next ([`Runner::wants`], [`Runner::inputs`]) and is
+//! A [`Runner`] says which series it needs next ([`Runner::next_equation`], [`Runner::inputs`]) and is
 //! given its coefficients ([`Runner::advance`]); who computes them, for one motion or for several
 //! side by side, it does not know. What happens in most steps, a turning point and a touch or a
 //! release, is found side by side too, in `course`; what else may end a step stands in `flight` and

@@ -262,7 +262,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         [plan.most_harmonics(), if has_damping { plan.most_harmonics() } else { 0 }]
     }
 
-    /// All orders in that much [room](Self::room).
+    /// All orders in that much [room](Self::entry_count).
     pub fn new(
         arithmetic: A,
         plan: &'a Plan<'a>,

@@ -287,7 +287,7 @@ impl<'m> HarmonicTable<'m> {
         (plan.last + 1).saturating_sub(plan.first(index, parity)).div_ceil(plan.step())
     }
 
-    /// A table of this many harmonics, in memory of [this size](Self::room).
+    /// A table of this many harmonics, in memory of [this size](Self::entry_count).
     pub fn new(plan: &Plan, count: usize, entries: &'m mut [Lanes]) -> Self {
         let mut end = 0;
         let mut rows = |parity: usize| -> Vec<OrderRange> {

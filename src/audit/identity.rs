@@ -23,7 +23,7 @@ pub(super) struct TermDifference {
 const POINTS: usize = 64;
 const ENOUGH: usize = 8;
 
-/// The difference of two expressions; none where they are the same.
+/// The difference of two expressions; `None` if they are the same.
 ///
 /// # Errors
 /// Expressions too large to be written out; no point at which both have a value.

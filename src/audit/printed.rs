@@ -71,7 +71,7 @@ pub struct Printed {
 }
 
 impl Printed {
-    /// Reads a number; nothing where the text is none.
+    /// Reads a number; `None` if the text is none.
     ///
     /// ```
     /// use lindstedt::audit::{Printed, Rounding};
@@ -154,7 +154,7 @@ impl Printed {
     }
 
     /// Whether a number is printed so: by its digits, or within a relative tolerance, or on the
-    /// right side of a bound. What is no number never is.
+    /// right side of a bound. What is not a number never is.
     pub fn is_reproduced_by(
         &self,
         number: f64,

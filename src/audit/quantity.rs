@@ -366,7 +366,7 @@ impl EvaluationScope<'_, '_> {
                     NotComputable::Refused("the main mass alone never rests".to_owned())
                 })
             }
-            // The best value of so many generations ago is needed beside that of now.
+            // The best value of this many generations ago is needed beside that of now.
             "stall_generation" => {
                 let [window] = self.numbers(["window"])?;
                 Ok(window + 1.0)

@@ -16,7 +16,7 @@ pub(super) struct Answer<'a> {
     pub(super) document: &'a Document<'a>,
     /// The largest width of a line of text, in characters.
     pub(super) width: usize,
-    /// Its picture, drawn when it is asked for; none where a kind of result has none.
+    /// Its picture, drawn when it is asked for; `None` if a kind of result has none.
     pub(super) picture: Option<Draw<'a>>,
     /// Writes the formats that are not made of a document: JSON, comma-separated values, programs.
     pub(super) other: &'a dyn Fn(Format) -> Result<String, Failure>,

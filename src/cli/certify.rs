@@ -54,7 +54,7 @@ pub struct CheckArguments {
 /// The time limit of `check` in seconds where none is given.
 pub const LONGEST_CHECK: f64 = 60.0;
 
-/// A certificate of the most harmonics has so many bytes.
+/// A certificate of the most harmonics has this many bytes.
 const LARGEST_CERTIFICATE: usize = 16 << 20;
 
 /// Two positive numbers, the smaller one first.
@@ -153,7 +153,7 @@ fn run(arguments: &CertifyArguments) -> Result<Outcome, Failure> {
     Ok(Outcome { partial, ..outcome })
 }
 
-/// The formula of the steady motion under a drive; `None` where there is none.
+/// The formula of the steady motion under a drive; `None` if there is none.
 fn steady_formula(oscillator: &Oscillator, values: &Values) -> Option<Solution> {
     let options = Options { method: Some(Method::MultipleScales), ..Options::default() };
     let options = with_resonance_at(oscillator, &options, values).ok()?;

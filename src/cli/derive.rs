@@ -317,7 +317,7 @@ fn run(arguments: &DeriveArguments) -> Result<Outcome, Failure> {
     })
 }
 
-/// Does the work on so many threads, or on all.
+/// Does the work on this many threads, or on all.
 fn on_threads<T: Send>(threads: Option<u16>, work: impl FnOnce() -> T + Send) -> T {
     let pool = threads
         .and_then(|count| rayon::ThreadPoolBuilder::new().num_threads(count.into()).build().ok());
@@ -659,7 +659,7 @@ fn separate_values(text: &str) -> Vec<&str> {
     parts.map(|part| part.trim_matches([',', ';', ' '])).collect()
 }
 
-/// The values of the command line, which win over those of the file; `None` where there are none at
+/// The values of the command line, which win over those of the file; `None` if there are none at
 /// all.
 pub(super) fn exact_values(
     at: &[String],

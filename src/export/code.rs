@@ -115,7 +115,7 @@ impl NoCode {
 /// those at the values of the verification; `tolerance` is that of its verdict.
 ///
 /// # Errors
-/// [`NoCode`], where the answer is no formula for a periodic motion.
+/// [`NoCode`], where the answer is not a formula for a periodic motion.
 ///
 /// ```
 /// use lindstedt::export::code::{self, Language};

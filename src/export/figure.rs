@@ -190,7 +190,7 @@ pub struct ImpactMotion<'a> {
     pub style: CurveStyle,
     /// Samples (t, x, x'): for the pendulum t in units of 1/omega, x in rad, x' = dx/d(omega t).
     pub samples: &'a [(f64, f64, f64)],
-    /// One contact: (time since touch, depth), in the same units; empty where there is none.
+    /// One contact: (time since touch, depth), in the same units; empty if there is none.
     pub contact: &'a [(f64, f64)],
 }
 

@@ -357,7 +357,7 @@ pub(super) fn waves(series: &FourierSeries<Polynomials>, solution: &Solution) ->
     )
 }
 
-/// The motion, one harmonic a line; nothing where only quadrature gives it.
+/// The motion, one harmonic a line; empty if only quadrature gives it.
 fn motion(solution: &Solution) -> Vec<String> {
     let coordinate = symbol(solution.coordinate());
     if let Some(motion) = &solution.closed_motion {

@@ -204,7 +204,7 @@ fn swings_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Points {
     times.iter().map(|t| (t * units.time(), height(*t))).collect()
 }
 
-/// The amplitude of these swings; nothing where the mass creeps back.
+/// The amplitude of these swings; `None` if the mass creeps back.
 fn decay_alone(report: &PrimaryReport, mass: f64, times: &[f64]) -> Option<Points> {
     let (case, units) = (&report.motion.case, report.units);
     let [.., y, speed] = case.start;

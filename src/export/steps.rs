@@ -39,8 +39,8 @@ fn indexed(letter: &str, order: u32) -> String {
     symbol(Symbol::new(&format!("{letter}{order}")))
 }
 
-/// The derivation as text: the orders of an expansion, or the lines of any other method; empty
-/// where there is nothing to show.
+/// The derivation as text: the orders of an expansion, or the lines of any other method; empty if
+/// there is nothing to show.
 ///
 /// ```
 /// use lindstedt::{Options, Oscillator, solve};
@@ -196,7 +196,7 @@ pub fn latex(solution: &Solution) -> String {
     }
 }
 
-/// The derivation as rows of `align*`; none where there is nothing to show.
+/// The derivation as rows of `align*`; empty if there is nothing to show.
 pub(super) fn rows(solution: &Solution) -> Vec<String> {
     let mut lines = Vec::new();
     if !solution.steps.is_empty() {
@@ -347,7 +347,7 @@ fn formula_as_latex(formula: &DerivationFormula) -> String {
     }
 }
 
-/// A factor in front of something that is no expression.
+/// A factor in front of something that is not an expression.
 fn before(factor: &Expr) -> String {
     match (*factor == Expr::one(), factor.terms().len() > 1) {
         (true, _) => String::new(),

@@ -73,7 +73,7 @@ impl ProblemError {
         Self { help: help.into(), ..self }
     }
 
-    /// The way forward: what could be written instead; `None` where it is not known.
+    /// The way forward: what could be written instead; `None` if it is not known.
     pub fn help(&self) -> Option<String> {
         self.help.clone()
     }

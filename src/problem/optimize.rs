@@ -347,7 +347,7 @@ impl Problem {
         Ok(())
     }
 
-    /// An error where a key is given whose condition, named by `other`, is not there.
+    /// An error if a key is given whose condition, named by `other`, is not there.
     fn needs(
         &self,
         key: &'static str,

@@ -185,7 +185,7 @@ impl CertificateReport<'_> {
         named.map_or_else(|| "Omega".to_owned(), |named| named.driving_frequency.to_string())
     }
 
-    /// Whether the formula is proved to be within the tolerance; `None` where no formula is judged.
+    /// Whether the formula is proved to be within the tolerance; `None` if no formula is judged.
     pub fn verdict(&self) -> Option<Verdict> {
         let errors = self.certified.formula.as_ref()?;
         Some(Verdict::from_passed(errors.relative.upper <= not_above_typed(self.tolerance)))
@@ -534,7 +534,7 @@ fn between_percent(range: SizeBounds) -> String {
     between_exactly([range.lower, range.upper].map(percent), " %")
 }
 
-/// Ends of which the second is `None` where nothing is known.
+/// Ends of which the second is `None` if nothing is known.
 fn between_exactly([lower, upper]: [Option<Rational>; 2], unit: &str) -> String {
     /// Digits of ends that agree, and of others.
     const DIGITS: [usize; 2] = [6, 4];

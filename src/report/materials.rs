@@ -136,7 +136,7 @@ pub(super) fn chosen(given: Parameter, forms: [(Parameter, Option<f64>, &str); 2
     }
 }
 
-/// ` at the speed 1 m/s, 1.22347 rad*omega`; empty where no speed is stated.
+/// ` at the speed 1 m/s, 1.22347 rad*omega`; empty if no speed is stated.
 fn at_speed(dissipation: &Dissipation) -> String {
     let speed = dissipation.at_speed_in_words();
     speed.map_or(String::new(), |speed| format!(" at the speed {speed}"))

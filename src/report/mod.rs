@@ -102,7 +102,7 @@ pub enum Block<'a> {
         /// The right side.
         right: Sum,
     },
-    /// An equation that is no polynomial.
+    /// An equation that is not a polynomial.
     Equality {
         /// The left side.
         left: Expr,

@@ -22,7 +22,7 @@ pub struct StabilityReport<'a> {
 }
 
 impl StabilityReport<'_> {
-    /// Whether every curve passes; nothing without values.
+    /// Whether every curve passes; `None` without values.
     pub fn passes(&self) -> Option<bool> {
         let (_, judged) = self.judged?;
         Some(judged.iter().all(|curve| curve.passes))

@@ -110,7 +110,7 @@ pub enum SystemError {
         "`{0}` begins at {1:e}, but no state is followed beyond 1e300: count it in a larger unit"
     )]
     Large(Symbol, f64),
-    /// A start, an end or a tolerance that is no finite number, or an end before the start.
+    /// A start, an end or a tolerance that is not a finite number, or an end before the start.
     #[error(
         "start and end must be finite, the end after the start, the tolerance between 1e-16 and 0.1"
     )]
@@ -225,8 +225,7 @@ pub enum PathEnd {
     StepLimit,
     /// The steps vanish, or a state or an event has no value any more: a pole, or a root at zero.
     Singular,
-    /// A state leaves the range of numbers: it is larger than 1e300, or so large that its rates
-    /// are.
+    /// A state overflowed: it is larger than 1e300, or so large that its rates are.
     Overflow,
     /// The state stays on a corner: the rates on both sides lead back to it.
     Sticks,

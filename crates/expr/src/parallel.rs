@@ -45,7 +45,7 @@ pub fn threads() -> usize {
     return 1;
 }
 
-/// Work in a pool of so many threads; in the current one where no other can be made.
+/// Work in a pool of this many threads; in the current one where no other can be made.
 #[cfg(feature = "parallel")]
 pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {

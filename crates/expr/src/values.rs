@@ -1,8 +1,8 @@
 //! Exact values of symbols, as a user gives them.
 //!
 //! In: names with numbers or multiples of pi, as text or one by one. Out: the same, exact or as
-//! doubles; in the units of whoever wrote the equation. What is no number, or is given twice, is a
-//! [`ValueError`].
+//! doubles; in the units of whoever wrote the equation. What is not a number, or is given twice, is
+//! a [`ValueError`].
 //!
 //! ```
 //! # use lindstedt_expr as lindstedt;

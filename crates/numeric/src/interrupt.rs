@@ -60,7 +60,7 @@ impl Progress {
         Self(Some(counter))
     }
 
-    /// Work of so many parts begins.
+    /// Work of this many parts begins.
     pub fn begin(self, parts: usize) {
         if let Some(counter) = self.0 {
             counter.done.store(0, Ordering::Relaxed);

@@ -342,7 +342,7 @@ impl fmt::Display for DerivationFormula {
     }
 }
 
-/// A factor in front of something that is no expression.
+/// A factor in front of something that is not an expression.
 fn before(factor: &Expr) -> String {
     match *factor == Expr::one() {
         true => String::new(),

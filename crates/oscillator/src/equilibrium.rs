@@ -348,7 +348,7 @@ pub fn no_bottom(oscillator: &Oscillator) -> OscillatorError {
 }
 
 /// That `x = 0` is unstable, where the stable equilibria have letters in them: what the numbers put
-/// in for these decide. `None` where there are none.
+/// in for these decide. `None` if there are none.
 pub(crate) fn stable_elsewhere(oscillator: &Oscillator) -> Option<OscillatorError> {
     let still = oscillator.force.substitute(oscillator.velocity(), &Expr::zero()).ok()?;
     if still.contains(Symbol::new("t")) {
@@ -369,8 +369,8 @@ enum EquilibriumPosition {
     Rounded(f64),
 }
 
-/// The sides of corners on which there is no force at rest, where letters decide them; nothing
-/// where there is one all the same.
+/// The sides of corners on which there is no force at rest, where letters decide them; `None` if
+/// there is one all the same.
 fn rests_beside_corners(
     still: &Expr,
     coordinate: Symbol,

@@ -1,7 +1,7 @@
 //! The question: an equation of motion in normal form.
 //!
 //! In comes an equation as text or as [`Equation`]; out goes an [`Oscillator`], its force taken
-//! apart by what its terms do, and expanded about rest. What is no oscillator, or cannot be
+//! apart by what its terms do, and expanded about rest. What is not an oscillator, or cannot be
 //! expanded, is an [`OscillatorError`] that names the term.
 //!
 //! ```text
@@ -94,11 +94,11 @@ pub struct PerturbedForce {
     pub linear: Polynomial,
     /// All other terms up to the order asked for.
     pub terms: Vec<Term>,
-    /// Constants that are no polynomials and were given names.
+    /// Constants that are not polynomials and were given names.
     pub definitions: Vec<Definition>,
 }
 
-/// Why an equation is no oscillator, or not one that can be expanded.
+/// Why an equation is not an oscillator, or not one that can be expanded.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OscillatorError {
@@ -185,7 +185,7 @@ pub enum OscillatorError {
         /// Advice for a root without a value at zero, at which another term restores.
         zero: Option<String>,
     },
-    /// The given position is no stable equilibrium.
+    /// The given position is not a stable equilibrium.
     #[error("{coordinate} = {asked} is no stable equilibrium{}", stable_ones(*coordinate, .stable))]
     NoSuchEquilibrium {
         /// The coordinate.
@@ -208,7 +208,7 @@ pub enum OscillatorError {
         /// The small parameter.
         small: String,
     },
-    /// A term that is no polynomial in coordinate and velocity.
+    /// A term that is not a polynomial in coordinate and velocity.
     #[error("the term `{0}` is no polynomial in the coordinate and its velocity")]
     NotPolynomial(Quotation),
     /// The force has no Taylor series.
@@ -876,7 +876,7 @@ fn at_rest(expression: &Expr, coordinate: Symbol) -> Result<Expr, ExprError> {
         .substitute(coordinate.derivative(), &Expr::zero())
 }
 
-/// Names for constants that are no polynomials.
+/// Names for constants that are not polynomials.
 struct NamedConstants {
     taken: Vec<Symbol>,
     definitions: Vec<Definition>,
@@ -966,8 +966,8 @@ impl PerturbedForce {
         written.unwrap_or(coefficient)
     }
 
-    /// Without a letter of the linear force, whose power says that of the force; `None` where
-    /// another of its letters is there more often than before.
+    /// Without a letter of the linear force, whose power says that of the force; `None` if another
+    /// of its letters is there more often than before.
     fn with_frequency(
         &self,
         coefficient: &Polynomial,

@@ -117,7 +117,7 @@ pub struct Definition {
 }
 
 impl Definition {
-    /// The meaning as people read it.
+    /// The meaning in the usual form.
     pub fn meaning_in_words(&self) -> String {
         constant_in_words(&self.meaning)
     }
@@ -135,7 +135,7 @@ pub fn constant_in_words(value: &Expr) -> String {
 /// A number with more signs than this must be a rounded one.
 const MANY: usize = 16;
 
-/// The number that a constant is, where it is a fraction of so many digits that it must be a
+/// The number that a constant is, where it is a fraction of this many digits that it must be a
 /// rounded number.
 pub fn long_fraction(value: &Expr) -> Option<&Rational> {
     value.as_number().filter(|number| !number.is_integer() && number.to_string().len() > MANY)
@@ -223,7 +223,7 @@ pub struct Solution {
     pub modulation: Option<Modulation>,
     /// Driven motions: the frequency-response equation and what follows from it.
     pub response: Option<Response>,
-    /// Whether the coefficients are rounded to fifteen digits, because the equilibrium is no
+    /// Whether the coefficients are rounded to fifteen digits, because the equilibrium is not a
     /// fraction.
     pub numerical: bool,
     /// Notes on the validity of the formula.
@@ -518,7 +518,7 @@ impl Solution {
         std::iter::once(law).chain(definitions).collect()
     }
 
-    /// The definitions of the law in one line: none where words stand for it.
+    /// The definitions of the law in one line: empty if words stand for it.
     pub fn definitions_of_formula(&self) -> Vec<&Definition> {
         let shown = self.law.in_one_line();
         match shown {
@@ -558,7 +558,7 @@ impl Solution {
 
     /// omega^2 at given values: of the law where it is explicit, else the root of the relation that
     /// continues omega0^2 from amplitude zero or, about an unstable equilibrium, that of the first
-    /// order; `None` where a value is missing or the branch ends before.
+    /// order; `None` if a value is missing or the branch ends before.
     pub fn frequency_squared_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<f64> {
         if let Some(law) = self.law.frequency_squared() {
             return self.evaluate(law, value_of).ok();
@@ -577,8 +577,8 @@ impl Solution {
         Some(frequency * frequency.abs())
     }
 
-    /// The value of an expression in the parameters, the amplitude and the definitions; `None`
-    /// where it has none.
+    /// The value of an expression in the parameters, the amplitude and the definitions; `None` if
+    /// it has none.
     fn evaluate_expression(
         &self,
         expression: &Expr,
@@ -593,8 +593,8 @@ impl Solution {
     }
 
     /// The branch of the relation that starts at the linear frequency or, about an unstable
-    /// equilibrium, at the first order, at given values; `None` where there is no relation, a value
-    /// is missing, or the branch has no start.
+    /// equilibrium, at the first order, at given values; `None` if there is no relation, a value is
+    /// missing, or the branch has no start.
     pub fn branch_at(&self, value_of: &dyn Fn(Symbol) -> Option<f64>) -> Option<Branch> {
         let relation = self.law.relation()?;
         let (omega, amplitude) = (Symbol::new("omega"), self.amplitude.symbol());

@@ -4,13 +4,13 @@
 //! h = sum q_i' dL/dq_i' - L,  L = T - V        dh/dt = -dL/dt + sum q_i' (Q_i - dD/dq_i')
 //! ```
 //!
-//! (H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6, for h; of an equation it is
-//! `x'^2/2 + V(x)`.) In: coordinates, their accelerations, numbers for every parameter, a start, a
+//! (H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6, for h; of an equation it is `x'^2/2
+//! + V(x)`.) In: coordinates, their accelerations, numbers for every parameter, a start, a
 //! duration. Out: a [`Trajectory`]: every state at any time, the balance of energy where a
 //! mechanism has energies, and the same by the other integrator to judge it. Power series go first;
-//! where they end, as at a root or a touch that is no power series in time, Runge-Kutta takes the
-//! whole motion. Where dry friction, `sgn(x')`, `sgn(x' - c)` on a belt or `sgn(x' - y')` between
-//! two bodies, holds something, it stays until the force on it is more than friction bears.
+//! where they end, as at a root or a touch that is not a power series in time, Runge-Kutta takes
+//! the whole motion. Where dry friction, `sgn(x')`, `sgn(x' - c)` on a belt or `sgn(x' - y')`
+//! between two bodies, holds something, it stays until the force on it is more than friction bears.
 
 mod energy;
 mod hold;
@@ -51,7 +51,7 @@ pub struct TrajectoryRequest {
     pub equations: Vec<Expr>,
     /// Coordinates and velocities with their rates.
     pub rates: Rates,
-    /// h and what changes it; nothing for an equation whose inertia depends on the position.
+    /// h and what changes it; `None` for an equation whose inertia depends on the position.
     pub energy: Option<EnergyWithPowers>,
     /// A number for every parameter.
     pub values: BTreeMap<Symbol, f64>,
@@ -87,7 +87,7 @@ pub struct Trajectory {
     pub course: TrajectoryRequest,
     /// The integration method.
     pub integrator: Integrator,
-    /// The balance of energy; nothing where there is no energy.
+    /// The balance of energy; `None` if there is no energy.
     pub balance: Option<EnergyBalance>,
     pieces: Vec<TrajectorySegment>,
     on_section: OnSection,
@@ -120,7 +120,7 @@ pub enum TrajectoryError {
     /// A value for a name that does not occur.
     #[error("there is a value for `{0}`, which does not occur")]
     Unknown(Symbol),
-    /// A start for a name that is no state.
+    /// A start for a name that is not a state.
     #[error("the start gives `{name}`, but the states are {states}")]
     NoState {
         /// The name.
@@ -234,7 +234,7 @@ impl TrajectoryRequest {
     /// Sets the initial value of a state: `x`, `x'`.
     ///
     /// # Errors
-    /// A name that is no state.
+    /// A name that is not a state.
     pub fn begin(&mut self, name: Symbol, value: f64) -> Result<(), TrajectoryError> {
         match self.rates.states.iter().position(|state| *state == name) {
             Some(place) => self.start[place] = value,
@@ -621,7 +621,7 @@ impl Trajectory {
     }
 
     /// An expression as a function of the time and the states, at the values of this motion; `None`
-    /// where a name has no value.
+    /// if a name has no value.
     fn compiled(&self, expression: &Expr) -> Option<impl Fn(f64, &[f64]) -> f64> {
         let states = &self.course.rates.states;
         let moving: Vec<Symbol> =
@@ -633,7 +633,7 @@ impl Trajectory {
         Some(move |time: f64, state: &[f64]| function.call(&[&[time], state, &numbers].concat()))
     }
 
-    /// The states and the work so far; nothing outside of the motion.
+    /// The states and the work so far; `None` outside of the motion.
     fn all_at(&self, time: f64) -> Option<Vec<f64>> {
         let place = self.pieces.partition_point(|piece| piece.end() < time);
         self.pieces.get(place)?.states_at(time)
@@ -703,7 +703,7 @@ impl Trajectory {
         self.reason == PathEnd::Reached
     }
 
-    /// Coordinates, then velocities; nothing outside of the motion.
+    /// Coordinates, then velocities; `None` outside of the motion.
     pub fn states_at(&self, time: f64) -> Option<Vec<f64>> {
         let mut state = self.all_at(time)?;
         state.truncate(self.course.rates.states.len());

@@ -50,8 +50,7 @@ pub(super) fn keys_of(kind: &str) -> Vec<&'static str> {
     [own, of_a_law, of_a_number].concat()
 }
 
-/// The quantity: one of [`KINDS`], a name of a number, or nothing where only what is missing is
-/// told.
+/// The quantity: one of [`KINDS`], a name of a number, or empty if only what is missing is told.
 pub(super) fn kind(section: &Section) -> ReadResult<&str> {
     let Some(quantity) = &section.quantity else {
         return match section.needs.is_empty() {

@@ -153,7 +153,7 @@ pub struct FrictionTable {
     /// Every value of pi that was tried.
     pub readings: Vec<PiReading>,
     /// The least and the greatest pi with which every printed entry comes out, rounded or cut off;
-    /// nothing where none does.
+    /// `None` if none does.
     pub pi_range: Option<[f64; 2]>,
     best: usize,
 }

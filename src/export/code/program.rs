@@ -173,7 +173,7 @@ struct Law {
     squared: bool,
 }
 
-/// The law that is judged, or why it is no formula.
+/// The law that is judged, or why it is not a formula.
 fn formula(solution: &Solution) -> Result<Law, String> {
     let polynomial = |law: &Polynomial, squared| Law {
         value: ordered(solution, law),

@@ -521,7 +521,7 @@ fn positive_first(terms: &[CodeFragment]) -> Vec<CodeFragment> {
     [plus, minus, others].concat()
 }
 
-/// A text broken before its signs; the first line has so many letters before it.
+/// A text broken before its signs; the first line has this many letters before it.
 fn filled(text: &str, before: usize) -> Vec<String> {
     let mut places: Vec<usize> = [" + ", " - "]
         .iter()

@@ -70,7 +70,7 @@ pub(in crate::export) fn with_hbar(method: &MethodRow) -> String {
     }
 }
 
-/// The law in one line, with the definitions it needs; in words where it is no formula.
+/// The law in one line, with the definitions it needs; in words where it is not a formula.
 fn formula(method: &MethodRow) -> Result<String, &'static str> {
     let ordered = |law| sum(&method.row.solution.ordered(law));
     let slow = method.row.solution.slow();

@@ -86,8 +86,8 @@ impl Ruler {
 /// The colour of a cell without a value.
 const MISSING: &str = "#c8c8c8";
 
-/// A cell for each motion, grey where its value is no number, with the quantity and its unit at the
-/// scale of colours.
+/// A cell for each motion, grey where its value is not a number, with the quantity and its unit at
+/// the scale of colours.
 pub(super) fn heat_map(
     grid: &[Vec<f64>],
     [down, across]: [&Axis; 2],

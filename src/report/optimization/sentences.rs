@@ -50,7 +50,7 @@ pub fn optimization_sentences(study: &Study) -> Vec<String> {
     sentences
 }
 
-/// The part by which a value lies above another one; `None` where that is zero and this is not.
+/// The part by which a value lies above another one; `None` if that is zero and this is not.
 fn apart(value: f64, reference: f64) -> Option<f64> {
     let apart = match value == reference {
         true => 0.0,

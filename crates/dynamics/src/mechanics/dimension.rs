@@ -101,7 +101,7 @@ pub enum UnitError {
         /// The unit of the argument.
         found: String,
     },
-    /// An exponent that is no number, on something of a unit; or an exponent of a unit.
+    /// An exponent that is not a number, on something of a unit; or an exponent of a unit.
     #[error("in the {part} the power `{term}` has no unit: its base is measured in {found}")]
     Power {
         /// The part of the mechanism.
@@ -117,7 +117,7 @@ pub enum UnitError {
 }
 
 impl UnitError {
-    /// The way forward: what could be written instead; `None` where it is not known.
+    /// The way forward: what could be written instead; `None` if it is not known.
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Missing(name) => Some(format!(

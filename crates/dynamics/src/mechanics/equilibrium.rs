@@ -183,8 +183,8 @@ fn is_angle(name: Symbol, forces: &[Expr]) -> bool {
     forces.iter().any(|force| force.contains(name)) && !forces.iter().any(outside)
 }
 
-/// The places of all coordinates, with the angles where they were put; nothing where the others do
-/// not follow linearly, or a force is left over.
+/// The places of all coordinates, with the angles where they were put; `None` if the others do not
+/// follow linearly, or a force is left over.
 fn linear_places(
     coordinates: &[Symbol],
     forces: &[Expr],

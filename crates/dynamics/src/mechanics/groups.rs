@@ -241,7 +241,7 @@ impl Basis {
         basis
     }
 
-    /// The powers of the members whose product has this dimension; nothing where there is none.
+    /// The powers of the members whose product has this dimension; `None` if there is none.
     fn exponents(&self, dimension: &Dimension) -> Option<Vec<Rational>> {
         let width = self.members.len();
         // A row for each base unit, a column for each member, and the right side: eliminated

@@ -26,8 +26,8 @@ pub struct EquationsOfMotion {
     pub mass: Vec<Vec<Expr>>,
     /// h, what stands beside the accelerations on the left side.
     pub rest: Vec<Expr>,
-    /// The left sides as people print them: the factor that all terms have in common is divided
-    /// out; `x'' + ...` where the inertia is a number or a product of parameters.
+    /// The left sides in the usual form: the factor that all terms have in common is divided out;
+    /// `x'' + ...` where the inertia is a number or a product of parameters.
     pub left: Vec<Expr>,
     /// The divisor of each equation; parameters are taken not to vanish.
     pub divisors: Vec<Expr>,
@@ -192,7 +192,7 @@ impl EquationsOfMotion {
         !self.coordinates.contains(&name.coordinate()) && name.name() != "t"
     }
 
-    /// One equation as people print it, and what it was divided by.
+    /// One equation in the usual form, and what it was divided by.
     fn printed(&self, index: usize) -> Result<(Expr, Expr), ExprError> {
         let inertia = &self.mass[index];
         let accelerations =

@@ -138,7 +138,7 @@ pub enum MechanicsError {
 }
 
 impl MechanicsError {
-    /// The way forward: what could be written instead; `None` where it is not known.
+    /// The way forward: what could be written instead; `None` if it is not known.
     pub fn help(&self) -> Option<String> {
         match self {
             Self::Unit(error) => error.help(),

@@ -50,8 +50,7 @@ pub struct Mode {
     pub frequency: f64,
     /// Re lambda, per unit of time: positive where it grows.
     pub growth: f64,
-    /// The coordinates in proportion, the largest 1; nothing where damping makes them move out of
-    /// step.
+    /// The coordinates in proportion, the largest 1; `None` if damping makes them move out of step.
     pub shape: Option<Vec<f64>>,
 }
 

@@ -30,7 +30,7 @@ pub struct MechanismStudy {
     pub equations: EquationsOfMotion,
     /// Places of rest, and how it swings there.
     pub rests: Vec<RestStudy>,
-    /// The dimensionless form; nothing without units.
+    /// The dimensionless form; `None` without units.
     pub groups: Option<Result<Groups, MechanicsError>>,
 }
 
@@ -43,8 +43,8 @@ pub struct RestStudy {
     pub drive: DriveAtRest,
     /// The linear equations there.
     pub modes: Modes,
-    /// Their numbers; nothing where not every parameter has a value, or the place does not exist
-    /// for these values.
+    /// Their numbers; `None` if not every parameter has a value, or the place does not exist for
+    /// these values.
     pub numbers: Option<Result<Vec<Mode>, NoModes>>,
 }
 

@@ -48,7 +48,7 @@ fn without_inverses(expression: &Expr) -> Result<Expr, ExprError> {
     })
 }
 
-/// The sum with one pair of its terms joined; nothing where there is no such pair.
+/// The sum with one pair of its terms joined; `None` if there is no such pair.
 fn join_one_pair(sum: &Expr) -> Result<Option<Expr>, ExprError> {
     let terms = sum.terms();
     let bare: Vec<(Rational, Expr)> = terms.iter().map(without_number).collect();
@@ -121,7 +121,7 @@ impl SineOrCosine {
         Expr::function(function, vec![self.angle.clone()])
     }
 
-    /// `first*second + turned*turned`, or their difference, as one wave; nothing where that is no
+    /// `first*second + turned*turned`, or their difference, as one wave; `None` if that is no
     /// shorter.
     fn combine(first: &Self, second: &Self, opposite: bool) -> Result<Option<Expr>, ExprError> {
         let (u, v) = (&first.angle, &second.angle);

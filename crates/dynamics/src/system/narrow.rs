@@ -144,8 +144,8 @@ fn argument(node: &Expr) -> Option<Argument> {
 }
 
 impl FunctionGrowth {
-    /// The change of the argument that matters where it is so large, give or take so much; nothing
-    /// where the function is as good as constant.
+    /// The change of the argument that matters where it is so large, give or take so much; `None`
+    /// if the function is as good as constant.
     fn change(self, argument: f64, error: f64) -> Option<f64> {
         /// Argument beyond which an exponential is negligible, whatever its factor.
         const NOTHING: f64 = 150.0;
@@ -211,7 +211,7 @@ pub(super) fn end_by_values(
     const CELLS: usize = 32;
     /// Relative accuracy of the search for an extremum.
     const CLOSELY: f64 = 1e-9;
-    /// Turns of an argument beyond which so many cells do not show them.
+    /// Turns of an argument beyond which this many cells do not show them.
     const MOST_TURNS: usize = 8;
     let most = coarse.iter().fold(f64::NEG_INFINITY, |most, value| most.max(*value));
     let least = coarse.iter().fold(f64::INFINITY, |least, value| least.min(*value));
@@ -285,7 +285,7 @@ fn turned(place: f64, cell: f64, value: &impl Fn(f64) -> f64) -> (f64, f64) {
 }
 
 /// The time that a place takes, of the argument, give or take an error, its rate and the rate of
-/// that; nothing where the function is as good as constant.
+/// that; `None` if the function is as good as constant.
 fn width(kind: FunctionGrowth, [argument, slope, curvature]: [f64; 3], error: f64) -> Option<f64> {
     let change = kind.change(argument, error)?;
     let width = f64::min(change / slope.abs(), (2.0 * change / curvature.abs()).sqrt());

@@ -9,8 +9,8 @@ pub(super) fn value(series: &[f64], s: f64) -> f64 {
     series.iter().rev().fold(0.0, |sum, coefficient| sum * s + coefficient)
 }
 
-/// The values at several places, each as [`value`] has it: so many sums at a time wait less on each
-/// other than one.
+/// The values at several places, each as [`value`] has it: this many sums at a time wait less on
+/// each other than one.
 pub(super) fn values(series: &[f64], places: &[f64], into: &mut Vec<f64>) {
     Arch::new().dispatch(EvaluatePolynomial { series, places, into });
 }

@@ -518,8 +518,8 @@ pub(super) struct SystemSeries {
 }
 
 impl SystemSeries {
-    /// This expansion takes other numbers for the letters; it has none where other numbers make
-    /// other recurrences.
+    /// This expansion with other numbers for the parameters; `None` if other numbers make other
+    /// recurrences.
     pub(super) fn with_numbers(&self, numbers: &BTreeMap<Symbol, f64>) -> Option<Self> {
         let mut other = self.clone();
         other.tape.set_numbers(numbers).then_some(other)

@@ -279,7 +279,7 @@ impl<K: Number> Polynomial<K> {
     /// `symbol` replaced by `value`, whose negative powers exist only where it is a single
     /// invertible term.
     ///
-    /// `None` where a negative power would be needed and does not exist.
+    /// `None` if a negative power would be needed and does not exist.
     pub fn substitute(&self, symbol: Symbol, value: &Self) -> Option<Self> {
         let mut result = Self::zero();
         let mut powers: BTreeMap<i32, Self> = BTreeMap::new();

@@ -88,7 +88,7 @@ pub fn derivative(polynomial: &[Rational]) -> Vec<Rational> {
     powers.map(|(k, c)| c * Rational::from_integer(k.into())).collect()
 }
 
-/// The polynomial `u` of lowest degree with `a u = 1` modulo `modulus`; `None` where they have a
+/// The polynomial `u` of lowest degree with `a u = 1` modulo `modulus`; `None` if they have a
 /// factor in common.
 pub fn inverse_modulo(a: &[Rational], modulus: &[Rational]) -> Option<Vec<Rational>> {
     let (mut r, mut next_r) = (trimmed(modulus.to_vec()), remainder(a, modulus));

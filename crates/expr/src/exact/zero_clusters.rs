@@ -26,8 +26,8 @@ pub struct Cluster {
 }
 
 /// All zeros on the positive axis, and the pairs beside it that are closer to each other than to
-/// all others, nearest first; `None` where rounding or a multiple zero hides them, or where zero is
-/// a zero.
+/// all others, nearest first; `None` if rounding or a multiple zero hides them, or if zero is a
+/// zero.
 pub fn clusters(polynomial: &[BigFloat]) -> Option<Vec<Cluster>> {
     /// Largest number of steps, far more than any search needs: some ten for each zero, wherever it
     /// is.
@@ -72,7 +72,7 @@ fn logarithm(value: &BigFloat) -> f64 {
     })
 }
 
-/// Two to a power that is no whole number, to the digits of a double.
+/// Two to a power that is not a whole number, to the digits of a double.
 fn power_of_two(exponent: f64, bits: usize) -> BigFloat {
     let whole = exponent.floor();
     BigFloat::of_f64((exponent - whole).exp2(), bits).shifted(whole as i64)
@@ -128,7 +128,7 @@ impl<'a> ClusterSearch<'a> {
         let terms = terms.map(|(size, k)| size + f64::from(k) * (largest + 1.0));
         let noise = match at.is_zero() {
             true => f64::NEG_INFINITY,
-            // Every term takes part in so many sums.
+            // Every term takes part in this many sums.
             false => {
                 terms.fold(f64::NEG_INFINITY, f64::max) + 3.0 * (degree as f64 + 2.0).log2()
                     - self.bits as f64
@@ -213,7 +213,7 @@ impl About {
         Some(inside)
     }
 
-    /// The logarithm of the radius of the largest disc with so many zeros, not far beyond the
+    /// The logarithm of the radius of the largest disc with this many zeros, not far beyond the
     /// place.
     fn radius_of(&self, count: usize) -> Option<f64> {
         /// Least logarithm of a distance over that of the point.

@@ -116,7 +116,7 @@ impl Expr {
         self.expand_within(EXPANSION_LIMIT)
     }
 
-    /// As [`Expr::expand`], giving up after so many products of two terms.
+    /// As [`Expr::expand`], giving up after this many products of two terms.
     ///
     /// # Errors
     /// [`ExprError::TooManyTerms`] where that is not enough.

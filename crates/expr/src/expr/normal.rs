@@ -168,7 +168,7 @@ impl ProductBuilder {
     }
 }
 
-/// One power for factors of one base, or `None` where they stay as they are: a single factor, or a
+/// One power for factors of one base, or `None` if they stay as they are: a single factor, or a
 /// power of a number that would be too long to write out.
 fn merge(group: &[Factor]) -> Option<Expr> {
     match group {

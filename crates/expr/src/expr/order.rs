@@ -14,7 +14,7 @@ use super::{Expr, Node, number};
 use crate::exact::rational::to_f64;
 use crate::symbol::Symbol;
 
-/// Sorts terms that are no sums and pairwise unlike into printing order.
+/// Sorts terms that are not sums and pairwise unlike into printing order.
 pub(super) fn sort_terms(terms: &mut [Expr]) {
     terms.sort_by_cached_key(TermKey::from_term);
 }

@@ -41,7 +41,7 @@ use lexer::{Token, TokenKind};
 /// such names of an equation the answer writes `omega0_` and `phi`.
 pub const NAMES_OF_ANSWERS: [&str; 3] = ["A", "a", "omega"];
 
-/// Spellings of what is no number.
+/// Spellings of what is not a number.
 const NOT_NUMBERS: [&str; 3] = ["nan", "inf", "infinity"];
 
 /// The deepest nesting of parentheses, calls, powers and signs together.

@@ -109,7 +109,7 @@ impl Expr {
     }
 
     /// The value with a bound of the error that rounding makes, given the same of the symbols;
-    /// `None` where a symbol is missing.
+    /// `None` if a symbol is missing.
     ///
     /// ```
     /// # use lindstedt_expr as lindstedt;

@@ -153,8 +153,8 @@ impl Typed {
         }
     }
 
-    /// The line in which a quotation stands, and a line with carets under it; `None` where it
-    /// stands nowhere as it is.
+    /// The line in which a quotation stands, and a line with carets under it; `None` if it stands
+    /// nowhere as it is.
     pub fn locate(&self, quotation: &str) -> Option<[String; 2]> {
         let number = (0..self.terms.len()).find(|&number| self.quote(&[number]) == quotation);
         let span = match number.and_then(|number| self.terms.get(number)) {

@@ -71,7 +71,7 @@ impl Geometry {
 /// Duration of the comparison runs in durations of the run: they rest later.
 pub const BASELINE_DURATIONS: f64 = 4.0;
 
-/// The rest times beside that of this motion; `None` where there is nothing to compare: no impact,
+/// The rest times beside that of this motion; `None` if there is nothing to compare: no impact,
 /// nothing that damps the swing, or a pivot that moves.
 ///
 /// # Errors

@@ -133,8 +133,8 @@ pub enum CaseError {
 }
 
 impl Case {
-    /// The value of a parameter; nothing where the case leaves it to others: gamma to the design,
-    /// the start to the amplitude.
+    /// The value of a parameter; `None` if the case leaves it to others: gamma to the design, the
+    /// start to the amplitude.
     pub fn get(&self, parameter: Parameter) -> Option<f64> {
         match parameter {
             Parameter::Amplitude => Some(self.amplitude),
@@ -309,8 +309,7 @@ impl Case {
         }
     }
 
-    /// The speed at which a restitution is stated, in units of L omega; `None` where none is
-    /// stated.
+    /// The speed at which a restitution is stated, in units of L omega; `None` if none is stated.
     fn stated_speed(&self) -> Option<f64> {
         let StiffnessDesign { length, gravity, .. } = self.design;
         let speed = self.at_speed?;
@@ -318,8 +317,7 @@ impl Case {
     }
 
     /// The speed of the first touch from this start, by the energy of the swing: without damping
-    /// and with the pivot at rest. Nothing where no barrier is reached, or where the start is
-    /// inside one.
+    /// and with the pivot at rest. `None` if no barrier is reached, or if the start is inside one.
     fn touch_speed(&self, start: Start) -> Option<f64> {
         let Start { x, velocity } = start;
         if self.left.is_some_and(|left| x < left) || self.right.is_some_and(|right| x > right) {

@@ -49,7 +49,7 @@ pub struct Impact {
     pub flight: Option<Flight>,
     /// The contact of the derived column.
     pub contact: Option<DerivedContact>,
-    /// Every law of the contact at `energy_speed`; empty where they are not asked for.
+    /// Every law of the contact at `energy_speed`; empty if they are not asked for.
     pub contact_laws: Vec<ContactRow>,
     /// lambda of the contact, zero where it loses nothing.
     pub damping: f64,
@@ -286,7 +286,7 @@ impl Impact {
         self.equilibrium + self.setup.side.sign() * self.truth.phase_point_at(self.truth.period).0
     }
 
-    /// Runge-Kutta and then every column, with so many points a phase.
+    /// Runge-Kutta and then every column, with this many points a phase.
     pub fn paths(&self, points: usize) -> Vec<SampledMotion> {
         let sign = self.setup.side.sign();
         let path = |[touch, exit, end]: [f64; 3], at: &dyn Fn(f64) -> (f64, f64)| {
@@ -417,7 +417,7 @@ impl Impact {
                 contact,
             ),
         ];
-        // An error that is no number lies beyond every tolerance.
+        // An error that is not a number lies beyond every tolerance.
         let beyond = |names: &[&str]| {
             let those = errors.iter().filter(|(name, _)| names.contains(name));
             those

@@ -54,7 +54,7 @@ pub enum CollisionError {
     /// The release is not a finite number.
     #[error("the release must be a finite number, not {0}")]
     Release(f64),
-    /// A swing whose energy is no number.
+    /// A swing whose energy is not a number.
     #[error(
         "the amplitude {0:e} is too small: its energy, A^2, underflows; below 1e-8 or so the swing is linear, scale it up"
     )]

@@ -88,7 +88,7 @@ impl Flight {
         };
         let motion = motion_at(amplitude)?;
         let start = motion.displacement_at(0.0);
-        // An answer that is no number fails as well.
+        // An answer that is not a number fails as well.
         let starts_there = (start - from).abs() <= 1e-6 * distance.abs();
         match starts_there {
             true => Ok(Self { solution, amplitude, sign, is_turned: turned.is_some(), motion }),
@@ -179,7 +179,7 @@ fn motion_at(
     Ok(solution.motion_at(&values)?)
 }
 
-/// The equation of -x; `None` where it is that of x.
+/// The equation of -x; `None` if it is that of x.
 fn mirrored_equation(swing: &Oscillator) -> Result<Option<Oscillator>, ImpactError> {
     let x = swing.coordinate;
     if is_odd(&swing.force, x)? {

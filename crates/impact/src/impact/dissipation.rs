@@ -89,8 +89,7 @@ pub struct ContactScales {
     pub length: f64,
     /// Acceleration of gravity, m/s^2.
     pub gravity: f64,
-    /// The speed at which a restitution is stated, in units of L omega; nothing where none is
-    /// known.
+    /// The speed at which a restitution is stated, in units of L omega; `None` if none is known.
     pub speed: Option<f64>,
 }
 
@@ -143,7 +142,7 @@ impl ContactDamping {
         Parameter::ContactDamping,
     ];
 
-    /// A value in this form; nothing for a parameter that is no damping of the contact.
+    /// A value in this form; `None` for a parameter that is no damping of the contact.
     pub fn given(form: Parameter, value: f64) -> Option<Self> {
         match form {
             Parameter::Mu => Some(Self::Mu(value)),
@@ -302,8 +301,8 @@ pub struct Dissipation {
     pub at_speed: Option<f64>,
     /// The speed in m/s, if the file states it so.
     pub at_speed_si: Option<f64>,
-    /// The speed of the first touch without damping, in units of L omega; nothing where no barrier
-    /// is reached.
+    /// The speed of the first touch without damping, in units of L omega; `None` if no barrier is
+    /// reached.
     pub touch_speed: Option<f64>,
     /// The restitution at that speed.
     pub restitution: Option<f64>,

@@ -18,7 +18,7 @@ use crate::values::ValueError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImpactError {
-    /// The swing is no oscillator.
+    /// The swing is not an oscillator.
     #[error(transparent)]
     Oscillator(#[from] OscillatorError),
     /// The force of the swing is not one of the position alone.

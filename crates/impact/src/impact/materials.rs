@@ -234,7 +234,7 @@ pub struct MaterialRow {
     pub gamma: f64,
     /// Its damping, in every form.
     pub dissipation: Dissipation,
-    /// The first contact; nothing where the barrier is not touched, or not left again.
+    /// The first contact; `None` if the barrier is not touched, or not left again.
     pub first: Option<FirstContact>,
     /// The motion until it rests.
     pub course: MotionToRest,
@@ -262,7 +262,7 @@ pub struct HeldFixed {
 }
 
 impl HeldFixed {
-    /// The materials that rest first and last, by their numbers; nothing where one of them does not
+    /// The materials that rest first and last, by their numbers; `None` if one of them does not
     /// rest.
     pub fn extremes(&self) -> Option<[usize; 2]> {
         let times: Vec<f64> = self.rest_times.iter().copied().collect::<Result<_, _>>().ok()?;
@@ -271,7 +271,7 @@ impl HeldFixed {
         Some([numbers.clone().min_by(by_time)?, numbers.max_by(by_time)?])
     }
 
-    /// (latest - soonest)/soonest of the rest times; nothing where a material does not rest.
+    /// (latest - soonest)/soonest of the rest times; `None` if a material does not rest.
     pub fn spread(&self) -> Option<f64> {
         let [first, last] = self.extremes()?.map(|number| self.rest_times[number]);
         let (first, last) = (first.ok()?, last.ok()?);
@@ -525,7 +525,7 @@ impl MaterialStudy {
         [softest, hardest]
     }
 
-    /// Whether a softer material always rests sooner (true) or always later (false); nothing where
+    /// Whether a softer material always rests sooner (true) or always later (false); `None` if
     /// neither is so, or one does not rest.
     pub fn order(&self, held: &HeldFixed) -> Option<bool> {
         let mut rests: Vec<(f64, f64)> = Vec::new();

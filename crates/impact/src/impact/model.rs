@@ -137,7 +137,7 @@ impl Default for Start {
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ModelError {
-    /// A parameter that is no finite number.
+    /// A parameter that is not a finite number.
     #[error("{parameter} must be a finite number, not {value}")]
     NotFinite {
         /// The parameter.
@@ -307,8 +307,8 @@ impl Model {
     }
 
     /// When Coulomb friction lets go of a pendulum at rest at x, held since `t` against the
-    /// constant force `field` and the excitation: the time and the direction; nothing where it
-    /// holds for ever.
+    /// constant force `field` and the excitation: the time and the direction; `None` if it holds
+    /// for ever.
     ///
     /// |field + beta cos x sin(eta t)| = alpha, with the force on its way out.
     pub(super) fn release(&self, t: f64, x: f64, field: f64) -> Option<(f64, f64)> {

@@ -151,7 +151,7 @@ impl Parameter {
         self.row().1
     }
 
-    /// Its SI unit, or rad and rad*omega; empty where it is dimensionless.
+    /// Its SI unit, or rad and rad*omega; empty if it is dimensionless.
     pub const fn unit(self) -> &'static str {
         self.row().2
     }
@@ -183,7 +183,7 @@ pub struct UnknownParameter {
 }
 
 impl UnknownParameter {
-    /// The way forward: what could be written instead; `None` where it is not known.
+    /// The way forward: what could be written instead; `None` if it is not known.
     pub fn help(&self) -> Option<String> {
         self.nearest.map(|name| format!("did you mean `{name}`?"))
     }

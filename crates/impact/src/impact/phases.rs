@@ -313,7 +313,7 @@ impl MotionPhase {
         self.form.phase_point_at(time - self.clock)
     }
 
-    /// The formula as people write it, six significant digits (nine for the centre of the contact,
+    /// The formula in the usual form, six significant digits (nine for the centre of the contact,
     /// so that the depth has six), without terms too small to write ([`Form::felt_terms`]): t1 is
     /// the start of the contact, t2 its end, t3 that of the return.
     pub fn closed_form(&self) -> String {

@@ -172,7 +172,7 @@ struct NearTouch {
     root: u32,
 }
 
-/// The power of a symbol among the factors of a term; `None` where it stands elsewhere in them.
+/// The power of a symbol among the factors of a term; `None` if it stands elsewhere in them.
 fn power_of(symbol: Symbol, term: &Expr) -> Option<Rational> {
     let mut power = Rational::default();
     for factor in term.factors().1 {
@@ -191,7 +191,7 @@ impl NearTouch {
     /// is typed.
     const HIGHEST_ROOT: u32 = 12;
 
-    /// The polynomial of this force of the depth; `None` where the force keeps its digits, does not
+    /// The polynomial of this force of the depth; `None` if the force keeps its digits, does not
     /// vanish at the touch, or is not analytic in a root of the depth.
     fn new(force: &Expr, depth: Symbol, stiffness: (Symbol, f64)) -> Option<Self> {
         /// A depth below all that matter: digits that are there at this one are there everywhere.

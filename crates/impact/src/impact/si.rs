@@ -33,8 +33,8 @@ pub struct SiImpact {
     /// The greatest force of the contact, its damping included, N; without damping that at the
     /// greatest depth.
     pub peak_force: ImpactQuantity,
-    /// The pressure of Hertz in its middle at the greatest depth, Pa; nothing where the radius is
-    /// not known.
+    /// The pressure of Hertz in its middle at the greatest depth, Pa; `None` if the radius is not
+    /// known.
     pub peak_pressure: Option<ImpactQuantity>,
 }
 

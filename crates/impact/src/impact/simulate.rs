@@ -30,7 +30,7 @@ pub enum SimulationError {
     /// The model or the start.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// A duration that is no positive number.
+    /// A duration that is not a positive number.
     #[error("the duration must be a positive number, not {0}")]
     Duration(f64),
     /// A motion so small that the force of a barrier cannot be told from zero.
@@ -87,9 +87,9 @@ pub fn simulate(
 }
 
 /// The time until which a motion with a moving pivot is known to six digits of its size, one of two
-/// thousand in it; beyond it a start displaced by [`DISPLACEMENT`] of it leads elsewhere. `None`
-/// where it is known to the end, where the pivot is at rest, whose motions are regular, or without
-/// a path. Costs as much as the motion.
+/// thousand in it; beyond it a start displaced by [`DISPLACEMENT`] of it leads elsewhere. `None` if
+/// it is known to the end, where the pivot is at rest, whose motions are regular, or without a
+/// path. Costs as much as the motion.
 ///
 /// ```text
 /// errors of the integration grow as the displacement does: six digits are lost where it has grown 1e-6/tolerance times

@@ -340,7 +340,7 @@ fn with_smaller_error(one: Option<Derived>, other: Option<Derived>) -> Option<De
     }
 }
 
-/// The largest of them in size; what is no number is the largest.
+/// The largest of them in size; what is not a number is the largest.
 pub(super) fn worst<'a>(errors: impl IntoIterator<Item = &'a f64>) -> f64 {
     errors.into_iter().fold(0.0, |worst: f64, error| match error.is_nan() {
         true => f64::INFINITY,

@@ -88,7 +88,7 @@ pub struct Units {
     pub gravity: f64,
     /// Radius of the sphere, m; without it no pressure is known.
     pub radius: Option<f64>,
-    /// The modulus that gamma follows from; nothing where gamma is given.
+    /// The modulus that gamma follows from; `None` if gamma is given.
     pub modulus: Option<Modulus>,
     /// Yield limit of the sphere, Pa, where one is stated.
     pub sphere_yield: Option<f64>,
@@ -123,7 +123,7 @@ impl Units {
     }
 
     /// The pressure p0 = 3 F/(2 pi R d) in the middle of a contact, Pa, by its force in N and its
-    /// depth in m; nothing without a radius.
+    /// depth in m; `None` without a radius.
     pub fn pressure(&self, force: f64, depth: f64) -> Option<f64> {
         Some(1.5 * force / (PI * self.radius? * depth))
     }

@@ -66,12 +66,12 @@ pub struct Sensitivity {
     pub value: f64,
     /// Its limits.
     pub limits: [f64; 2],
-    /// (p/T) dT/dp of the objective T; nothing where it has no value on one side.
+    /// (p/T) dT/dp of the objective T; `None` if it has no value on one side.
     pub elasticity: Option<f64>,
     /// Between these values, the others held, the objective is no more than 1 % worse.
     pub alone: [f64; 2],
     /// The least and the greatest value of the objective on its whole range, the others held,
-    /// constraints aside; nothing where the motion does not rest somewhere.
+    /// constraints aside; `None` if the motion does not rest somewhere.
     pub range: Option<[f64; 2]>,
     /// The role that follows.
     pub role: VariableRole,

@@ -28,14 +28,14 @@ pub struct HardestContact {
     pub force: f64,
     /// The pressure of Hertz at the greatest depth, Pa.
     pub pressure: f64,
-    /// The coefficient of restitution of the contact with the greatest force; `None` where it did
-    /// not begin with a touch or did not end.
+    /// The coefficient of restitution of the contact with the greatest force; `None` if it did not
+    /// begin with a touch or did not end.
     pub restitution: Option<f64>,
 }
 
 impl HardestContact {
     /// The greatest of these contacts: each its force in units of m g, its depth in rad, and its
-    /// restitution. `None` where there is none.
+    /// restitution. `None` if there is none.
     fn from_contacts(
         model: &Model,
         units: &Units,
@@ -76,7 +76,7 @@ pub struct EvaluatedDesign {
     pub rest_time: Result<f64, NoRest>,
     /// The contacts until it rests; all of them where it does not.
     pub impacts: usize,
-    /// The hardest of them; `None` where there was none, or it was not asked for.
+    /// The hardest of them; `None` if there was none, or it was not asked for.
     pub hardest: Option<HardestContact>,
     /// The rest time of the main mass, s; `None` without one.
     pub primary_rest_time: Option<Result<f64, NoRest>>,
@@ -156,7 +156,7 @@ impl OptimizationProblem {
         })
     }
 
-    /// The default design as a point of this box, in it or not; nothing where materials are tried.
+    /// The default design as a point of this box, in it or not; `None` if materials are tried.
     pub fn default_point(&self) -> Option<Vec<f64>> {
         let usual = Case::default();
         let value = |parameter: Parameter| usual.get(parameter);

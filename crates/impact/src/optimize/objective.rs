@@ -74,7 +74,7 @@ impl Objective {
         self.row().0
     }
 
-    /// Its unit, as it is typed; empty where it has none.
+    /// Its unit, as it is typed; empty if it has none.
     pub fn unit(self) -> &'static str {
         self.row().1
     }
@@ -84,7 +84,7 @@ impl Objective {
         self.row().2
     }
 
-    /// Its value of a design; nothing where it has none.
+    /// Its value of a design; `None` if it has none.
     pub fn value(self, design: &EvaluatedDesign) -> Option<f64> {
         (self.row().3)(design).filter(|value| value.is_finite())
     }

@@ -50,7 +50,7 @@ pub struct OptimizationProblem {
     pub case: Case,
     /// The variables of the search.
     pub variables: Vec<Variable>,
-    /// The materials of the barrier that are tried, in place of its modulus; none where that is
+    /// The materials of the barrier that are tried, in place of its modulus; empty if that is
     /// searched or fixed.
     pub materials: Vec<Material>,
     /// The objectives to be minimised; several at once make a front.
@@ -256,7 +256,7 @@ impl OptimizationProblem {
         counting.any(|objective| objective.is_rest_time() || objective == Objective::Impacts)
     }
 
-    /// The reason for which a design has no value of an objective; `None` where it has all of them.
+    /// The reason for which a design has no value of an objective; `None` if it has all of them.
     pub(super) fn missing_value(&self, design: &EvaluatedDesign) -> Option<String> {
         let missing = self.objectives.iter().find(|objective| objective.value(design).is_none())?;
         let rest = match missing.is_of_main_mass() {

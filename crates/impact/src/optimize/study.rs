@@ -60,7 +60,8 @@ pub struct StudyObserver<'a> {
     pub stop: &'a (dyn Fn() -> bool + Sync),
     /// Hears of every run that has ended by itself.
     pub done: &'a (dyn Fn(&SearchRun) + Sync),
-    /// Hears of so many more generations, of those that [`OptimizationProblem::most_work`] counts.
+    /// Hears of this many more generations, of those that [`OptimizationProblem::most_work`]
+    /// counts.
     pub progress: &'a (dyn Fn(usize) + Sync),
 }
 
@@ -114,7 +115,7 @@ pub struct BaselineSearch {
     pub name: &'static str,
     /// Evaluations of one run.
     pub evaluations: usize,
-    /// The best value of every run; infinite where it found none.
+    /// The best value of every run; infinite if it found none.
     pub values: Vec<f64>,
     /// The median of the best values so far over the runs, after every population of evaluations.
     pub curve: Vec<f64>,
@@ -138,7 +139,7 @@ pub struct Finalist {
     pub by_chain: Vec<f64>,
     /// The design by integration.
     pub design: EvaluatedDesign,
-    /// Its objectives by integration; infinite where it has none.
+    /// Its objectives by integration; infinite if it has none.
     pub values: Vec<f64>,
     /// Whether it rests and keeps the constraints by integration; no front has a design that does
     /// not.
@@ -166,7 +167,7 @@ pub struct Study {
     pub rivals: Vec<BaselineSearch>,
 }
 
-/// The best of so many runs are judged again.
+/// The best of this many runs are judged again.
 const FINALISTS: usize = 10;
 
 /// Closed forms are off by less than this part of a constraint.

@@ -244,7 +244,7 @@ pub struct Individual {
 /// The result of one run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GeneticRun {
-    /// The best of all points that break no constraint; nothing where there was none.
+    /// The best of all points that break no constraint; `None` if there was none.
     pub best: Option<Individual>,
     /// Its value after the random population and after every generation; infinite while there was
     /// none.
@@ -257,7 +257,7 @@ pub struct GeneticRun {
     pub stop: GeneticStop,
 }
 
-/// After so many generations the multipliers of an augmented Lagrangian are corrected.
+/// After this many generations the multipliers of an augmented Lagrangian are corrected.
 const SUBPROBLEM: usize = 10;
 
 /// One individual as the search has it: the genes and their point.

@@ -111,7 +111,7 @@ impl<F: FnMut(&[f64]) -> Evaluation> CostFunction for &Boxed<F> {
     }
 }
 
-/// Differential evolution with ten individuals for every variable, for about so many evaluations.
+/// Differential evolution with ten individuals for every variable, for about this many evaluations.
 /// The curve has the best value after every `every` evaluations.
 pub fn differential_evolution(
     space: &Space,

@@ -88,7 +88,7 @@ impl Evaluation {
         Self { objectives: vec![value], ..Self::default() }
     }
 
-    /// The first objective; infinite where it is no number.
+    /// The first objective; infinite if it is not a number.
     pub fn value(&self) -> f64 {
         let value = self.objectives.first().copied().unwrap_or(f64::INFINITY);
         if value.is_nan() { f64::INFINITY } else { value }

@@ -113,10 +113,10 @@ pub struct Shooting<'a, const N: usize> {
 }
 
 impl<const N: usize> Shooting<'_, N> {
-    /// The orbit; `None` where one cannot be followed over a period, or Newton's steps do not
-    /// settle. `follow` gives the state after a period from a start, its derivative by the start
-    /// and the path; `settled` hears how far an orbit is from closing and how far Newton's method
-    /// would move it, both in the sizes, and says whether it is the one.
+    /// The orbit; `None` if one cannot be followed over a period, or Newton's steps do not settle.
+    /// `follow` gives the state after a period from a start, its derivative by the start and the
+    /// path; `settled` hears how far an orbit is from closing and how far Newton's method would
+    /// move it, both in the sizes, and says whether it is the one.
     pub fn orbit<Path>(
         &self,
         mut follow: impl FnMut([f64; N], f64) -> Option<([f64; N], SMatrix<f64, N, N>, Path)>,
@@ -203,8 +203,7 @@ pub fn by_differences<const N: usize, Path>(
 
 /// The periodic motion of `x'' = acceleration(t, x, x')`, which has this period in `t`, near a
 /// start, position and velocity at `t = 0`, that is none of those that begin at the known places;
-/// `size` is about how large it is. `None` where none was found near there, or it cannot be
-/// followed.
+/// `size` is about how large it is. `None` if none was found near there, or it cannot be followed.
 ///
 /// ```
 /// # use lindstedt_numeric as lindstedt;

@@ -78,8 +78,8 @@ impl NearRest {
 }
 
 impl CentredForce {
-    /// `force` about `equilibrium` at these numbers, for motions of about this amplitude; `None`
-    /// where a symbol has no number.
+    /// `force` about `equilibrium` at these numbers, for motions of about this amplitude; `None` if
+    /// a symbol has no number.
     pub fn new(
         force: &Expr,
         coordinate: Symbol,
@@ -137,7 +137,7 @@ impl CentredForce {
         near.unwrap_or_else(|| self.call(&self.of.value, y))
     }
 
-    /// The polynomial that stands in for the force near rest; `None` where the force itself has all
+    /// The polynomial that stands in for the force near rest; `None` if the force itself has all
     /// its digits there.
     pub fn polynomial_near_rest(&self) -> Option<&NearRest> {
         self.near.as_ref()
@@ -164,7 +164,7 @@ impl CentredForce {
     }
 
     /// The work against the force from one distance to another, with a bound of its error; `None`
-    /// where it has no value between.
+    /// if it has no value between.
     pub fn work(&self, from: f64, to: f64) -> Option<(f64, f64)> {
         const TOLERANCE: f64 = 1e-14;
         let mut ends = self.cuts(from, to);
@@ -383,7 +383,7 @@ impl AtNumbers {
         })
     }
 
-    /// The Taylor coefficients about the equilibrium; `None` where there are none.
+    /// The Taylor coefficients about the equilibrium; `None` if there are none.
     fn expanded(&self) -> Option<Vec<f64>> {
         let moved = Expr::from(self.coordinate) + self.equilibrium.0.clone();
         let about = self.force.substitute(self.coordinate, &moved).ok()?;
@@ -405,7 +405,7 @@ impl AtNumbers {
     }
 }
 
-/// The force at a place; `None` where it has no finite value there.
+/// The force at a place; `None` if it has no finite value there.
 fn value_at(
     force: &Expr,
     coordinate: Symbol,

@@ -19,7 +19,7 @@ use crate::exact::rational::ratio;
 use crate::expr::{Expr, Function, Node};
 use crate::symbol::{Symbol, fresh};
 
-/// An antiderivative of a force in `coordinate`; `None` where a term has no closed form here.
+/// An antiderivative of a force in `coordinate`; `None` if a term has no closed form here.
 ///
 /// ```
 /// # use lindstedt_oscillator as lindstedt;
@@ -100,7 +100,7 @@ fn power_of(term: &Expr, variable: Symbol) -> Option<Expr> {
     Some(outside * value.ok()?)
 }
 
-/// An expression written in `variable = part`; `None` where something of the coordinate is left.
+/// An expression written in `variable = part`; `None` if something of the coordinate is left.
 fn in_terms_of(part: &Expr, variable: Symbol, of: &Expr, coordinate: Symbol) -> Option<Expr> {
     let name = Expr::from(variable);
     let even_power = |expr: &Expr| {

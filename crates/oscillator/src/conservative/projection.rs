@@ -26,7 +26,7 @@ use crate::symbol::Symbol;
 const HIGHEST_POWER: usize = 24;
 
 /// `c_k` of a force in `coordinate` for the motion `amplitude * cos(theta)`, `amplitude > 0`;
-/// `None` where a term has no closed form here.
+/// `None` if a term has no closed form here.
 ///
 /// ```
 /// # use lindstedt_oscillator as lindstedt;

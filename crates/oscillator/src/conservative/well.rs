@@ -24,8 +24,8 @@ use crate::symbol::Symbol;
 /// The boundary of a well on one side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WellBoundary {
-    /// The unstable equilibrium, or the place where the force ends; infinite where the force dies
-    /// away so fast that its potential levels off.
+    /// The unstable equilibrium, or the place where the force ends; infinite if the force dies away
+    /// so fast that its potential levels off.
     pub place: f64,
     /// Whether it is an unstable equilibrium; otherwise the force has no value beyond it.
     pub separatrix: bool,
@@ -35,7 +35,7 @@ pub struct WellBoundary {
 #[derive(Clone, Copy)]
 struct Wall {
     rim: WellBoundary,
-    /// `None` where it is infinite, or not asked for yet.
+    /// `None` if it is infinite, or not asked for yet.
     height: Option<f64>,
 }
 
@@ -55,7 +55,7 @@ pub struct WellEnd {
     pub rim: WellBoundary,
 }
 
-/// The well in which a conservative motion swings; an end is `None` where none was found.
+/// The well in which a conservative motion swings; an end is `None` if none was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Well {
     /// On the negative side.
@@ -259,7 +259,7 @@ impl Well {
 /// followed through them.
 const MOST_PIECES: usize = 256;
 
-/// The potential above the bottom of the well at a distance; `None` where it is infinite, or beyond
+/// The potential above the bottom of the well at a distance; `None` if it is infinite, or beyond
 /// too many pieces.
 pub(super) fn rise(force: &CentredForce, to: f64) -> Option<f64> {
     rise_between(force, 0.0, to)

@@ -27,7 +27,7 @@ use crate::exact::rational::ratio;
 use crate::expr::{Expr, ExprError, Function, Node};
 use crate::symbol::Symbol;
 
-/// The places at which an expression may be zero; empty where it cannot be inverted.
+/// The places at which an expression may be zero; empty if it cannot be inverted.
 pub(super) fn inverted(expression: &Expr, coordinate: Symbol) -> Vec<Expr> {
     zeros(expression, coordinate).unwrap_or_default()
 }
@@ -264,7 +264,7 @@ fn powers((factor, function): &(Expr, Expr), x: Symbol) -> Option<Vec<Power>> {
 }
 
 /// Coefficients at places that are no whole numbers as those of a polynomial: its unit, and all
-/// coefficients from the lowest on; nothing beyond the third degree.
+/// coefficients from the lowest on; `None` beyond the third degree.
 fn polynomial_of(places: &[(Rational, Expr)]) -> Option<(Rational, Vec<Expr>)> {
     const DEGREE: usize = 3;
     let lowest = places.iter().map(|place| &place.0).min()?;

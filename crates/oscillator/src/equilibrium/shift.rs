@@ -93,7 +93,7 @@ fn sine_of(half_turns: &Rational) -> Option<Expr> {
     Some(if whole.to_integer().is_odd() { -size } else { size })
 }
 
-/// The exact form of the zero of a force near a number, the simplest first; `None` where none is
+/// The exact form of the zero of a force near a number, the simplest first; `None` if none is
 /// found.
 pub(super) fn exact_zero(force: &Expr, coordinate: Symbol, near: f64) -> Option<Expr> {
     let pi = |multiple: Rational| Expr::pi() * Expr::number(multiple);
@@ -169,7 +169,7 @@ pub(super) fn linear_zeros(force: &Expr, coordinate: Symbol) -> Vec<Expr> {
 }
 
 /// The coefficients of an expression as a polynomial in the coordinate, lowest power first; `None`
-/// where it is none.
+/// if it is none.
 pub(super) fn coefficients(expression: &Expr, coordinate: Symbol) -> Option<Vec<Expr>> {
     let mut coefficients: Vec<Vec<Expr>> = Vec::new();
     for term in expression.expand().ok()?.terms() {

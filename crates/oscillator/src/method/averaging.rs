@@ -107,7 +107,7 @@ pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Ref
             }
             averaged
         }
-        // A series in what marks the terms is no polynomial in the coordinate and its velocity;
+        // A series in what marks the terms is not a polynomial in the coordinate and its velocity;
         // steps at a letter are none either, whose force at rest is known not to act.
         Err(
             OscillatorError::NotPolynomial(_)

@@ -646,8 +646,8 @@ impl<'a> BalanceProblem<'a> {
         Err(lost)
     }
 
-    /// The branch from rest, or from what is known of it, to the amplitude; or its end. Nothing
-    /// where there is no motion at rest.
+    /// The branch from rest, or from what is known of it, to the amplitude; or its end. `None` if
+    /// there is no motion at rest.
     fn follow_from_rest(
         &self,
         known: &Continuation,
@@ -670,8 +670,8 @@ impl<'a> BalanceProblem<'a> {
         found.map(Ok)
     }
 
-    /// Whether the force waves more often than the sums can follow: finer ones say that this is no
-    /// solution.
+    /// Whether the force waves more often than the sums can follow: finer ones say that this is not
+    /// a solution.
     fn is_too_coarse(&self, state: &BalanceUnknowns) -> bool {
         const FINER: usize = 4;
         const AGREEING: f64 = 1e-7;

@@ -22,8 +22,8 @@ pub(super) fn is_of_drive(refusal: &Refusal) -> bool {
     matches!(refusal.reason, Reason::NoWave | Reason::SecondDrive)
 }
 
-/// The answer in the coordinate relative to the first base that leaves no such refusal; `None`
-/// where no base moves, or there is no answer in that coordinate either.
+/// The answer in the coordinate relative to the first base that leaves no such refusal; `None` if
+/// no base moves, or there is no answer in that coordinate either.
 pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let relative = fresh("z", &oscillator.names());
     // Seen from one of two bases the other moves: all are those of the equation as it is, never
@@ -81,7 +81,7 @@ fn base_motions(oscillator: &Oscillator) -> Result<Vec<Expr>, Refusal> {
             |name: Symbol| Ok::<_, ExprError>(moving_part(sum, name, own)?.map(|moving| -&moving));
         let base = match (moves(own[0])?, moves(own[1])?) {
             (Some(base), _) => Some(base),
-            // A velocity that is no sum of waves leaves the bases that were found.
+            // A velocity that is not a sum of waves leaves the bases that were found.
             (None, Some(speed)) => match integrated(&speed) {
                 Ok(base) => Some(base),
                 Err(refusal) if bases.is_empty() => return Err(refusal),
@@ -100,7 +100,7 @@ fn base_motions(oscillator: &Oscillator) -> Result<Vec<Expr>, Refusal> {
 }
 
 /// The part of a sum that moves in time beside a coordinate or a velocity, over the factor of that;
-/// `None` where the sum is another one.
+/// `None` if the sum is another one.
 fn moving_part(sum: &Expr, name: Symbol, own: [Symbol; 2]) -> Result<Option<Expr>, ExprError> {
     let t = Symbol::new("t");
     let (moving, still): (Vec<&Expr>, Vec<&Expr>) =

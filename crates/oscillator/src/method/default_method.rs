@@ -98,8 +98,8 @@ pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Result<Soluti
     }
 }
 
-/// The exact motion of a linear equation, free, damped or driven; `None` where the equation is
-/// another one, or an expansion of the motion is asked for.
+/// The exact motion of a linear equation, free, damped or driven; `None` if the equation is another
+/// one, or an expansion of the motion is asked for.
 pub(super) fn linear(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let expansion = options.method.is_some()
         || options.order.is_some()
@@ -240,8 +240,8 @@ fn in_powers(
     }
 }
 
-/// The expansion in the amplitude of a force that is no polynomial beside a letter that might have
-/// been small.
+/// The expansion in the amplitude of a force that is not a polynomial beside a letter that might
+/// have been small.
 fn series_in_amplitude(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let small = oscillator.small_parameter(None);
     matches!(small, Ok(SmallParameter::Parameter(_))).then_some(())?;
@@ -253,8 +253,8 @@ fn series_in_amplitude(oscillator: &Oscillator, options: &Options) -> Option<Sol
 }
 
 /// A conservative motion about an equilibrium at which the force has no expansion, by a method that
-/// takes the force as it is; `None` where it is not that, where an expansion was asked for, and
-/// where no such method answers.
+/// takes the force as it is; `None` if it is not that, where an expansion was asked for, and if no
+/// such method answers.
 fn without_expansion(
     refusal: &Refusal,
     oscillator: &Oscillator,

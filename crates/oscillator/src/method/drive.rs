@@ -31,7 +31,7 @@ pub(super) struct Drive {
     pub(super) phase: Expr,
     /// The driven terms.
     pub(super) terms: Vec<Driven>,
-    /// Sines and cosines of phases that are no fractions.
+    /// Sines and cosines of phases that are not fractions.
     pub(super) definitions: Vec<Definition>,
 }
 
@@ -75,8 +75,8 @@ impl Driven {
         own.iter().all(|&name| !self.factor.contains(name))
     }
 
-    /// The terms of the series of the factor about rest; `None` where it is a polynomial already,
-    /// or has none.
+    /// The terms of the series of the factor about rest; `None` if it is a polynomial already, or
+    /// has none.
     fn in_small_motions(&self, coordinate: Symbol, degree: u32) -> Option<Vec<Self>> {
         if self.factor.to_polynomial(&mut |_| None).ok()?.is_some() {
             return None;
@@ -105,7 +105,7 @@ impl Drive {
     /// The driving frequency, and the terms that its multiples drive.
     ///
     /// # Errors
-    /// A term that is no wave of it, by name.
+    /// A term that is not a wave of it, by name.
     pub(super) fn from_parts(
         parts: &Parts,
         oscillator: &Oscillator,
@@ -165,7 +165,7 @@ impl Drive {
     }
 
     /// The ratio to the linear frequency of the wave that is in resonance, at a ratio of the
-    /// driving frequency; `None` where only sums and differences of several frequencies are.
+    /// driving frequency; `None` if only sums and differences of several frequencies are.
     pub(super) fn nearest(&self, (p, q): (u32, u32)) -> Option<(u32, u32)> {
         if self.terms.iter().all(|driven| driven.multiple == 1) {
             return Some((p, q));
@@ -269,7 +269,7 @@ impl Drive {
     }
 }
 
-/// A constant, by a name where it is no number.
+/// A constant, by a name where it is not a number.
 fn named(value: Expr, letter: &str, definitions: &mut Vec<Definition>, taken: &[Symbol]) -> Expr {
     if value.as_number().is_some() {
         return value;
@@ -293,7 +293,7 @@ pub(super) struct HarmonicExcitation {
 
 impl HarmonicExcitation {
     /// # Errors
-    /// A term that is no single wave, by name.
+    /// A term that is not a single wave, by name.
     pub(super) fn new(term: &Expr, method: Method) -> Result<Self, Refusal> {
         let t = Symbol::new("t");
         let not_periodic = || Reason::NoWave.to(method).about(term);

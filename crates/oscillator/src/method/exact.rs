@@ -387,7 +387,7 @@ fn of_function(oscillator: &Oscillator, force: &Expr) -> Result<Option<ForceProp
         let motion = Expr::divide(&(Expr::from(2) * turned), &slope)?;
         return Ok(Some(ForceProperties::form(by_elliptic(&scale, squared)?, Some(motion))));
     }
-    // A power that is no number.
+    // A power that is not a number.
     let mut power = Power::one();
     if inside.iter().all(|factor| power.absorb(factor, coordinate))
         && power.exponent.as_number().is_none()

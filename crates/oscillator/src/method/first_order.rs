@@ -1,4 +1,4 @@
-//! The first order of the method of Lindstedt and Poincare for a force that is no polynomial.
+//! The first order of the method of Lindstedt and Poincare for a force that is not a polynomial.
 //!
 //! Reference: A. H. Nayfeh, *Perturbation Methods*, Wiley 1973, section 3.1, with the projection of
 //! `f_1` in closed form.
@@ -9,8 +9,8 @@
 //! no cos(theta) on the right:   w_1 = c_1(A)/A,   c_1 = (2/pi) int_0^pi f_1(A cos theta) cos(theta) dtheta
 //! ```
 //!
-//! The next order needs all harmonics of `f_1` along the motion: infinitely many where `f_1` is no
-//! polynomial.
+//! The next order needs all harmonics of `f_1` along the motion: infinitely many where `f_1` is not
+//! a polynomial.
 //!
 //! ```
 //! # use lindstedt_oscillator as lindstedt;
@@ -34,7 +34,7 @@ use crate::solution::note::Truncation;
 use crate::solution::{AmplitudeConvention, Method, Note, Solution};
 use crate::symbol::Symbol;
 
-/// The answer to first order in `small`; `None` where the equation is not conservative, not linear
+/// The answer to first order in `small`; `None` if the equation is not conservative, not linear
 /// without `small`, or its projection has no closed form.
 ///
 /// # Errors
@@ -84,7 +84,7 @@ pub(super) fn solve(
     Ok(Some(solution))
 }
 
-/// The force without the powers of `small` above the first; `None` where it has no such series.
+/// The force without the powers of `small` above the first; `None` if it has no such series.
 pub(super) fn truncated(oscillator: &Oscillator, small: Symbol) -> Option<Expr> {
     let parts = taylor(&oscillator.force, &[(small, Rational::zero())], 1).ok()?;
     Expr::sum(parts).expand().ok()

@@ -38,9 +38,9 @@ struct Forced {
     letters: [Symbol; 3],
 }
 
-/// The answer to the first order in a small letter; `None` where no such letter is there, where a
-/// drive acts on more than the place alone, or where the frequencies that are numbers are near
-/// another resonance.
+/// The answer to the first order in a small letter; `None` if no such letter is there, where a
+/// drive acts on more than the place alone, or if the frequencies that are numbers are near another
+/// resonance.
 pub(super) fn solve(oscillator: &Oscillator, options: &Options) -> Option<Solution> {
     let by_scales = options.method.is_none_or(|method| method == Method::MultipleScales);
     let first_order = options.order.is_none_or(|order| order == 1);

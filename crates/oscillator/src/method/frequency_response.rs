@@ -117,8 +117,8 @@ pub(super) fn turning(rate: &PhaseWaves) -> [Polynomial; 2] {
 }
 
 /// The relation between amplitude and detuning of two rates with multiples of the phase, in powers
-/// of a marker up to the order of the rates; `None` where multiples stand beside what leads,
-/// something comes before it, or nothing beside or after it.
+/// of a marker up to the order of the rates; `None` if multiples stand beside what leads, something
+/// comes before it, or nothing beside or after it.
 ///
 /// ```text
 /// M (c, s) = -(all else at c, s),   M the waves that lead:   c, s order by order,   c^2 + s^2 = 1
@@ -255,8 +255,8 @@ fn peak_of(rate: &Polynomial, drive: &Polynomial, a: Symbol) -> Option<Expr> {
     Expr::divide(&left, &Expr::from(&pace)).ok()?.expand().ok()
 }
 
-/// The coefficients of a polynomial in the square of the amplitude, lowest first; `None` where it
-/// has odd powers.
+/// The coefficients of a polynomial in the square of the amplitude, lowest first; `None` if it has
+/// odd powers.
 fn in_square(relation: &Polynomial, a: Symbol) -> Option<Vec<Polynomial>> {
     let mut coefficients: Vec<Polynomial> = vec![];
     for (monomial, number) in relation.terms() {

@@ -48,7 +48,7 @@ pub const MOST_HARMONICS: u32 = 100;
 /// nobody reads it.
 const MOST_TERMS: usize = 3500;
 
-/// The balance of so many harmonics, two by default.
+/// The balance of this many harmonics, two by default.
 ///
 /// # Errors
 /// A force that is not conservative, by its term; no harmonics, or more than [`MOST_HARMONICS`].
@@ -177,7 +177,7 @@ fn equations(
     };
     let mut equations = Vec::new();
     if let Some(coefficients) = polynomial_coefficients(oscillator, force)? {
-        // Roughly the number of products of a power of so many harmonics.
+        // Roughly the number of products of a power of this many harmonics.
         let degree = coefficients.len().saturating_sub(1) as u32;
         if harmonics.len().saturating_pow(degree) > MOST_TERMS {
             return Ok(None);

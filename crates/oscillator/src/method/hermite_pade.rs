@@ -201,7 +201,7 @@ impl Quadratic {
         sum
     }
 
-    /// The root on these sides of zero; `None` where its way cannot be told.
+    /// The root on these sides of zero; `None` if its way cannot be told.
     fn followed(&self, sides: &[i64]) -> Option<RootCourse> {
         let mut followed = RootCourse {
             crossings: vec![],

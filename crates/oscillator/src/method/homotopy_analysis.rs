@@ -51,7 +51,7 @@ const HIGHEST: u32 = 20;
 /// The most terms of one coefficient before the derivation is given up.
 const MOST_TERMS: usize = 20_000;
 
-/// Above this power of the force, coefficients have hundreds of digits and are counted: so many
+/// Above this power of the force, coefficients have hundreds of digits and are counted: this many
 /// products of them are the most.
 const HIGH_POWER: u32 = 30;
 const MOST_PRODUCTS: usize = 1_000_000;
@@ -348,7 +348,7 @@ fn secular_lines(
     ]
 }
 
-/// An error where order `k` of the powers of `u` would take far more algebra than anyone waits for.
+/// An error if order `k` of the powers of `u` would take far more algebra than anyone waits for.
 ///
 /// Counted are the products of terms with which each power follows from the one before; of the
 /// powers that the force does not need the size is that of the others.

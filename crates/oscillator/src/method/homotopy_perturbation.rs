@@ -13,7 +13,7 @@
 //! At p = 1 the second line is an equation for omega^2, exact in its coefficients: explicit at
 //! order one, a square root at order two, implicit above. In units of omega^2 this is
 //! [`secular::expand`](super::secular::expand) with the corrections before `y` instead of `y''`. A
-//! force that is no polynomial enters as its Taylor polynomial of degree `2 n + 1`. Inertia that
+//! force that is not a polynomial enters as its Taylor polynomial of degree `2 n + 1`. Inertia that
 //! depends on the position stands in `N`, with `x' = omega x_theta`; the relation then is quadratic
 //! at order one.
 //!
@@ -189,7 +189,7 @@ fn relation(explicit: &Polynomial, omega: Symbol) -> Polynomial {
 }
 
 /// The root of a relation that is linear in `omega^2`, or the upper one where it is quadratic, as
-/// an expression; `None` where it is of higher degree.
+/// an expression; `None` if it is of higher degree.
 fn root_in_closed_form(relation: &Polynomial, omega: Symbol) -> Result<Option<Expr>, ExprError> {
     let coefficient = |power: i32| {
         let mut result = Polynomial::zero();

@@ -208,7 +208,7 @@ pub(super) const HAMILTONIAN: Approach = Approach { solve: hamiltonian, numbers:
 pub(super) const HARMONIC_BALANCE: Approach =
     Approach { solve: harmonic_balance, numbers: harmonic_balance_at };
 
-/// The answer of a method that takes such an equation as it is; `None` where it does not, or the
+/// The answer of a method that takes such an equation as it is; `None` if it does not, or the
 /// equation is another.
 ///
 /// # Errors
@@ -532,7 +532,7 @@ fn harmonic_balance(
 }
 
 /// The cosine parts of the equation as typed along a motion with unknown coefficients, one for each
-/// harmonic; `None` where it is no polynomial, or too long to be written out.
+/// harmonic; `None` if it is not a polynomial, or too long to be written out.
 fn balances(
     oscillator: &Oscillator,
     motion: &FourierSeries<Polynomials>,
@@ -614,7 +614,7 @@ fn projections(
 }
 
 /// omega^2 and the motion of an answer for such an equation at numbers, the equilibrium left out;
-/// `None` where the law is explicit, or there are none.
+/// `None` if the law is explicit, or there are none.
 pub(super) fn at_numbers(
     oscillator: &Oscillator,
     solution: &Solution,

@@ -51,10 +51,10 @@ const MOST_HARMONICS: usize = 125;
 /// Harmonics of the first iterate kept where the force has infinitely many.
 const HIGHEST_HARMONIC: usize = 5;
 
-/// Frequency and motion after so many passes, one by default.
+/// Frequency and motion after this many passes, one by default.
 ///
 /// # Errors
-/// A force that is not conservative, by its term; above one pass, a force that is no polynomial.
+/// A force that is not conservative, by its term; above one pass, a force that is not a polynomial.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     let force = conservative_force(oscillator, options, METHOD)?;
     let passes = options.order.unwrap_or(1);
@@ -242,7 +242,7 @@ pub(super) fn numbered(oscillator: &Oscillator, number: u32) -> Symbol {
     Symbol::new(&format!("{letter}{number}"))
 }
 
-/// The first pass of a force that is no polynomial.
+/// The first pass of a force that is not a polynomial.
 fn frozen_function(oscillator: &Oscillator, force: &Expr) -> Result<Vec<DerivationLine>, Refusal> {
     let [start, first] = [0, 1].map(|number| numbered(oscillator, number));
     let along = Expr::symbol("A") * Expr::from(oscillator.phase()).cos()?;

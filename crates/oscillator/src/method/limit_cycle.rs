@@ -13,7 +13,7 @@
 //! `delta g' < 0`, and a root where `g'` vanishes too begins no expansion. At the orders above, the
 //! amplitude of each follows from a linear equation with the one slope `J = -2 z g'(z)`.
 //!
-//! An amplitude that is no fraction and no product of parameters enters as a symbol `a0`. Where
+//! An amplitude that is not a fraction and no product of parameters enters as a symbol `a0`. Where
 //! `a0^2` is the root of a polynomial with rational coefficients, all coefficients stay exact:
 //! powers of `a0` are reduced, and `1/J` is found, modulo that polynomial.
 
@@ -72,7 +72,7 @@ struct PowerRelation {
 }
 
 impl AmplitudeEquation {
-    /// `None` where the first order has no secular sine at any amplitude: the amplitude is free.
+    /// `None` if the first order has no secular sine at any amplitude: the amplitude is free.
     pub fn new(force: &PerturbedForce, units: &FrequencyUnits) -> Option<Self> {
         let equation = coefficients(force, units);
         let lowest = equation.iter().position(|coefficient| !coefficient.is_zero())?;
@@ -115,7 +115,7 @@ impl AmplitudeEquation {
         AmplitudeCondition { sine, unknown, value: cycle.amplitude.clone() }
     }
 
-    /// All limit cycles, smallest amplitude first: none where the motion dies out or grows.
+    /// All limit cycles, smallest amplitude first: empty if the motion dies out or grows.
     ///
     /// # Errors
     /// Why the equation cannot be solved.

@@ -348,7 +348,7 @@ pub(super) fn with_square(polynomial: &Polynomial, root: Symbol, square: &Ration
 /// The force to be expanded, and the small parameters.
 struct Perturbation {
     force: PerturbedForce,
-    /// The parameter that marks the orders; `None` where it is the amplitude.
+    /// The parameter that marks the orders; `None` if it is the amplitude.
     marker: Option<Symbol>,
     /// The small parameter of the answer.
     small: Symbol,
@@ -376,7 +376,7 @@ impl Perturbation {
     }
 }
 
-/// The first order in a parameter, of a force that is no polynomial; `None` where the amplitude is
+/// The first order in a parameter, of a force that is not a polynomial; `None` if the amplitude is
 /// the small parameter.
 fn in_a_parameter(
     oscillator: &Oscillator,
@@ -473,8 +473,7 @@ fn perturbation(
     })
 }
 
-/// An error where powers are so high that even the first order of the amplitude would take too
-/// long.
+/// An error if powers are so high that even the first order of the amplitude would take too long.
 fn within_reach(force: &PerturbedForce, parts: &Parts, order: u32) -> Result<(), SecularError> {
     let terms = force.terms.iter().map(|term| (term.order, term.position + term.velocity));
     // The last amplitude of a limit cycle follows from one order more.

@@ -55,8 +55,8 @@ pub(super) fn is_free_and_linear(oscillator: &Oscillator) -> Result<bool, Refusa
 }
 
 impl Linear {
-    /// `None` where a term is not linear, or a coefficient or a drive is no constant and no wave;
-    /// and where nothing drives or damps.
+    /// `None` if a term is not linear, or a coefficient or a drive is no constant and no wave; and
+    /// where nothing drives or damps.
     ///
     /// # Errors
     /// The equation cannot be taken apart.

@@ -147,7 +147,7 @@ fn turning_backs(
     quotient: &Expr,
     force: &Expr,
 ) -> Option<Vec<(f64, f64)>> {
-    /// The search goes through the decades of what a number can be in SI units, so many points in
+    /// The search goes through the decades of what a number can be in SI units, this many points in
     /// each.
     const DECADES: i32 = 24;
     const POINTS: i32 = 48;

@@ -278,7 +278,7 @@ fn solve_by(
     // Every method works about x = 0: the equation is seen from its equilibrium, and the answer
     // moved back.
     let polynomial = oscillator.polynomial_degree()?.is_some();
-    // The formulas of a driven motion have a letter for an equilibrium that is no fraction.
+    // The formulas of a driven motion have a letter for an equilibrium that is not a fraction.
     let driven = oscillator.force.contains(Symbol::new("t"));
     let degree = (entry.rounded_degree)(options, polynomial).filter(|_| !(driven && polynomial));
     let centred = centred(oscillator, degree)?;
@@ -290,7 +290,7 @@ fn solve_by(
     };
     let mut solution =
         answer.map_err(|refusal| quotation::as_typed(refusal, oscillator, &centred))?;
-    // The first order of a force that is no polynomial projects the force as it is, corners and
+    // The first order of a force that is not a polynomial projects the force as it is, corners and
     // all.
     let projected = method == Method::LindstedtPoincare && solution.law.frequency().is_none();
     if entry.expands() && !projected && has_corners(&oscillator.force) {
@@ -408,7 +408,7 @@ fn has_corners(force: &Expr) -> bool {
     corners.into_iter().any(|function| force.contains_function(function))
 }
 
-/// The refusal of a force that is no polynomial in the coordinate, by the terms that are none.
+/// The refusal of a force that is not a polynomial in the coordinate, by the terms that are none.
 fn not_polynomial(force: &Expr, coordinate: Symbol, method: Method) -> Refusal {
     let constant = fresh("c", &[coordinate]);
     let is_none = |term: &Expr, constants: bool| {

@@ -41,7 +41,7 @@ pub struct Numbers {
     /// Bound of the relative change of omega^2 by rounding of the coefficients of the formula; zero
     /// if omega^2 is solved for numerically.
     pub rounding: f64,
-    /// The motion in theta; `None` where the frequency is not real.
+    /// The motion in theta; `None` if the frequency is not real.
     pub motion: Option<FourierSeries<Doubles>>,
     /// Values that were chosen or solved for: hbar, the coefficients of a balance.
     pub chosen: Vec<(Symbol, f64)>,
@@ -69,7 +69,7 @@ pub struct NumbersCache {
 }
 
 impl NumbersCache {
-    /// The force about the equilibrium of an answer; `None` where a symbol of it has no number.
+    /// The force about the equilibrium of an answer; `None` if a symbol of it has no number.
     fn force(
         &self,
         oscillator: &Oscillator,
@@ -242,8 +242,8 @@ pub fn evaluate(
     Ok(Numbers { frequency_squared: squared, rounding, motion, chosen, remark: None })
 }
 
-/// omega^2 alone, without the motion where that costs more; where its terms cancel, with the digits
-/// that are left, so that its zeros can be looked for.
+/// omega^2 alone, without the motion if that costs more. Cancellation of its terms is not refused, so
+/// that its zeros can be bracketed.
 ///
 /// # Errors
 /// As [`evaluate`].
@@ -403,7 +403,7 @@ pub fn motion_takes_size(oscillator: &Oscillator, solution: &Solution) -> bool {
     by_size(solution) && !matches!(oscillator.polynomial_degree(), Ok(Some(_)))
 }
 
-/// Whether an expansion stopped at the projection of a force that is no polynomial.
+/// Whether an expansion stopped at the projection of a force that is not a polynomial.
 fn is_first_order(solution: &Solution) -> bool {
     // The series itself always has omega beside omega^2.
     solution.method.counts() == Counts::Powers && solution.law.frequency().is_none()
@@ -881,7 +881,7 @@ fn exact_motion(
     ))
 }
 
-/// The coefficients of `cos(k theta)` of a motion in closed form; `None` where it has no value.
+/// The coefficients of `cos(k theta)` of a motion in closed form; `None` if it has no value.
 fn harmonics_of_closed_form(
     solution: &Solution,
     motion: &Expr,

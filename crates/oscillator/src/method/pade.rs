@@ -241,7 +241,7 @@ fn denominator(series: &[Polynomial], l: i64, m: usize) -> Result<Vec<Polynomial
     Ok(below)
 }
 
-/// Gauss's elimination, exact: rows of coefficients with the right side last. `None` where the rows
+/// Gauss's elimination, exact: rows of coefficients with the right side last. `None` if the rows
 /// depend on each other.
 fn solve_linear(mut rows: Vec<Vec<Rational>>) -> Option<Vec<Rational>> {
     for column in 0..rows.len() {

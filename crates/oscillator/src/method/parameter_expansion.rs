@@ -34,10 +34,10 @@ use crate::symbol::letters::FREQUENCY;
 use crate::symbol::{fresh, fresh_stem};
 
 /// The frequency, and the motion, to an order in the bookkeeping parameter; order 2 unless the
-/// force is no polynomial.
+/// force is not a polynomial.
 ///
 /// # Errors
-/// A force that is not conservative, by its term; above the first order, a force that is no
+/// A force that is not conservative, by its term; above the first order, a force that is not a
 /// polynomial.
 pub fn solve(oscillator: &Oscillator, options: &Options) -> Result<Solution, Refusal> {
     const METHOD: Method = Method::ParameterExpansion;

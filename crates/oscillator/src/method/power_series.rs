@@ -98,7 +98,7 @@ pub(crate) fn scaled(series: &[Polynomial]) -> Option<(Monomial, Vec<Rational>)>
     Some((unit, numbers?))
 }
 
-/// The series to so many powers, and the answer that it belongs to.
+/// The series to this many powers, and the answer that it belongs to.
 pub(crate) struct Resummed {
     pub series: PowerSeries,
     solution: Solution,
@@ -113,7 +113,7 @@ pub(crate) const STOPPED: &str = "the series was stopped before it was long enou
 pub(crate) const TOO_LONG: &str = "its coefficients are too long for a value in double precision";
 
 impl Resummed {
-    /// The series through the power `order` of its variable; `None` where that was stopped.
+    /// The series through the power `order` of its variable; `None` if that was stopped.
     ///
     /// # Errors
     /// As for the method of Lindstedt and Poincare.

@@ -26,7 +26,7 @@ pub struct Refusal {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Reason {
-    /// The equation is no oscillator, or cannot be expanded.
+    /// The equation is not an oscillator, or cannot be expanded.
     Oscillator(OscillatorError),
     /// A parameter with the name of something in the answer.
     NameOfAnswer(Symbol),
@@ -51,7 +51,7 @@ pub enum Reason {
     Unbounded(String),
     /// A force that is flat at half the amplitude.
     NoSlope(String),
-    /// The algebra grew beyond so many terms.
+    /// The algebra grew beyond this many terms.
     TooLong(usize),
     /// Degrees for which this kind of approximant does not exist.
     Approximant {
@@ -82,7 +82,7 @@ pub enum Reason {
     Velocity,
     /// A method that measures the amplitude in one way only.
     Convention,
-    /// A term that depends on time, but is no single wave.
+    /// A term that depends on time, but is not a single wave.
     NoWave,
     /// A second driving frequency.
     SecondDrive,
@@ -153,7 +153,7 @@ pub enum Refuser {
     Method(Method),
     /// The expansion of Lindstedt and Poincare, whoever uses it.
     Expansion,
-    /// The first order of that method for a force that is no polynomial.
+    /// The first order of that method for a force that is not a polynomial.
     FirstOrder,
 }
 

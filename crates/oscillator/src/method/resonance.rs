@@ -34,7 +34,7 @@ pub(super) fn by_distance(mut resonances: Vec<(u32, u32)>, ratio: f64) -> Vec<(u
     resonances
 }
 
-/// An error where a ratio of frequencies is far from the resonance that is nearest to it: the
+/// An error if a ratio of frequencies is far from the resonance that is nearest to it: the
 /// detuning, which is to be small, is more than half of the linear frequency beside.
 pub(super) fn is_near((p, q): (u32, u32), ratio: f64, method: Method) -> Result<(), Refusal> {
     const FAR: f64 = 0.5;
@@ -90,8 +90,8 @@ pub fn with_resonance_at(
     Ok(chosen)
 }
 
-/// The resonances of the drive, and the ratio of the frequencies at these values; `None` where
-/// nothing drives, or one is missing.
+/// The resonances of the drive, and the ratio of the frequencies at these values; `None` if nothing
+/// drives, or one is missing.
 fn ratio_at(
     oscillator: &Oscillator,
     at: &Values,

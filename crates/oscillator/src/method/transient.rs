@@ -53,7 +53,7 @@ pub(crate) fn from_release(
 }
 
 /// The amplitude and the phase from their values at the start, the first of which is a symbol;
-/// `None` where the amplitude has no closed form here.
+/// `None` if the amplitude has no closed form here.
 fn closed_form(
     a: Symbol,
     rate: &Expr,
@@ -88,8 +88,8 @@ fn merge_exponentials(expression: &Expr) -> Option<Expr> {
 }
 
 /// The amplitudes that stay, each with its stability: the one at which the two terms of a rate
-/// balance, where letters or numbers make it positive, or those of a rate that is no sum of powers,
-/// found by numbers where only a factor and a scale of the amplitude are letters.
+/// balance, where letters or numbers make it positive, or those of a rate that is not a sum of
+/// powers, found by numbers where only a factor and a scale of the amplitude are letters.
 pub(crate) fn steady(a: Symbol, rate: &Expr) -> Vec<LeadingCycle> {
     let balance = || {
         let law = PowerLaw::from_rate(rate, a)?;
@@ -178,7 +178,7 @@ fn steady_by_numbers(a: Symbol, rate: &Expr) -> Option<Vec<LeadingCycle>> {
 struct PowerLaw(Vec<(Expr, Expr)>);
 
 impl PowerLaw {
-    /// `None` where the amplitude stands elsewhere.
+    /// `None` if the amplitude stands elsewhere.
     fn from_rate(rate: &Expr, a: Symbol) -> Option<Self> {
         let mut law: Vec<(Expr, Expr)> = Vec::new();
         for term in rate.expand().ok()?.terms() {

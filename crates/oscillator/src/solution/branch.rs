@@ -53,7 +53,7 @@ pub enum Branch {
 }
 
 /// Follows the branch from rest to `amplitude`, with coefficients good to `precision`, relatively;
-/// `None` where it has no start, or a value is not finite.
+/// `None` if it has no start, or a value is not finite.
 pub(super) fn follow(terms: &[BranchTerm], amplitude: f64, precision: f64) -> Option<Branch> {
     if terms.iter().any(|term| !term.coefficient.mantissa.is_finite()) || !amplitude.is_finite() {
         return None;

@@ -30,7 +30,7 @@ pub enum Law {
         /// The relation solved for omega^2.
         root: Option<Root>,
     },
-    /// An expression that is no polynomial.
+    /// An expression that is not a polynomial.
     Closed(ClosedForm),
     /// A law that only numbers solve: `omega^2 = (2/(pi*A)) int_0^pi ...`; the lines say which.
     Quadrature(Vec<DerivationLine>),
@@ -47,7 +47,7 @@ pub enum Root {
     Closed(ClosedForm),
 }
 
-/// A law that is no polynomial: `omega^2 = 2*J1(A)/A`.
+/// A law that is not a polynomial: `omega^2 = 2*J1(A)/A`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedForm {
     /// Whether the value is omega^2; otherwise omega.
@@ -97,7 +97,7 @@ impl Law {
         }
     }
 
-    /// The expression for omega or omega^2 that is no polynomial.
+    /// The expression for omega or omega^2 that is not a polynomial.
     pub fn closed_form(&self) -> Option<&ClosedForm> {
         match self {
             Self::Closed(form) | Self::Relation { root: Some(Root::Closed(form)), .. } => {
@@ -204,7 +204,7 @@ pub enum DisplayedLaw<'a> {
     Frequency(&'a Polynomial),
     /// This polynomial in omega and the amplitude is zero.
     Relation(&'a Polynomial),
-    /// An expression that is no polynomial.
+    /// An expression that is not a polynomial.
     Closed(&'a ClosedForm),
     /// Integrals.
     Quadrature(&'a [DerivationLine]),

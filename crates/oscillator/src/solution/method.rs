@@ -53,7 +53,7 @@ pub enum Counts {
     Passes,
     /// Harmonics.
     Harmonics,
-    /// The degrees of so many polynomials.
+    /// The degrees of this many polynomials.
     Degrees(usize),
     /// There is only one order.
     Nothing,

@@ -82,8 +82,8 @@ pub struct Transient {
     pub amplitude: Expr,
     /// `psi(t)`, where that is closed as well.
     pub phase: Option<Expr>,
-    /// The time from which on the amplitude is zero, or at which it grows without bound; `None`
-    /// where the formula holds for all times.
+    /// The time from which on the amplitude is zero, or at which it grows without bound; `None` if
+    /// the formula holds for all times.
     pub ends: Option<Expr>,
 }
 
@@ -133,7 +133,7 @@ impl Solution {
     }
 
     /// The periodic motion at an amplitude that stays: the smallest that attracts for small
-    /// positive parameters, else the smallest; `None` where none is known.
+    /// positive parameters, else the smallest; `None` if none is known.
     pub fn on_cycle(&self) -> Option<Self> {
         let modulation =
             self.modulation.as_ref().filter(|modulation| modulation.resonance.is_none())?;
@@ -144,7 +144,7 @@ impl Solution {
         let number = modulation.steady.iter().position(attracts).unwrap_or(0);
         let amplitude = modulation.steady.get(number)?.amplitude.clone();
         let mut periodic = self.clone();
-        // An amplitude that is no polynomial has a name.
+        // An amplitude that is not a polynomial has a name.
         let unit = match amplitude.to_polynomial(&mut |_| None).ok()? {
             Some(unit) => unit,
             None => {

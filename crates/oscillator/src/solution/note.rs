@@ -258,7 +258,7 @@ pub enum Truncation {
         /// The value of a small parameter that marks terms of an equation without one.
         marks: Option<Expr>,
     },
-    /// The first order of a force that is no polynomial.
+    /// The first order of a force that is not a polynomial.
     FirstOrderOnly {
         /// The small parameter.
         small: Symbol,
@@ -269,19 +269,19 @@ pub enum Truncation {
         bookkeeping: Symbol,
         /// The highest power kept.
         order: u32,
-        /// The linear frequency, where the root starts; `None` where rest is unstable, and it
-        /// starts at the first order.
+        /// The linear frequency, where the root starts; `None` if rest is unstable, and it starts
+        /// at the first order.
         linear_frequency: Option<Symbol>,
     },
-    /// A relation after so many passes of an iteration.
+    /// A relation after this many passes of an iteration.
     Passes {
         /// Number of passes.
         passes: u32,
-        /// The linear frequency, where the root starts; `None` where rest is unstable, and it
-        /// starts at the first order.
+        /// The linear frequency, where the root starts; `None` if rest is unstable, and it starts
+        /// at the first order.
         linear_frequency: Option<Symbol>,
     },
-    /// After so many corrections of the first frequency.
+    /// After this many corrections of the first frequency.
     Corrections {
         /// One more than the number of corrections.
         order: u32,
@@ -389,7 +389,7 @@ pub struct CornerSide {
     pub taken: Expr,
 }
 
-/// An equilibrium as people read it.
+/// An equilibrium in the usual form.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Position {
     /// In closed form.
@@ -407,7 +407,7 @@ pub struct CrossWell {
     pub coordinate: Symbol,
     /// The unstable equilibrium.
     pub equilibrium: Expr,
-    /// The amplitude that they exceed; `None` where it has no closed form in the letters.
+    /// The amplitude that they exceed; `None` if it has no closed form in the letters.
     pub from: Option<Position>,
     /// The end of the range of amplitudes.
     pub to: CrossWellEnd,

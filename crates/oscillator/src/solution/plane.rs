@@ -33,7 +33,7 @@ use crate::symbol::Symbol;
 pub(super) struct PlanePolynomial(Vec<(f64, [i32; 2])>);
 
 impl PlanePolynomial {
-    /// `None` where a value is missing.
+    /// `None` if a value is missing.
     pub(super) fn new(
         solution: &Solution,
         polynomial: &Polynomial,
@@ -175,7 +175,7 @@ pub(super) struct PlaneField {
 }
 
 impl PlaneField {
-    /// `None` where a value is missing.
+    /// `None` if a value is missing.
     pub(super) fn new(
         solution: &Solution,
         plane: &Plane,
@@ -267,8 +267,8 @@ impl PlaneField {
             .collect()
     }
 
-    /// The places by one polynomial in the amplitude; `None` where the rates have more than one
-    /// wave of the phase, or one that tells nothing of it.
+    /// The places by one polynomial in the amplitude; `None` if the rates have more than one wave
+    /// of the phase, or one that tells nothing of it.
     fn on_one_wave(&self) -> Option<Vec<[f64; 2]>> {
         let mut harmonics = self.harmonics();
         harmonics.retain(|m, rates| {

@@ -1,4 +1,4 @@
-//! Steady motions by slow equations in amplitude and phase that are no polynomials.
+//! Steady motions by slow equations in amplitude and phase that are not polynomials.
 //!
 //! ```text
 //! a' = P + P_c cos(psi) + P_s sin(psi),   a psi'/m = Q + Q_c cos(psi) + Q_s sin(psi),   the coefficients functions of a
@@ -17,7 +17,7 @@ use crate::expr::{CompiledFunction, Expr};
 use crate::numeric::ode::root::{find_minimum, find_root};
 use crate::symbol::Symbol;
 
-/// Every steady motion at given values, largest amplitude first; `None` where a value is missing.
+/// Every steady motion at given values, largest amplitude first; `None` if a value is missing.
 pub(super) fn steady_states(
     solution: &Solution,
     modulation: &Modulation,

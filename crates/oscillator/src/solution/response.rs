@@ -20,8 +20,8 @@ use crate::symbol::Symbol;
 pub struct Response {
     /// `x(t)` in `t`, the amplitude and the phase of the slow equations.
     pub motion: Expr,
-    /// The frequency-response equation: zero at every steady motion; `None` where the phase cannot
-    /// be eliminated.
+    /// The frequency-response equation: zero at every steady motion; `None` if the phase cannot be
+    /// eliminated.
     pub relation: Option<Polynomial>,
     /// The relation solved for the detuning, where it is quadratic in that.
     pub branches: Option<Branches>,
@@ -40,7 +40,7 @@ pub struct Response {
     pub plane: Option<Plane>,
 }
 
-/// A frequency-response equation of a force that is no polynomial.
+/// A frequency-response equation of a force that is not a polynomial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedRelation {
     /// Zero at every steady motion.
@@ -103,7 +103,7 @@ impl SteadyState {
 
 impl Solution {
     /// Every steady motion of a driven oscillator at given values, by its slow equations, largest
-    /// amplitude first; nothing for other motions, and where a value is missing. Those at an
+    /// amplitude first; `None` for other motions, and where a value is missing. Those at an
     /// amplitude at which the series hardly converges are [left out](Self::steady_motions).
     ///
     /// ```

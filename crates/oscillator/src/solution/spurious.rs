@@ -25,7 +25,7 @@ pub(super) struct Orders {
 }
 
 impl Orders {
-    /// `None` where a value is missing.
+    /// `None` if a value is missing.
     pub(super) fn new(
         solution: &Solution,
         plane: &Plane,

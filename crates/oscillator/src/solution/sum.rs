@@ -28,7 +28,7 @@ impl Sum {
         }
     }
 
-    /// The sum with so many digits of its rounded numbers.
+    /// The sum with this many digits of its rounded numbers.
     #[must_use]
     pub fn with_digits(self, digits: usize) -> Self {
         Self { digits, ..self }

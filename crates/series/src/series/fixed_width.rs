@@ -401,7 +401,7 @@ mod tests {
         FourierSeries::from_parts(Integers, cosine, sine).over(&Integer::from(series.denominator))
     }
 
-    /// Series of both waves and all kinds of harmonics, with numerators that are no multiples of
+    /// Series of both waves and all kinds of harmonics, with numerators that are not multiples of
     /// each other.
     fn examples() -> Vec<ShortSeries> {
         let mut examples = vec![];

@@ -43,8 +43,8 @@ impl Guard {
         Self { terms }
     }
 
-    /// The number that this guard is times another; `None` where they are not in proportion, or one
-    /// of them is zero.
+    /// The number that this guard is times another; `None` if they are not in proportion, or one of
+    /// them is zero.
     pub fn ratio_to(&self, other: &Self) -> Option<f64> {
         /// The relative difference that rounding leaves between ratios that are equal.
         const ROUNDING: f64 = 1e-14;

@@ -128,7 +128,7 @@ impl<F: Field> HermitePade<F> {
         self.combinations.insert(pivot, chosen);
     }
 
-    /// The binary exponent of the next coefficient of a combination; `None` where it vanishes.
+    /// The binary exponent of the next coefficient of a combination; `None` if it vanishes.
     fn leading(&self, combination: &Combination<F::Element>) -> Option<i64> {
         let exponent = self.field.exponent(combination.remainder.first()?)?;
         let Some(noise) = self.field.noise() else {

@@ -427,7 +427,7 @@ impl Recurrences {
 }
 
 /// The coefficients of `s^0` to `s^degree` of an expression with `coordinate = centre + scale*s`
-/// and no other symbol; `None` where it is not analytic there, contains another symbol, or a
+/// and no other symbol; `None` if it is not analytic there, contains another symbol, or a
 /// coefficient is out of range.
 ///
 /// ```

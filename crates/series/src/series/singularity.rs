@@ -63,9 +63,9 @@ pub struct Singularity {
 /// The fewest coefficients that say anything.
 pub const FEWEST: usize = 16;
 
-/// The nearest singularity of a series with these coefficients, the lowest power first; `None`
-/// where they show none: too few of them, too irregular, or several singularities that are equally
-/// far away.
+/// The nearest singularity of a series with these coefficients, the lowest power first; `None` if
+/// they show none: too few of them, too irregular, or several singularities that are equally far
+/// away.
 ///
 /// ```
 /// # use lindstedt_series as lindstedt;
@@ -158,13 +158,13 @@ impl Growth {
     }
 }
 
-/// The logarithm of the size; `None` of zero.
+/// The logarithm of the size; `None` for zero.
 fn logarithm(value: &Rational) -> Option<f64> {
     Some(Scaled::of_fraction(value).logarithm()).filter(|logarithm| logarithm.is_finite())
 }
 
 /// The last power of a series that ends, with as many coefficients that vanish behind it as there
-/// are up to it; `None` of all others.
+/// are up to it; `None` for all others.
 ///
 /// ```
 /// # use lindstedt_series as lindstedt;
@@ -408,7 +408,7 @@ fn inverse_root(coefficients: &[BigFloat]) -> Vec<BigFloat> {
     root
 }
 
-/// The product, of at most so many coefficients.
+/// The product, of at most this many coefficients.
 fn product(left: &[BigFloat], right: &[BigFloat], most: usize) -> Vec<BigFloat> {
     let Some(length) =
         (left.len() + right.len()).checked_sub(1).filter(|_| !left.is_empty() && !right.is_empty())
@@ -434,7 +434,7 @@ struct PersistentZero {
 }
 
 impl PersistentZero {
-    /// The power of the distance with which f is singular there; `None` where it is not known.
+    /// The power of the distance with which f is singular there; `None` if it is not known.
     fn power_of_function(&self) -> Option<f64> {
         match (self.kind, self.exponent) {
             (ApproximantKind::Quadratic, _) => Some(0.5),
@@ -569,8 +569,8 @@ const FAST: f64 = 4.0;
 const MOVES: f64 = 0.05;
 
 impl Approximant {
-    /// The zero to which Newton's iteration leads from a place near to it; nothing where that moves
-    /// away, or where two zeros are next to each other, as they are where no branch point is.
+    /// The zero to which Newton's iteration leads from a place near to it; `None` if that moves
+    /// away, or if two zeros are next to each other, as they are where no branch point is.
     fn zero_near(&self, start: &Complex) -> Option<Zero> {
         const ITERATIONS: usize = 60;
         const APART: f64 = 1e-3;

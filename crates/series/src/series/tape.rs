@@ -27,7 +27,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::symbol::Symbol;
 
-/// One instruction. Its operands, and its result, are series with a number each, their place.
+/// One instruction. Its operands, and its result, are series, each given by its index in the tape.
 #[derive(Clone, Debug)]
 pub(super) enum Operation {
     /// A variable or a number: nothing to compute.
@@ -40,8 +40,8 @@ pub(super) enum Operation {
     Divide(usize, usize, usize),
     /// `s u'`: the coefficients `n u_n`.
     Slope(usize),
-    /// A power that is no whole number, of what is not zero; its value, which is negative where the
-    /// base may be.
+    /// A power that is not a whole number, of what is not zero; its value, which is negative where
+    /// the base may be.
     Power { base: usize, exponent: f64, first: fn(f64, f64) -> f64 },
     /// `y' = u' g`, with a function of the value of `u` to begin with: the place of `u`, that of
     /// its slope, which is zero beyond an order, and that of `g`.

@@ -624,7 +624,7 @@ fn convolution(
     Ok(Expr::sum(terms).expand()?)
 }
 
-/// The sign of a constant; `None` where it depends on symbols or is too small to tell.
+/// The sign of a constant; `None` if it depends on symbols or is too small to tell.
 fn sign_of(constant: &Expr) -> Option<std::cmp::Ordering> {
     if let Some(number) = constant.as_number() {
         return Some(number.cmp(&Rational::zero()));

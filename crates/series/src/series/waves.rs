@@ -103,7 +103,7 @@ pub struct Waves {
 }
 
 impl Waves {
-    /// `None` where a prime has no such roots of unity.
+    /// `None` if a prime has no such roots of unity.
     #[inline(always)]
     pub fn new<A: Arithmetic>(residues: &Residues<A>, grid: Grid) -> Option<Self> {
         let (size, circle) = (grid.size(), grid.circle());

@@ -60,7 +60,7 @@ pub enum NotCertified {
         "`{0}` is of another form: certificates of driven motions are of x'' + g(x)*x' + h(x) = 0, h with sines and cosines of one drive"
     )]
     NotDriven(String),
-    /// A drive whose frequency is no fraction.
+    /// A drive whose frequency is not a fraction.
     #[error(
         "the driving frequency {0} is no fraction: a certificate needs to know the period exactly"
     )]
@@ -83,7 +83,7 @@ pub enum NotCertified {
         "the formula is one in the amplitude of the first harmonic, a: a certificate needs to know where exactly the motion starts"
     )]
     Convention,
-    /// A start that is no fraction.
+    /// A start that is not a fraction.
     #[error(
         "x(0) = {0} is no fraction: a certificate needs to know exactly where the motion starts"
     )]
@@ -106,7 +106,7 @@ pub enum NotCertified {
     /// A step of algebra failed.
     #[error(transparent)]
     Expression(#[from] ExprError),
-    /// A law that is no expression in the amplitude.
+    /// A law that is not an expression in the amplitude.
     #[error(
         "`{0}` is no expression in the amplitude: it has numbers at one amplitude after the other alone"
     )]

@@ -43,7 +43,7 @@ impl Enclosure {
     }
 
     /// The relative error of a number that stands for what is enclosed, `|number/truth - 1|`; all
-    /// that is known where it is no number.
+    /// that is known where it is not a number.
     pub fn relative_error(&self, number: f64) -> SizeBounds {
         let Some(exact) = from_f64(number) else {
             return SizeBounds { lower: 0.0, upper: f64::INFINITY };

@@ -99,7 +99,7 @@ impl FourierSeries {
         Self { cosines, sines, tail: Bound::ZERO, negligible: NEGLIGIBLE }
     }
 
-    /// This function, of whose coefficients only so many bits are significant.
+    /// This function, of whose coefficients only this many bits are significant.
     pub(super) fn of_digits(mut self, bits: usize) -> Self {
         const MORE: i32 = 16;
         let bits = i32::try_from(bits).unwrap_or(NEGLIGIBLE);
@@ -347,7 +347,7 @@ impl FourierSeries {
         Some((self.divided(1 << halvings), halvings))
     }
 
-    /// Sine and cosine; `None` of what is too large.
+    /// Sine and cosine; `None` for what is too large.
     pub(super) fn sine_and_cosine(&self) -> Option<(Self, Self)> {
         let (argument, halvings) = self.scaled_to_half_norm()?;
         let square = argument.squared();
@@ -368,7 +368,7 @@ impl FourierSeries {
         Some((sine, cosine))
     }
 
-    /// The exponential function; `None` of what is too large.
+    /// The exponential function; `None` for what is too large.
     pub(super) fn exponential(&self) -> Option<Self> {
         let (argument, halvings) = self.scaled_to_half_norm()?;
         let terms = self.terms();
@@ -383,7 +383,7 @@ impl FourierSeries {
         Some(sum)
     }
 
-    /// `self^(-1/degree)`, positive; `None` where that is not proved to exist.
+    /// `self^(-1/degree)`, positive; `None` if that is not proved to exist.
     ///
     /// With any `g` that is positive at the angle 0 and `w = 1 - u g^n`, `d = ||w|| < 1`:
     /// `u^(-1/n) = g (1 - w)^(-1/n)`, which is within `||g|| d^2/(1 - d)` of `g (1 + w/n)`, for no
@@ -411,7 +411,7 @@ impl FourierSeries {
         Self::integer(1).difference(&self.product(&root.power(degree)))
     }
 
-    /// `1/self`; `None` where that is not proved to exist.
+    /// `1/self`; `None` if that is not proved to exist.
     pub(super) fn inverse(&self) -> Option<Self> {
         match self.start()? < 0.0 {
             true => Some(self.negated().inverse_root(1)?.negated()),
@@ -419,7 +419,7 @@ impl FourierSeries {
         }
     }
 
-    /// The natural logarithm; `None` where that is not proved to exist.
+    /// The natural logarithm; `None` if that is not proved to exist.
     ///
     /// With any `g` and `w = u exp(-g)`, `d = ||w - 1|| < 1`: `log u = g + log w`, and `log w` is
     /// within `d^2/(2 (1 - d))` of `w - 1`.
@@ -441,7 +441,7 @@ impl FourierSeries {
         (left > 0.0).then(|| guess.sum(&rest).widened((distance * distance).over(left)))
     }
 
-    /// The arctangent; `None` where that is not proved.
+    /// The arctangent; `None` if that is not proved.
     ///
     /// With any `g` and `w = (u cos g - sin g)/(cos g + u sin g)`, which is `tan(atan u - g)`, and
     /// `||w|| = d < 1/32`: the continuous function `atan u - g` stays within `d` of one multiple of
@@ -471,8 +471,8 @@ impl FourierSeries {
         Some(above.product(&cosine.sum(&self.product(&sine)).inverse()?))
     }
 
-    /// A double between zero and its value at the angle 0, of the same sign; `None` where zero may
-    /// be that value.
+    /// A double between zero and its value at the angle 0, of the same sign; `None` if zero may be
+    /// that value.
     fn start(&self) -> Option<f64> {
         let value = self.at_zero();
         let distance = WORKING.distance_from_zero(&value);

@@ -114,8 +114,8 @@ fn equations_of(law: &str) -> Vec<&str> {
     parts
 }
 
-/// The left side of a law, and its right side with the definitions and the values put in; `None` of
-/// words.
+/// The left side of a law, and its right side with the definitions and the values put in; `None`
+/// for words.
 pub(super) fn with_values(law: &str, values: &Values) -> Option<(String, Expr)> {
     let (name, value) = read(law)?;
     let values: BTreeMap<Symbol, Expr> =

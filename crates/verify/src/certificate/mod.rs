@@ -173,7 +173,7 @@ pub fn check(certificate: &Certificate) -> Result<Certified, CheckError> {
 }
 
 impl Certificate {
-    /// Leaves so many digits of the motion.
+    /// Leaves this many digits of the motion.
     fn shorten(&mut self, bits: usize) {
         let short = |units: &Integer| Balls { bits }.dyadic(units, self.bits).middle;
         self.coefficients = self.coefficients.iter().map(short).collect();
@@ -276,7 +276,7 @@ impl Certificate {
         };
         let belongs = amplitude.as_number().is_some_and(|amplitude| {
             let place = &self.start - amplitude;
-            // An equilibrium that is no fraction is known to seventeen digits.
+            // An equilibrium that is not a fraction is known to seventeen digits.
             let near = amplitude.abs()
                 / Rational::from_integer(Integer::from(1) << ROUNDING_OF_EQUILIBRIUM);
             let force = |place: Rational| {

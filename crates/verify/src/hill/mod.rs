@@ -110,7 +110,7 @@ pub struct TransitionCurves {
     /// The letters of the equation.
     pub parameters: Vec<Symbol>,
     /// The letter W of the dimensionless time `tau = W*t` in which the coefficients below are
-    /// written; `None` where they are functions of the time of the equation.
+    /// written; `None` if they are functions of the time of the equation.
     pub time_scale: Option<Symbol>,
     /// The frequency of the coefficients.
     pub frequency: Frequency,

@@ -59,7 +59,7 @@ fn common(a: &Rational, b: &Rational) -> Rational {
     Rational::new(numerator, a.denom() * b.denom())
 }
 
-/// The frequency of all waves in these expressions; nothing where no wave occurs.
+/// The frequency of all waves in these expressions; `None` if no wave occurs.
 ///
 /// # Errors
 /// A wave whose argument is no multiple of the time, or of another frequency than those before it.
@@ -97,7 +97,7 @@ fn waves(expression: &Expr) -> Vec<Expr> {
 /// The series in `phi = Omega*t/2`.
 ///
 /// # Errors
-/// The first term of the expression that is no sum of waves with polynomial coefficients.
+/// The first term of the expression that is not a sum of waves with polynomial coefficients.
 pub fn series(
     expression: &Expr,
     frequency: &Frequency,

@@ -50,9 +50,9 @@ pub struct JudgedCurve {
     pub curve: usize,
     /// The value by the formula; `None` if it is not real.
     pub value: Option<f64>,
-    /// In truth; none where the tongue does not reach so far.
+    /// In truth; `None` if the tongue does not reach so far.
     pub truth: Option<f64>,
-    /// `value/truth - 1`; none where one of them is none or the truth alone is zero.
+    /// `value/truth - 1`; `None` if one of them is none or the truth alone is zero.
     pub relative_error: Option<f64>,
     /// Whether the formula is right to the tolerance: both none is right.
     pub passes: bool,
@@ -82,7 +82,7 @@ pub enum TruthError {
     /// The frequency is not positive.
     #[error("the frequency of the coefficients is {0} there, and must be positive")]
     Frequency(f64),
-    /// Coefficients that are no numbers, or too large.
+    /// Coefficients that are not numbers, or too large.
     #[error(
         "the coefficients have no finite value there, or are too large for {MOST_HARMONICS} harmonics"
     )]
@@ -196,7 +196,7 @@ fn formula(
     letter_of_power(value, curves.unknown.power()).filter(|value| value.is_finite())
 }
 
-/// The letter whose power this is, positive where it has two signs; `None` where it is not real.
+/// The letter whose power this is, positive where it has two signs; `None` if it is not real.
 fn letter_of_power(value: f64, power: i32) -> Option<f64> {
     match power {
         1 => Some(value),

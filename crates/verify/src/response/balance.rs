@@ -38,7 +38,7 @@ const SMOOTH: [usize; 2] = [8, 32];
 /// corner moves from sample to sample.
 const CORNERED: [usize; 2] = [32, 512];
 
-/// The equations for so many harmonics.
+/// The equations for this many harmonics.
 #[derive(Clone, Debug)]
 pub struct HarmonicBalance<'a> {
     /// The equation.
@@ -187,7 +187,7 @@ impl<'a> HarmonicBalance<'a> {
         })
     }
 
-    /// The residual and its derivatives; nothing where the force has no finite value on the motion.
+    /// The residual and its derivatives; `None` if the force has no finite value on the motion.
     pub fn linearised(&self, coefficients: &DVector<f64>, parameter: f64) -> Option<Linearised> {
         let driven = self.driven;
         let (omega, omega_slope) =
@@ -373,7 +373,7 @@ impl<'a> HarmonicBalance<'a> {
         })
     }
 
-    /// Newton's method for the coefficients at a fixed parameter; nothing where it does not settle.
+    /// Newton's method for the coefficients at a fixed parameter; `None` if it does not settle.
     pub fn solve(&self, guess: &DVector<f64>, parameter: f64) -> Option<DVector<f64>> {
         const MOST: usize = 40;
         let vanishes = Cell::new(false);

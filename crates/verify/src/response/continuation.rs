@@ -32,7 +32,7 @@ pub struct BranchNode {
     /// The sign of the determinant of the bordered equations: it changes where branches cross, and
     /// not at a fold.
     pub orientation: f64,
-    /// A motion that is known by shooting, not by the balance: it sticks, or has.
+    /// The true motion, if the point came from shooting because the motion sticks, or has stuck.
     pub truth: Option<TrueMotion>,
 }
 

@@ -34,7 +34,7 @@ pub struct Guess {
 }
 
 /// The motion over a time with its variations and the integral of -f_v; backward in time where
-/// `backward` says so. Nothing where it cannot be followed.
+/// `backward` says so. `None` if it cannot be followed.
 fn followed(
     driven: &Driven,
     guess: &Guess,
@@ -62,8 +62,8 @@ fn followed(
     path.is_complete().then_some(path)
 }
 
-/// The periodic motion beside this one, and its frequency; nothing where shooting does not settle,
-/// or goes far away.
+/// The periodic motion beside this one, and its frequency; `None` if shooting does not settle, or
+/// goes far away.
 pub fn true_cycle(
     driven: &Driven,
     guess: &Guess,

@@ -174,8 +174,8 @@ fn cancel(terms: &[CompiledFunction]) -> bool {
     told
 }
 
-/// The line on which the argument of a jump is zero, and whether it grows across it; nothing where
-/// that is no line of places and velocities, the same at every time.
+/// The line on which the argument of a jump is zero, and whether it grows across it; `None` if that
+/// is no line of places and velocities, the same at every time.
 fn line_of(
     argument: &Expr,
     oscillator: &Oscillator,
@@ -244,8 +244,8 @@ impl Driven {
     /// if time does not occur.
     ///
     /// # Errors
-    /// A drive that is not periodic; several frequencies that are no multiples of one; a derivative
-    /// that cannot be written.
+    /// A drive that is not periodic; several frequencies that are not multiples of one; a
+    /// derivative that cannot be written.
     pub fn new(
         oscillator: &Oscillator,
         parameter: Symbol,

@@ -25,7 +25,7 @@ pub struct HopfPoint {
     pub frequency: f64,
 }
 
-/// The Hopf point near a place and a parameter, measured in these lengths; nothing where Newton's
+/// The Hopf point near a place and a parameter, measured in these lengths; `None` if Newton's
 /// method does not settle.
 pub fn hopf_point_near(
     driven: &Driven,

@@ -241,9 +241,9 @@ impl PreparedRequest<'_> {
 }
 
 impl PreparedRequest<'_> {
-    /// Frequency and positions of the last of so many periods from a start, by the simulation that
-    /// takes every jump at its event and knows nothing of the map by which the points were found;
-    /// nothing where it does not come so far.
+    /// Frequency and positions of the last of this many periods from a start, by the simulation
+    /// that takes every jump at its event and knows nothing of the map by which the points were
+    /// found; `None` if it does not come so far.
     fn simulated_by_series(
         &self,
         start: [f64; 2],

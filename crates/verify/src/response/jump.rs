@@ -104,7 +104,7 @@ impl VariationalMotion {
     }
 }
 
-/// The motion from a start at phase zero; nothing where it cannot be followed.
+/// The motion from a start at phase zero; `None` if it cannot be followed.
 pub fn follow(
     driven: &Driven,
     start: [f64; 2],

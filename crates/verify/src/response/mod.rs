@@ -117,7 +117,7 @@ pub struct SteadyMotion {
     /// Position and velocity at t = 0: those of the true motion where it was found.
     pub start: [f64; 2],
     /// Whether small disturbances die out, by the multipliers; without damping, whether they do not
-    /// grow. Nothing where they could not be found.
+    /// grow. `None` if they could not be found.
     pub stable: Option<bool>,
     /// The multipliers, the larger first; of a self-excited motion the one that decides, then the
     /// one along the motion, which is 1.
@@ -125,8 +125,8 @@ pub struct SteadyMotion {
     /// The part of a period in which it sticks, held by dry friction.
     pub stuck: f64,
     /// The error of amplitude or peak against the true motion that shooting found, the larger, over
-    /// the true peak, or that of the frequency, over the true one, if that is larger; nothing where
-    /// it found none near.
+    /// the true peak, or that of the frequency, over the true one, if that is larger; `None` if it
+    /// found none near.
     pub error: Option<f64>,
 }
 
@@ -241,8 +241,8 @@ pub struct ResponseDiagram {
     pub bifurcations: Vec<Bifurcation>,
     /// Folds of the balance that are none of the true motion, left out of these.
     pub ripple: Option<Ripple>,
-    /// The free motion without damping, about each place of rest; empty where the frequency does
-    /// not vary.
+    /// The free motion without damping, about each place of rest; empty if the frequency does not
+    /// vary.
     pub backbone: Vec<Vec<BackbonePoint>>,
     /// Simulations that have settled on stable points.
     pub simulated: Vec<Simulated>,
@@ -503,7 +503,7 @@ impl<'a> PreparedRequest<'a> {
         }
     }
 
-    /// Everything with so many harmonics.
+    /// Everything with this many harmonics.
     fn attempt(&self, harmonics: usize, seeds: &[Seed]) -> Result<ResponseDiagram, ResponseError> {
         let question = self.question;
         let balance = HarmonicBalance::new(&self.driven, harmonics);

@@ -101,10 +101,10 @@ pub(super) fn without_ripple(
 }
 
 /// The folds of the true motion in place of these of a balance, on a part of a branch without
-/// crossings; nothing where these are they, or where the true motions do not tell. On either side
-/// of a fold of the true motion det(1 - M) has one sign each: where the balance turns more often
-/// than the sign, its folds are as many as the sign changes, each where the branch comes farthest
-/// in between.
+/// crossings; `None` if these are they, or if the true motions do not tell. On either side of a
+/// fold of the true motion det(1 - M) has one sign each: where the balance turns more often than
+/// the sign, its folds are as many as the sign changes, each where the branch comes farthest in
+/// between.
 fn of_true_motion(
     folds: &[LocatedBifurcation],
     nodes: &[BranchNode],

@@ -114,7 +114,7 @@ impl PreparedRequest<'_> {
         Ok((seeds, elsewhere))
     }
 
-    /// The motion that a balance finds from rest at a place, and its extent; nothing where it finds
+    /// The motion that a balance finds from rest at a place, and its extent; `None` if it finds
     /// none.
     fn balanced_from_rest(
         &self,

@@ -78,7 +78,7 @@ impl PreparedRequest<'_> {
                 let Some(path) = self.swing(place, radius, parameter, backward, FOUND) else {
                     continue;
                 };
-                // A jump from growing to shrinking is no cycle.
+                // A jump from growing to shrinking is not a cycle.
                 if (path.end().x - 1.0).abs() > 1e-4 {
                     continue;
                 }
@@ -121,7 +121,7 @@ impl PreparedRequest<'_> {
         let growth =
             |radius: f64| swing(radius, SEARCHED).map_or(f64::NAN, |(_, away)| away / radius - 1.0);
         for radius in fixed_radii(growth) {
-            // A jump from growing to shrinking is no cycle.
+            // A jump from growing to shrinking is not a cycle.
             let found =
                 swing(radius, FOUND).filter(|(_, away)| (away / radius - 1.0).abs() <= 1e-4);
             if let Some((course, _)) = found {

@@ -35,9 +35,9 @@ pub struct SlowResponse {
     pub worst: Option<f64>,
     /// Stable points of the branches near which the slow equations have no stable motion.
     pub missing: usize,
-    /// Values of the parameter at which steady motions of the truncated slow equations are
-    /// [left out](Solution::steady_motions), the lowest and the highest amplitude of these; `None`
-    /// where there are none.
+    /// Values of the parameter at which steady motions of the truncated slow equations are [left
+    /// out](Solution::steady_motions), the lowest and the highest amplitude of these; `None` if
+    /// there are none.
     pub spurious: Option<Spurious>,
     /// Number of stable points.
     pub points: usize,

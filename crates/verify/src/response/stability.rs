@@ -116,8 +116,8 @@ pub(super) fn convergence_test(closely: f64) -> impl FnMut(f64, f64) -> bool {
     }
 }
 
-/// The periodic motion whose start is near this one; nothing where shooting does not settle, or
-/// goes far away.
+/// The periodic motion whose start is near this one; `None` if shooting does not settle, or goes
+/// far away.
 pub fn periodic_motion(
     driven: &Driven,
     guess: [f64; 2],
@@ -233,7 +233,7 @@ pub struct Settled {
     /// Position and velocity at phase zero.
     pub state: [f64; 2],
     /// The periods of the motion after which it comes back, or would where what has not died out
-    /// yet is gone; nothing where it does not within eight.
+    /// yet is gone; `None` if it does not within eight.
     pub returns_after: Option<usize>,
     /// Its positions over the last period, at equal steps.
     pub positions: Vec<f64>,
@@ -246,7 +246,7 @@ enum Period {
 }
 
 impl Period {
-    /// Position and velocity at the end; nothing where it was not reached.
+    /// Position and velocity at the end; `None` if it was not reached.
     fn end(&self) -> Option<[f64; 2]> {
         match self {
             Self::One(path) => path.is_complete().then(|| path.end().y),
@@ -273,7 +273,7 @@ impl Period {
 
 /// Follows the equation as it was given from a start, period by period, until it repeats itself to
 /// `closely` (of its size), or `most` periods are over; the tolerance of a step is a thousandth of
-/// that. Nothing where it cannot be followed: it escapes, or the `budget` is spent.
+/// that. `None` if it cannot be followed: it escapes, or the `budget` is spent.
 pub fn settle(
     driven: &Driven,
     start: [f64; 2],

@@ -65,7 +65,7 @@ impl<'a> PeriodMap<'a> {
         ([real[0], real[1]], real[2])
     }
 
-    /// A period from here; nothing where it cannot be followed.
+    /// A period from here; `None` if it cannot be followed.
     fn period(&self, at: &ScaledPoint) -> Option<VariationalMotion> {
         /// The longest time in which a motion without drive has to turn back.
         const LONGEST: f64 = 1e3;

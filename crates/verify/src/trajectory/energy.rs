@@ -18,7 +18,7 @@ use crate::symbol::{Symbol, fresh_stem};
 use num_traits::Signed as _;
 
 /// `x'^2/2 + V(x)`, V of the terms that have a potential in closed form, and the power of every
-/// other term; nothing for an inertia that depends on the position, whose energy is another.
+/// other term; `None` for an inertia that depends on the position, whose energy is another.
 pub(super) fn energy_of_equation(oscillator: &Oscillator) -> Option<EnergyWithPowers> {
     let velocity = oscillator.velocity();
     let speed = Expr::from(velocity);

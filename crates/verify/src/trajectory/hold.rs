@@ -173,8 +173,8 @@ impl TrajectoryRequest {
     }
 
     /// The motion from a time on, until something that is held is released or something that was
-    /// left is back. The states that are held are set to what is held. Nothing where there are no
-    /// such equations.
+    /// left is back. The states that are held are set to what is held. `None` if there are no such
+    /// equations.
     fn stretch(
         &self,
         equations: &StateEquations,
@@ -282,7 +282,7 @@ fn velocities<'a>(equations: &StateEquations<'a>) -> impl Iterator<Item = Symbol
 }
 
 /// A velocity that an expression is linear in, the one that it depends on most here, and its
-/// coefficient; nothing where the expression is not linear in the velocities, or contains none.
+/// coefficient; `None` if the expression is not linear in the velocities, or contains none.
 fn leading_velocity(
     expression: &Expr,
     equations: &StateEquations,

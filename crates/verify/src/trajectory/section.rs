@@ -62,7 +62,7 @@ impl PoincareSection {
     }
 }
 
-/// ds/dt along a motion; nothing where it cannot be written.
+/// ds/dt along a motion; `None` if it cannot be written.
 fn rate(expression: &Expr, rates: &Rates) -> Option<Expr> {
     let mut parts = vec![expression.differentiate(Symbol::new("t")).ok()?];
     for (state, right) in rates.states.iter().zip(&rates.right) {

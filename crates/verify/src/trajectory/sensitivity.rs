@@ -29,7 +29,7 @@ const SIX_DIGITS: f64 = 1e-6;
 impl Trajectory {
     /// The time until which its states are known to six digits of their sizes, one of two thousand
     /// in the motion; beyond it a start displaced by [`DISPLACEMENT`] of it leads elsewhere. `None`
-    /// where they are known to the end. Costs as much as the motion.
+    /// if they are known to the end. Costs as much as the motion.
     ///
     /// ```
     /// # use lindstedt_verify as lindstedt;

@@ -20,7 +20,7 @@ const NOTHING: f64 = 1e-9;
 const MOST_SLIPS: usize = 20_000;
 
 /// The shares that have one size, each by its number with a sign, for as many as the equations
-/// leave open; `None` where they contradict each other, or are too many.
+/// leave open; `None` if they contradict each other, or are too many.
 pub(super) fn of_one_size(matrix: &[Vec<f64>], right: &[f64]) -> Option<Vec<Vec<(usize, i64)>>> {
     let (mut shares, mut open) = solutions(matrix, right)?;
     let mut groups = Vec::new();
@@ -103,7 +103,7 @@ fn next_choice(chosen: &mut [usize], count: usize) -> bool {
     true
 }
 
-/// One solution of linear equations and the directions in which there are more; `None` where they
+/// One solution of linear equations and the directions in which there are more; `None` if they
 /// contradict each other.
 fn solutions(matrix: &[Vec<f64>], right: &[f64]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
     /// Relative size below which an entry is zero: rounding, and the error of the positions on

@@ -108,7 +108,7 @@ impl<'a> TrueBackbone<'a> {
             .max(self.given_amplitude().abs().min(self.largest_amplitude()))
     }
 
-    /// The true frequency; `None` where the motion is not periodic.
+    /// The true frequency; `None` if the motion is not periodic.
     pub(super) fn frequency(&self, size: f64) -> Option<f64> {
         if let Some(known) = self.known.borrow().get(&size.to_bits()) {
             return *known;

@@ -82,8 +82,8 @@ pub(super) fn bounds(
     Some(Range { text, outside })
 }
 
-/// `x` and `f(x)/x` from rest to the amplitude, at all places where it may turn back; `None` where
-/// it has no value.
+/// `x` and `f(x)/x` from rest to the amplitude, at all places where it may turn back; `None` if it
+/// has no value.
 fn course(force: &CentredForce, amplitude: f64) -> Option<Vec<(f64, f64)>> {
     const LINEAR: i32 = 512;
     /// Towards rest by decades.

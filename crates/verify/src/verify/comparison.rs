@@ -31,7 +31,7 @@ use crate::values::Values;
 pub struct ComparisonRow {
     /// The derived answer.
     pub solution: Solution,
-    /// omega by the formula; `None` where there is none.
+    /// omega by the formula; `None` if there is none.
     pub frequency: Option<f64>,
     /// Why there is none.
     pub reason: Option<NoNumbers>,
@@ -45,7 +45,7 @@ pub struct ComparisonRow {
     /// The range in which the frequency is within the tolerance, of the amplitude of the table's
     /// first row.
     pub reach: Option<AmplitudeReach>,
-    /// The verdict on the frequency; `None` where the true one is not known.
+    /// The verdict on the frequency; `None` if the true one is not known.
     pub verdict: Option<Verdict>,
 }
 
@@ -83,7 +83,7 @@ pub struct Comparison {
     pub equation: Equation,
     /// The values at which the methods were judged.
     pub at: Values,
-    /// omega of the true motion; `None` where it cannot be computed.
+    /// omega of the true motion; `None` if it cannot be computed.
     pub true_frequency: Option<f64>,
     /// Why it cannot.
     pub reason: Option<VerificationError>,

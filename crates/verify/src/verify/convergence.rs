@@ -76,7 +76,7 @@ pub fn converges(solution: &Solution) -> Option<Convergence> {
 }
 
 /// That the series of omega^2 in a solution has no singularity, by its own exact coefficients: that
-/// it ends, or that they fall faster than the powers of any number; `None` where they say neither.
+/// it ends, or that they fall faster than the powers of any number; `None` if they say neither.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;
@@ -122,8 +122,8 @@ fn exact_coefficients(solution: &Solution) -> Option<(Monomial, Vec<Rational>)> 
     Some((variable, coefficients))
 }
 
-/// The radius of convergence of the series of `solution` in its small parameter, in words; nothing
-/// where its coefficients show no law.
+/// The radius of convergence of the series of `solution` in its small parameter, in words; `None`
+/// if its coefficients show no law.
 pub(super) fn convergence(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -289,8 +289,8 @@ fn forget_odd_noise(coefficients: &mut [f64]) {
 }
 
 /// The terms of the force at an amplitude, in units of the linear frequency and of a value of the
-/// small parameter that makes the largest one; and that value. `None` where the force is none of a
-/// few powers.
+/// small parameter that makes the largest one; and that value. `None` if the force is none of a few
+/// powers.
 fn in_numbers(
     oscillator: &Oscillator,
     numbers: &BTreeMap<Symbol, f64>,
@@ -361,8 +361,8 @@ fn with_numbers(
     oscillator.with_values(&values).ok()
 }
 
-/// The nearest singularity of a power series, from its coefficients; `None` where they show no
-/// regular pattern.
+/// The nearest singularity of a power series, from its coefficients; `None` if they show no regular
+/// pattern.
 ///
 /// ```
 /// # use lindstedt_verify as lindstedt;

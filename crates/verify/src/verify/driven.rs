@@ -43,7 +43,7 @@ use crate::values::Values;
 pub struct JudgedState {
     /// The steady state by the slow equations.
     pub state: SteadyState,
-    /// The amplitude of the true motion; `None` where none was found.
+    /// The amplitude of the true motion; `None` if none was found.
     pub true_amplitude: Option<f64>,
     /// Whether the true motion attracts, by its Floquet multipliers.
     pub true_stable: Option<bool>,
@@ -53,7 +53,7 @@ pub struct JudgedState {
     pub max_deviation: Option<f64>,
 }
 
-/// The largest stable steady motion by the formula and the true one, over one period; `None` where
+/// The largest stable steady motion by the formula and the true one, over one period; `None` if
 /// there is no such motion.
 pub(super) fn motions(
     oscillator: &Oscillator,

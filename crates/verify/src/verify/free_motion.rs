@@ -36,7 +36,7 @@ enum FreePath {
     Evaluated(ode::Trajectory),
 }
 
-/// The motion by values of the force alone; `None` where there is none.
+/// The motion by values of the force alone; `None` if there is none.
 fn evaluated(
     oscillator: &Oscillator,
     numbers: &BTreeMap<Symbol, f64>,
@@ -92,8 +92,8 @@ impl FreeMotion {
         course.begin(oscillator.coordinate, start.equilibrium + start.distance)?;
         let motion = course.follow()?;
         let (end, motion) = match motion.end() < start.duration {
-            // A root of the velocity, say, is no power series where it turns; by its values alone
-            // the motion goes on.
+            // A root of the velocity, say, is not a power series where it turns; by its values
+            // alone the motion goes on.
             true => match evaluated(oscillator, numbers, start) {
                 Some(other) if other.end().t > motion.end() => {
                     (other.end().t, FreePath::Evaluated(other))

@@ -98,7 +98,7 @@ impl Verdict {
 pub struct Verification {
     /// The values at which it was judged.
     pub at: Values,
-    /// omega by the formula, in the unit of time of the equation; `None` where there is none.
+    /// omega by the formula, in the unit of time of the equation; `None` if there is none.
     pub frequency: Option<f64>,
     /// Why there is none.
     pub reason: Option<NoNumbers>,
@@ -117,7 +117,7 @@ pub struct Verification {
     /// Root mean square of the equation's residual along the formula, over that of its force.
     pub residual: Option<f64>,
     /// Measured exponent of the frequency error; of a motion followed from its start that of
-    /// `max_deviation`, over times that grow as what is small becomes less. `None` where rounding
+    /// `max_deviation`, over times that grow as what is small becomes less. `None` if rounding
     /// hides it, and for motions over several wells, which do not become small.
     pub slope: Option<f64>,
     /// Whether the motion runs over several wells through an unstable equilibrium: such motions
@@ -133,7 +133,7 @@ pub struct Verification {
     pub values: Vec<(Symbol, f64)>,
     /// theta at `t = 0`: pi for a negative amplitude whose size stands in `values`, else 0.
     pub phase: f64,
-    /// The motion in theta; `None` where the frequency is not real or the motion is not known.
+    /// The motion in theta; `None` if the frequency is not real or the motion is not known.
     pub motion: Option<FourierSeries<Doubles>>,
     /// Driven motions: every steady motion by the slow equations, largest first, beside the true
     /// one.
@@ -157,8 +157,8 @@ impl Verification {
             .unwrap_or_else(|| format!("{} (|relative error| <= {within} %)", self.verdict.name()))
     }
 
-    /// The verdict with the two numbers that it is about; `None` where the frequency alone says all
-    /// of it.
+    /// The verdict with the two numbers that it is about; `None` if the frequency alone says all of
+    /// it.
     pub fn verdict_on_both(&self, tolerance: f64) -> Option<String> {
         let verdict = self.verdict.name();
         let within = significant(100.0 * tolerance, 3);
@@ -467,7 +467,7 @@ pub fn judge_to(
     })
 }
 
-/// An error where the drives have frequencies without a ratio.
+/// An error if the drives have frequencies without a ratio.
 fn check_common_period(solution: &Solution) -> Result<(), VerificationError> {
     let apart = |note: &Note| matches!(note, Note::ForcedWaves { .. });
     match solution.validity.iter().any(apart) {
@@ -490,7 +490,7 @@ fn in_another_coordinate(
 
 /// The values with the amplitude that the formula is written in, where that of the other convention
 /// is given instead, and what was converted in words: the true motion released at `A` has the first
-/// harmonic `a`. `None` where there is nothing to convert.
+/// harmonic `a`. `None` if there is nothing to convert.
 ///
 /// # Errors
 /// There is no true periodic motion of this amplitude.
@@ -562,7 +562,7 @@ fn cancellation(
     law.into_iter().chain(motion).collect()
 }
 
-/// An error where the amplitude of a free motion changes.
+/// An error if the amplitude of a free motion changes.
 fn periodic(solution: &Solution) -> Result<(), VerificationError> {
     let slow = solution.modulation.as_ref().filter(|_| solution.limit_cycle.is_none());
     match slow.is_some_and(|slow| !slow.is_conservative()) {
@@ -672,7 +672,7 @@ pub struct Motions {
 }
 
 /// The motion by the formula and the true one, at the same instants of one true period, or as long
-/// as a motion that is not periodic is judged; `None` where the formula's frequency is not real.
+/// as a motion that is not periodic is judged; `None` if the formula's frequency is not real.
 ///
 /// # Errors
 /// As for [`judge`].
@@ -784,7 +784,7 @@ fn samples_of(truth: &TrueMotion) -> Vec<TimedState> {
     instants(truth).map(|t| truth.sample(t)).collect()
 }
 
-/// omega by the formula: the root of omega^2, `None` where that is not positive.
+/// omega by the formula: the root of omega^2, `None` if that is not positive.
 fn formula_frequency(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -893,7 +893,7 @@ fn meant_motion(
     found.map_err(|error| validity::why_no_motion(oscillator, solution, numbers, error))
 }
 
-/// The force about the equilibrium of an answer; `None` where a symbol of it has no number.
+/// The force about the equilibrium of an answer; `None` if a symbol of it has no number.
 fn force_of(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -936,8 +936,8 @@ fn unfollowed(
     Some(format!("Runge-Kutta does not follow the true motion{why}"))
 }
 
-/// Largest `|x_true - x_formula|` over one true period, over the amplitude; `None` where the path
-/// is not known.
+/// Largest `|x_true - x_formula|` over one true period, over the amplitude; `None` if the path is
+/// not known.
 fn largest_deviation(
     truth: &TrueMotion,
     frequency: f64,

@@ -77,7 +77,7 @@ impl Orbit {
 pub(super) struct TrueMotion {
     /// omega.
     pub(super) frequency: f64,
-    /// `None` where the energy gives the period but Runge-Kutta cannot follow the motion.
+    /// `None` if the energy gives the period but Runge-Kutta cannot follow the motion.
     orbit: Option<Orbit>,
     /// The instant of the path that is `t = 0` of the formula.
     shift: f64,
@@ -159,7 +159,7 @@ impl TrueMotion {
     }
 
     /// The amplitude of this free motion by the other convention: of a release the first harmonic,
-    /// of a first harmonic the release; `None` where its path is not known.
+    /// of a first harmonic the release; `None` if its path is not known.
     pub(super) fn amplitude_by_the_other(
         &self,
         convention: AmplitudeConvention,

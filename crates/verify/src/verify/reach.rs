@@ -119,7 +119,7 @@ impl AmplitudeReach {
     }
 }
 
-/// The range from rest in which the frequency stays within the tolerance; `None` where it cannot be
+/// The range from rest in which the frequency stays within the tolerance; `None` if it cannot be
 /// followed.
 pub(super) fn amplitude_reach(
     oscillator: &Oscillator,

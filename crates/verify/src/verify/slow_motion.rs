@@ -215,7 +215,7 @@ impl SlowMotion {
         }
     }
 
-    /// The rate of the velocity; `None` where it cannot be written down.
+    /// The rate of the velocity; `None` if it cannot be written down.
     pub(super) fn acceleration(&self, t: f64) -> Option<f64> {
         let acceleration = self.acceleration.as_ref()?;
         let at = self.slow_at(t);

@@ -34,7 +34,7 @@ pub(super) struct Smaller {
     pub(super) numbers: BTreeMap<Symbol, f64>,
 }
 
-/// All that is small halved so many times; `None` where that cannot be done.
+/// All that is small halved this many times; `None` if that cannot be done.
 pub(super) fn smaller(
     oscillator: &Oscillator,
     solution: &Solution,
@@ -248,8 +248,8 @@ fn drive_left(
     Some(scale.powi(wanted - (degree - 1)))
 }
 
-/// The lowest power of the coordinate and the velocity together; `None` where they stand in what
-/// has no series.
+/// The lowest power of the coordinate and the velocity together; `None` if they stand in what has
+/// no series.
 fn degree(term: &Expr, own: [Symbol; 2]) -> Option<i32> {
     /// The series of a function begins below.
     const HIGHEST: u32 = 4;

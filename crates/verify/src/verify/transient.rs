@@ -178,7 +178,7 @@ fn samples(until: f64, period: f64) -> usize {
     if count.is_finite() { (count as usize).clamp(64, 8192) } else { 64 }
 }
 
-/// The largest of numbers that are all finite; `None` where there is none.
+/// The largest of numbers that are all finite; `None` if there is none.
 fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
     let found = values.fold(None, |largest: Option<f64>, value| {
         Some(match largest {

@@ -29,7 +29,7 @@ pub trait Arithmetic: Copy + Send + Sync {
     const RADIX: u32;
     /// Digits that may be multiplied by a residue and summed as residues are.
     const DIGIT: u32;
-    /// After so many products a sum has to be [carried](Self::carry).
+    /// After this many products a sum has to be [carried](Self::carry).
     const RUN: usize;
     /// Eight sums of products.
     type Sum: Copy;

@@ -6,7 +6,7 @@
 
 use super::Lanes;
 
-/// Room for so many lanes, all zero.
+/// Room for this many lanes, all zero.
 pub struct Memory {
     pages: Pages,
 }
@@ -57,7 +57,7 @@ mod large {
     }
 
     impl HugePages {
-        /// `None` where it is little, or where there is none.
+        /// `None` if it is little, or if there is none.
         pub fn zeroed(count: usize) -> Option<Self> {
             let bytes = count.checked_mul(size_of::<Lanes>())?;
             if bytes < LEAST {

@@ -194,7 +194,7 @@ impl<A: Arithmetic> Residues<A> {
         powers
     }
 
-    /// Residues whose powers run through `order` values before they are one again; `None` where
+    /// Residues whose powers run through `order` values before they are one again; `None` if
     /// `order` does not divide every prime minus one.
     #[inline(always)]
     pub fn root_of_unity(&self, order: u64) -> Option<Lanes> {

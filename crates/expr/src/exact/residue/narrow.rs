@@ -33,7 +33,7 @@ pub struct NarrowSum {
 }
 
 impl Narrow {
-    /// `None` where the processor has no such vectors.
+    /// `None` if the processor has no such vectors.
     pub fn try_new() -> Option<Self> {
         V3::try_new().map(Self)
     }

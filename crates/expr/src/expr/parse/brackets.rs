@@ -50,7 +50,7 @@ fn typed_term(
     TypedTerm { value, span: span(rest), negative, right, around }
 }
 
-/// The terms inside the one bracket of a term that the rest of it scales; `None` where there is no
+/// The terms inside the one bracket of a term that the rest of it scales; `None` if there is no
 /// such bracket.
 fn opened<'a>(
     text: &str,

@@ -115,7 +115,7 @@ impl ChainBarrier {
         })
     }
 
-    /// The contact that begins with this speed, positive; nothing where the pendulum leans on the
+    /// The contact that begins with this speed, positive; `None` if the pendulum leans on the
     /// barrier rather than leaves it, or goes deep.
     pub fn bounce(&self, speed: f64) -> Option<Bounce> {
         let product = self.damping * speed;

@@ -391,8 +391,8 @@ impl<'a> Chain<'a> {
         })
     }
 
-    /// Two turning points under viscous damping, about the energy of the first; nothing where there
-    /// is none.
+    /// Two turning points under viscous damping, about the energy of the first; `None` if there is
+    /// none.
     fn undulate(&mut self, side: Side, from: SwingAngle) -> Option<StretchStart> {
         let half =
             |swing: &UndampedSwing| Leg::free(2.0 * swing.quarter.time, 2.0 * swing.quarter.area);
@@ -421,7 +421,7 @@ impl<'a> Chain<'a> {
     }
 
     /// The next turning point with dry friction: half of the viscous damping before it, half after
-    /// it; nothing where there is none.
+    /// it; `None` if there is none.
     fn next_turn_with_friction(&mut self, side: Side, from: SwingAngle) -> Option<StretchStart> {
         let to = side.opposite();
         let quarter = |swing: &UndampedSwing| Leg::free(swing.quarter.time, swing.quarter.area);

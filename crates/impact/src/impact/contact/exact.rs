@@ -78,7 +78,7 @@ impl ExactContact {
     /// Depth and duration are good to 1e-12 for a smooth force.
     ///
     /// # Errors
-    /// [`ContactError`]: a speed that is no positive number; a force that never turns the motion
+    /// [`ContactError`]: a speed that is not a positive number; a force that never turns the motion
     /// back, has no finite value on the way or is not smooth there; a depth or a duration beyond
     /// double precision.
     pub fn new(force: impl Fn(f64) -> f64, speed: f64) -> Result<Self, ContactError> {
@@ -237,7 +237,7 @@ pub struct SineSeries {
     pub parabola: f64,
     /// b_1, b_3, b_5, .., in the unit of x.
     pub harmonics: Vec<f64>,
-    /// b_2, b_4, b_6, .., in the unit of x; empty where nothing is lost.
+    /// b_2, b_4, b_6, .., in the unit of x; empty if nothing is lost.
     pub even: Vec<f64>,
     /// The largest difference from the motion that it was made of, relative to D.
     pub deviation: f64,
@@ -337,7 +337,7 @@ impl SineSeries {
         (depth, velocity)
     }
 
-    /// The formula as people write it, so many significant digits: s is the time since touch.
+    /// The formula in the usual form, this many significant digits: s is the time since touch.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;

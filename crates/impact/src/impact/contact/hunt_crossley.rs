@@ -233,7 +233,7 @@ impl HuntCrossley {
 /// For small lambda v the restitution is 1 - (2/3) lambda v: within 1 % below lambda v = 0.15.
 ///
 /// # Errors
-/// [`ContactError::Negative`] for a product that is no number or negative.
+/// [`ContactError::Negative`] for a product that is not a number or negative.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;
@@ -384,7 +384,7 @@ fn remaining(y: f64, m: f64) -> f64 {
 }
 
 /// The greatest force of a contact, per unit of mass, as of [`HuntCrossley::new`] but without its
-/// motion in time; nothing for quantities outside their domains.
+/// motion in time; `None` for quantities outside their domains.
 ///
 /// ```
 /// # use lindstedt_impact as lindstedt;

@@ -256,7 +256,7 @@ enum Form {
 }
 
 impl ContactMotion {
-    /// n of a law of the power d^n; nothing for the others.
+    /// n of a law of the power d^n; `None` for the others.
     pub fn exponent(&self) -> Option<f64> {
         match &self.form {
             Form::PowerLaw(contact) => Some(contact.exponent),
@@ -317,7 +317,7 @@ impl ContactMotion {
         )
     }
 
-    /// The formula as people write it, so many significant digits: s is the time since touch. The
+    /// The formula in the usual form, this many significant digits: s is the time since touch. The
     /// exact motion is written as sines that stay within `tolerance` of D, as far as 64 of them do;
     /// of the power law stands the time as a function of the depth, with I the regularised
     /// incomplete beta function, for the way in.

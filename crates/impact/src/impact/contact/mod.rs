@@ -53,7 +53,7 @@ pub enum ContactError {
     /// A quantity outside its domain.
     #[error(transparent)]
     NotPositive(#[from] NotPositive),
-    /// A quantity that is no number.
+    /// A quantity that is not a number.
     #[error("the {quantity} must be a finite number, not {value}")]
     NotFinite {
         /// The name of the quantity.

@@ -76,8 +76,8 @@ impl PowerLaw {
     /// The contact of this exponent and this stiffness gamma, touched at this speed.
     ///
     /// # Errors
-    /// [`ContactError`]: a quantity that is no positive number, a depth or a duration beyond double
-    /// precision.
+    /// [`ContactError`]: a quantity that is not a positive number, a depth or a duration beyond
+    /// double precision.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -261,8 +261,8 @@ impl CorrectedPowerLaw {
         self.phase_point_at(time).1
     }
 
-    /// The formula as people write it, so many significant digits: s is the time since touch, Y the
-    /// motion of the power law.
+    /// The formula in the usual form, this many significant digits: s is the time since touch, Y
+    /// the motion of the power law.
     pub fn closed_form(&self, digits: usize) -> String {
         let duration = significant(self.duration, digits);
         let rest = self.depth - 0.125 * self.preload * self.duration * self.duration;

@@ -59,7 +59,7 @@ pub enum FrictionError {
         "the amplitude must lie above 0 and below pi, not {0}: the pendulum is released from rest at x = -A"
     )]
     Amplitude(f64),
-    /// A speed that is no number.
+    /// A speed that is not a number.
     #[error("a speed must be a finite number, not {0}")]
     Speed(f64),
     /// A release that is held.

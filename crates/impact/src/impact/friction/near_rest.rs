@@ -63,11 +63,11 @@ pub struct Creep {
     pub damping: f64,
     /// Whether it creeps, c > 2; it swings about zero otherwise.
     pub creeps: bool,
-    /// The rate for c far above 2, pi/(200 alpha); nothing where it swings.
+    /// The rate for c far above 2, pi/(200 alpha); `None` if it swings.
     pub rate_overdamped: Option<f64>,
     /// The rate of the linear equation.
     pub rate_linear: f64,
-    /// The rate of the simulated motion, when it is small; nothing where there is no motion.
+    /// The rate of the simulated motion, when it is small; `None` if there is no motion.
     pub rate: Option<f64>,
     /// Some states.
     pub samples: Vec<CreepSample>,
@@ -78,7 +78,7 @@ pub struct Creep {
 
 impl Creep {
     /// The place by the formula of the creep, this long after rest, rad, up to the end of the
-    /// motion; nothing where it swings.
+    /// motion; `None` if it swings.
     pub fn formula(&self, t: f64) -> Option<f64> {
         self.without_inertia.as_ref()?.position_at(t)
     }
@@ -273,8 +273,8 @@ fn creep(alpha: f64, x: f64) -> Result<Creep, FrictionError> {
 }
 
 /// The rate at which a linear motion dies, from four places at equal distances of time: the slow
-/// one of two, or that of both where it swings; nothing where there is no motion. (R. Prony, 1795:
-/// x_2 = p x_1 + q x_0, and z^2 = p z + q for z = e^(-rate step).)
+/// one of two, or that of both where it swings; `None` if there is no motion. (R. Prony, 1795: x_2
+/// = p x_1 + q x_0, and z^2 = p z + q for z = e^(-rate step).)
 fn rate_of([x0, x1, x2, x3]: [f64; 4], step: f64) -> Option<f64> {
     let determinant = x1 * x1 - x0 * x2;
     let decay = match determinant.abs() < 1e-6 * x1 * x1 {

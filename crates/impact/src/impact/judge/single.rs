@@ -45,7 +45,7 @@ pub struct TrueImpact {
     /// The path in contact: depth and speed against the time since the touch.
     pub contact: Trajectory,
     /// The path from the exit to the turning point after it, place against the barrier and speed
-    /// out of it against the time since the exit; nothing where it is the approach run backwards.
+    /// out of it against the time since the exit; `None` if it is the approach run backwards.
     pub back: Option<Trajectory>,
     /// Largest change of the energy along the path, in flight alone where the contact is damped, as
     /// a part of the kinetic energy at touch: how good the path is.

@@ -185,7 +185,7 @@ impl<'a> PrimaryRun<'a> {
     }
 
     /// The direction of dry friction: that of the motion, or of the torque on what is at rest;
-    /// nothing where friction holds it. A contact pushes with `contact`.
+    /// `None` if friction holds it. A contact pushes with `contact`.
     fn direction(&self, contact: f64) -> Option<f64> {
         if !self.case.sticks() {
             return Some(0.0);

@@ -69,7 +69,7 @@ impl Primary {
         }
     }
 
-    /// The envelope of the mass alone from this start, not driven; nothing where it creeps.
+    /// The envelope of the mass alone from this start, not driven; `None` if it creeps.
     pub fn alone_envelope(&self, mass: f64, [y, speed]: [f64; 2], t: f64) -> Option<f64> {
         let decay = 0.5 * self.damping / mass;
         let square = self.stiffness / mass - decay * decay;

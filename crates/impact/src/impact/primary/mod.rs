@@ -271,7 +271,7 @@ impl PrimaryCase {
 }
 
 impl PrimaryMotion {
-    /// Both states at a time; nothing outside of the motion.
+    /// Both states at a time; `None` outside of the motion.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;

@@ -204,7 +204,7 @@ pub struct ContactRecord {
     pub side: Side,
     /// When it is touched.
     pub entry_time: f64,
-    /// When it is left; nothing where the run ended before.
+    /// When it is left; `None` if the run ended before.
     pub exit_time: Option<f64>,
     /// Speed at the touch; where the motion starts inside the barrier, its speed inwards then,
     /// negative if it leaves.
@@ -215,7 +215,7 @@ pub struct ContactRecord {
     pub speed_out: Option<f64>,
     /// Greatest depth, rad.
     pub penetration: f64,
-    /// Speed out over speed in; nothing for a contact that did not begin with a touch.
+    /// Speed out over speed in; `None` for a contact that did not begin with a touch.
     pub restitution: Option<f64>,
     /// Energy that the motion has lost between touch and release, units of m g L.
     pub energy_lost: Option<f64>,
@@ -394,8 +394,8 @@ pub(super) const CLOCK: f64 = 1e-6;
 
 impl Simulation {
     /// The greatest force of the barrier in a contact, its damping included, in units of m g,
-    /// looked for on the path. `None` where no path is kept, where that of a chain is only near the
-    /// motion, and where the contact did not end or is too short for the clock.
+    /// looked for on the path. `None` if no path is kept, where that of a chain is only near the
+    /// motion, and if the contact did not end or is too short for the clock.
     ///
     /// ```
     /// # use lindstedt_impact as lindstedt;
@@ -422,7 +422,7 @@ impl Simulation {
         Some(greatest(force, impact.entry_time, exit))
     }
 
-    /// Compares the paths at so many times, as far as both go.
+    /// Compares the paths at this many times, as far as both go.
     pub fn difference(&self, other: &Self, count: usize) -> MotionDifference {
         let until = self.end_time.min(other.end_time);
         let mut difference = MotionDifference { displacement: 0.0, velocity: 0.0, until };

@@ -107,7 +107,7 @@ impl SimulationPath {
         Self { judge: Some(judge), ..Self::new() }
     }
 
-    /// Displacement (rad) and velocity at a time; nothing outside the time covered.
+    /// Displacement (rad) and velocity at a time; `None` outside the time covered.
     pub fn phase_point_at(&self, t: f64) -> Option<(f64, f64)> {
         let last = self.pieces.last()?;
         if !(self.pieces.first()?.start..=last.end).contains(&t) {
@@ -124,7 +124,7 @@ impl SimulationPath {
         &self.pieces
     }
 
-    /// The regime in force at a time; nothing outside the time covered.
+    /// The regime in force at a time; `None` outside the time covered.
     pub fn regime_at(&self, t: f64) -> Option<Regime> {
         let last = self.pieces.last()?;
         if t > last.end {

@@ -51,8 +51,8 @@ pub struct Rest {
     pub place: f64,
     /// The time at which the envelope falls to a tenth of it.
     pub time: Result<f64, NoRest>,
-    /// The last time at which the pendulum was so far from the place of rest; nothing where it
-    /// never was.
+    /// The last time at which the pendulum was so far from the place of rest; `None` if it never
+    /// was.
     pub last_crossing: Option<f64>,
 }
 
@@ -317,8 +317,8 @@ pub(in crate::impact) fn has_rested(model: &Model, turns: &[TurningPoint], level
     }
 }
 
-/// The amplitude of the swing with this energy, `1 - cos A = E`, in units of m g L; nothing where
-/// it turns over.
+/// The amplitude of the swing with this energy, `1 - cos A = E`, in units of m g L; `None` if it
+/// turns over.
 fn swing_of(energy: f64) -> Option<f64> {
     (energy < 2.0).then(|| 2.0 * (0.5 * energy.max(0.0)).sqrt().asin())
 }

@@ -67,7 +67,7 @@ pub enum AxisError {
         /// The most similar known name.
         nearest: Option<&'static str>,
     },
-    /// A value that is no finite number.
+    /// A value that is not a finite number.
     #[error("`{0}` is no finite number")]
     Number(String),
     /// Ends further apart than numbers reach.

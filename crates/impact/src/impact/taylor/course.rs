@@ -75,7 +75,7 @@ impl<const L: usize> Courses<L> {
         }
     }
 
-    /// The course of one motion; nothing where it is not plain.
+    /// The course of one motion; `None` if it is not plain.
     pub(super) fn lane(&self, lane: usize) -> Option<StepEvents> {
         self.plain[lane].then(|| StepEvents {
             turn: self.turns[lane].then(|| self.turn.lane(lane)),

@@ -459,7 +459,7 @@ fn integral(
     integral_within(function, [from, to], negligible, MOST)
 }
 
-/// As [`integral`], by so many panels at most where they are halved one by one.
+/// As [`integral`], by this many panels at most where they are halved one by one.
 fn integral_within(
     function: &dyn Fn(f64) -> f64,
     [from, to]: [f64; 2],

@@ -636,8 +636,8 @@ impl<S: Sample> Leg<'_, '_, S> {
         finite.then(|| (TrajectoryStep::new(self.phase, start.clone(), length, values), next))
     }
 
-    /// The events inside the step in the order of time, as states, and whether they rise; `None`
-    /// where an event function is not finite.
+    /// The events inside the step in the order of time, as states, and whether they rise; `None` if
+    /// an event function is not finite.
     fn located_events(
         &self,
         step: &TrajectoryStep<S>,

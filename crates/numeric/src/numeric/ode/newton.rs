@@ -36,7 +36,7 @@ pub enum Progress {
     Lost,
 }
 
-/// The solution to which at most so many steps of Newton's method lead from a start. `equations`
+/// The solution to which at most this many steps of Newton's method lead from a start. `equations`
 /// gives the residual and its Jacobian at a place, `judged` hears the end of each step and the step
 /// that was subtracted. `None` is the answer where the equations have no value, their Jacobian no
 /// inverse, or the steps do not settle.

@@ -76,9 +76,9 @@ static RULE: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::new(POINT
 /// `from > to` gives the negative integral.
 ///
 /// # Errors
-/// [`QuadratureError`]: an infinite interval, a tolerance that is no positive number, an integrand
-/// without a finite value, or no convergence within 1000 panels; the last one carries the best
-/// value.
+/// [`QuadratureError`]: an infinite interval, a tolerance that is not a positive number, an
+/// integrand without a finite value, or no convergence within 1000 panels; the last one carries the
+/// best value.
 pub fn integrate_smooth(
     function: impl FnMut(f64) -> f64,
     from: f64,

@@ -104,7 +104,7 @@ pub fn find_root(mut function: impl FnMut(f64) -> f64, a: f64, b: f64) -> Result
 /// The width at which a bisection ends; neighbouring doubles end it in any case.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BisectionStop {
-    /// The interval has been halved so many times.
+    /// The interval has been halved this many times.
     Halvings(u32),
     /// The interval is no wider than this.
     Width(f64),

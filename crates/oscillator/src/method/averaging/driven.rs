@@ -42,8 +42,8 @@ const HIGHEST_POWER: u32 = 24;
 /// The slow equations of a driven motion and its steady amplitudes.
 ///
 /// # Errors
-/// A drive that is no single wave, a resonance that the equation does not have, a term without a
-/// closed projection, or to second order one that is no polynomial.
+/// A drive that is not a single wave, a resonance that the equation does not have, a term without a
+/// closed projection, or to second order one that is not a polynomial.
 pub(super) fn solve(
     oscillator: &Oscillator,
     parts: &Parts,
@@ -107,7 +107,7 @@ impl DrivenAveraging<'_> {
     /// All that is small as terms of an expansion.
     ///
     /// # Errors
-    /// A term that is no polynomial, nothing restores, powers that are too high.
+    /// A term that is not a polynomial, nothing restores, powers that are too high.
     fn scaling(&self, order: u32) -> Result<Scaling, Refusal> {
         let mut force = match self.small.expand(order) {
             Ok(force) => force,

@@ -33,7 +33,7 @@ use crate::exact::rational::ratio;
 use crate::expr::{Expr, Function, Node};
 use crate::symbol::Symbol;
 
-/// `[S, C]` of a term; `None` where one has no closed form here.
+/// `[S, C]` of a term; `None` if one has no closed form here.
 pub(super) fn of_term(
     term: &Expr,
     coordinate: Symbol,

@@ -1,5 +1,5 @@
 //! Averaging along the true motion of a restoring force that is one power of the coordinate:
-//! nothing linear restores, and the motion without damping is no wave, but of one shape at every
+//! nothing linear restores, and the motion without damping is not a wave, but of one shape at every
 //! amplitude.
 //!
 //! References: N. N. Bogoliubov, Y. A. Mitropolsky, *Asymptotic Methods in the Theory of Non-Linear
@@ -101,7 +101,7 @@ impl PurePower {
     }
 }
 
-/// A term as a constant and a power of each variable; `None` where they stand elsewhere.
+/// A term as a constant and a power of each variable; `None` if they stand elsewhere.
 fn taken_apart<const N: usize>(term: &Expr, variables: [Symbol; N]) -> Option<(Expr, [Power; N])> {
     let (number, factors) = term.factors();
     let mut outside = Expr::number(number);

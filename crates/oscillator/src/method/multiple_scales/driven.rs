@@ -44,7 +44,7 @@ const HIGHEST: u32 = 3;
 /// The slow equations of a driven motion, its frequency-response equation and what follows from it.
 ///
 /// # Errors
-/// A drive that is no single wave, a resonance that the equation does not have, or what stops an
+/// A drive that is not a single wave, a resonance that the equation does not have, or what stops an
 /// expansion.
 pub(super) fn solve(
     oscillator: &Oscillator,
@@ -248,7 +248,7 @@ impl DrivenRequest<'_> {
         Ok(found)
     }
 
-    /// The answer at the likeliest resonance that is not far away; `None` where the drive reaches
+    /// The answer at the likeliest resonance that is not far away; `None` if the drive reaches
     /// none.
     pub(in crate::method) fn answer_near(
         &self,
@@ -263,7 +263,7 @@ impl DrivenRequest<'_> {
         self.answer_at(found, scaling).transpose()
     }
 
-    /// The answer at a resonance; `None` where the drive does not reach the motion there.
+    /// The answer at a resonance; `None` if the drive does not reach the motion there.
     pub(in crate::method) fn answer_at(
         &self,
         resonance: (u32, u32),

@@ -17,7 +17,7 @@ use crate::solution::AmplitudeConvention;
 use crate::symbol::Symbol;
 
 /// `a(0)` and `theta(0)` in `A`, up to an order of the marker, from the motion and its slow
-/// equations; `None` where they have powers of the amplitude below zero.
+/// equations; `None` if they have powers of the amplitude below zero.
 pub(super) fn release(
     motion: &FourierSeries<Polynomials>,
     [amplitude_rate, phase_rate]: [&Polynomial; 2],

@@ -129,7 +129,7 @@ pub(super) fn scaling(
                 });
             }
             Err(OscillatorError::NotSmall { .. }) if !parts.damping.is_zero() => {}
-            // A name alone says little: what is no polynomial may be one for small motions.
+            // A name alone says little: what is not a polynomial may be one for small motions.
             Err(error @ OscillatorError::NotPolynomial(_)) if options.small.is_none() => {
                 refused = Some(error)
             }
@@ -154,7 +154,7 @@ pub(super) fn scaling(
 }
 
 /// The expansion in parameters that are small together, or in one that marks all terms but the
-/// linear one of an equation that may have a limit cycle; `None` where the amplitude is to be the
+/// linear one of an equation that may have a limit cycle; `None` if the amplitude is to be the
 /// small parameter.
 fn jointly_small(
     oscillator: &Oscillator,
@@ -321,7 +321,7 @@ fn order_of(options: &Options, default: u32, highest: u32) -> Result<u32, Refusa
     }
 }
 
-/// An error where powers are so high that an expansion would take too long.
+/// An error if powers are so high that an expansion would take too long.
 fn within_reach(force: &PerturbedForce, order: u32) -> Result<(), secular::SecularError> {
     let terms = force.terms.iter();
     bounded(terms.map(|term| term.position + term.velocity), order)

@@ -36,8 +36,8 @@ impl SlowEquations {
         Self { amplitude, phase }
     }
 
-    /// The amplitude at which `a' = 0`, in powers of the marker; `None` where it needs a quotient
-    /// that is no polynomial.
+    /// The amplitude at which `a' = 0`, in powers of the marker; `None` if it needs a quotient that
+    /// is not a polynomial.
     pub(super) fn at_cycle(
         &self,
         cycle: &Cycle,
@@ -83,7 +83,7 @@ pub(super) struct Cycles {
     pub(super) number: usize,
 }
 
-/// The limit cycles of an equation whose amplitude is not free; `None` where it has none.
+/// The limit cycles of an equation whose amplitude is not free; `None` if it has none.
 ///
 /// # Errors
 /// The amplitudes have no closed form, or one that is not there is asked for.

@@ -24,7 +24,7 @@ static SMALL: LazyLock<Vec<u64>> = LazyLock::new(|| primes_up_to(1000));
 pub(in crate::method) struct Factored(Vec<(u64, u64)>);
 
 impl Factored {
-    /// The factors of a number whose primes are all small; `None` of another.
+    /// The factors of a number whose primes are all small; `None` for another.
     pub fn factorize(number: &Integer) -> Option<Self> {
         let mut rest = number.clone();
         let mut factored = Self::default();
@@ -41,7 +41,7 @@ impl Factored {
         rest.is_one().then_some(factored)
     }
 
-    /// The product with a word whose primes are all small; `None` of another.
+    /// The product with a word whose primes are all small; `None` for another.
     fn with_factors_of(mut self, word: u64) -> Option<Self> {
         let mut rest = word;
         for prime in SMALL.iter() {

@@ -156,7 +156,7 @@ impl<'a> Recursion<'a> {
     }
 
     /// Solves the order after those that are known; the last one of a limit cycle gives nothing but
-    /// the amplitude before it. `None` where a number does not fit, and where a secular sine stays.
+    /// the amplitude before it. `None` if a number does not fit, and if a secular sine stays.
     fn next_order(&mut self) -> Option<()> {
         let (plan, order) = (self.plan, self.tables[0].len());
         let mut right_side = self.right_side(order)?;
@@ -354,7 +354,7 @@ impl<'a> Recursion<'a> {
         sum.map(ShortSeries::reduced)
     }
 
-    /// The first variation at order zero; `None` where the secular sine does not depend on the
+    /// The first variation at order zero; `None` if the secular sine does not depend on the
     /// amplitude.
     fn variation(&self) -> Option<Variation> {
         let plan = self.plan;

@@ -152,8 +152,8 @@ pub enum SecularError {
     },
 }
 
-/// An error where a high power makes an expansion to this order far too long; `terms` are the order
-/// of each term of the force and its power of position and velocity together.
+/// An error if a high power makes an expansion to this order far too long; `terms` are the order of
+/// each term of the force and its power of position and velocity together.
 ///
 /// # Errors
 /// [`SecularError::TooManyHarmonics`].
@@ -171,8 +171,8 @@ pub fn bounded(
         return Ok(());
     }
     let harmonics = highest.saturating_mul(degree.saturating_sub(1) as usize).saturating_add(1);
-    // Products of series of so many harmonics, whose coefficients are as long as binomials of that
-    // size.
+    // Products of series of this many harmonics, whose coefficients are as long as binomials of
+    // that size.
     let (orders, length) = (highest as f64, harmonics as f64);
     let work = (orders * length).powi(2) * f64::from(degree).log2() * (length / 32.0).max(1.0);
     match work > MOST_WORK {

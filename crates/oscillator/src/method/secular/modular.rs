@@ -42,7 +42,7 @@ pub(super) struct PrimeImage {
 }
 
 impl PrimeImage {
-    /// The coefficients of an order; empty where nobody wants them from this prime.
+    /// The coefficients of an order; empty if nobody wants them from this prime.
     pub fn displacement(&self, plan: &Plan, order: usize) -> &[u64] {
         let places = plan.coefficient_range(order);
         let Some(start) = places.start.checked_sub(self.start) else {
@@ -120,7 +120,7 @@ impl<A: Arithmetic> NullaryFnOnce for Prepare<'_, A> {
     }
 }
 
-/// A number over a power, modulo each prime; `None` where a prime divides its denominator.
+/// A number over a power, modulo each prime; `None` if a prime divides its denominator.
 fn coefficient(moduli: &[Modulus], number: &Rational, power: i64) -> Option<Lanes> {
     let mut lanes = Lanes::default();
     let mut last = 0;
@@ -295,8 +295,8 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
     }
 
     /// Everything that is wanted, modulo each of up to eight primes; the motion from the order on
-    /// that is `wanted` of each. `None` where a divisor is a multiple of a prime, where a secular
-    /// sine stays (the ring's own recursion says which), and where it is stopped.
+    /// that is `wanted` of each. `None` if a divisor is a multiple of a prime, where a secular sine
+    /// stays (the ring's own recursion says which), and if it is stopped.
     pub fn images(
         &mut self,
         primes: &[u64],
@@ -668,7 +668,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         self.push_sine(field, order);
     }
 
-    /// The first variation at order zero; `None` where the secular sine does not depend on the
+    /// The first variation at order zero; `None` if the secular sine does not depend on the
     /// amplitude.
     #[inline(always)]
     fn variation(

@@ -274,7 +274,7 @@ struct OrderRange {
 }
 
 impl<'m> HarmonicTable<'m> {
-    /// Number of entries of so many harmonics.
+    /// Number of entries of this many harmonics.
     pub fn entry_count(plan: &Plan, count: usize) -> usize {
         let parities = 0..plan.step();
         parities

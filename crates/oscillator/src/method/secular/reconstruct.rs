@@ -44,9 +44,9 @@ pub enum ExpansionScope {
     Frequency,
 }
 
-/// The expansion by words, or by many primes; `None` where the equation has no symmetry to use,
-/// where the denominators grow in no known way, where numbers are short, and where there is none:
-/// the ring's own recursion answers then.
+/// The expansion by words, or by many primes; `None` if the equation has no symmetry to use, where
+/// the denominators grow in no known way, where numbers are short, and if there is none: the ring's
+/// own recursion answers then.
 pub fn expand(
     force: &[ForceTerm<Integers>],
     highest: usize,
@@ -251,8 +251,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         beginning.shrinks().then(|| self.orders_from(first, Some(beginning.without_shrinking())))?
     }
 
-    /// The number of primes whose product has more than so many binary digits; `None` where there
-    /// are not enough.
+    /// The number of primes whose product has more than so many binary digits; `None` if there are
+    /// not enough.
     fn primes_for(&mut self, bits: f64) -> Option<usize> {
         let mut product = 0.0;
         let mut count = 0;
@@ -273,7 +273,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         count: usize,
         wanted: &(dyn Fn(usize) -> usize + Sync),
     ) -> Option<Vec<PrimeImage>> {
-        /// Eights of a lot use the same memory; after so many lots for each thread all threads
+        /// Eights of a lot use the same memory; after this many lots for each thread all threads
         /// meet, so that what is there when the work is stopped has no gaps.
         const LOT: usize = 8;
         const LOTS: usize = 4;
@@ -379,7 +379,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
     }
 
     /// The orders from `first` on over these denominators of motion and frequency, with numerators
-    /// of so many binary digits; `None` where a number fails the test of the extra prime.
+    /// of so many binary digits; `None` if a number fails the test of the extra prime.
     fn lifted(
         &mut self,
         first: usize,
@@ -446,8 +446,8 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
     }
 }
 
-/// The common denominator of so many numbers and the digits that the largest has before the point;
-/// `None` where the primes are too few.
+/// The common denominator of this many numbers and the digits that the largest has before the
+/// point; `None` if the primes are too few.
 fn denominator_and_digits<A: Arithmetic>(
     images: &[PrimeImage],
     count: usize,
@@ -705,7 +705,7 @@ impl<'a, A: Arithmetic> LiftOrders<'a, A> {
         }
     }
 
-    /// The numerators of so many numbers over a denominator; `eight` writes a block of their
+    /// The numerators of this many numbers over a denominator; `eight` writes a block of their
     /// residues.
     fn numbers(
         &self,

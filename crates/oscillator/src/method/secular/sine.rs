@@ -100,7 +100,7 @@ pub(super) struct SineFactors {
 }
 
 impl SineFactors {
-    /// `None` where a prime divides a denominator.
+    /// `None` if a prime divides a denominator.
     #[inline(always)]
     pub fn new<A: Arithmetic>(residues: &Residues<A>, rate: Lanes, last: usize) -> Option<Self> {
         let one = residues.one();
@@ -169,7 +169,7 @@ mod tests {
         let (rate, others) = split(terms.clone(), 8);
         assert_eq!(rate, Some(third));
         assert_eq!((others.len(), others[0].velocity), (1, 2));
-        // One term too few, and one that is no term of a sine.
+        // One term too few, and one that is not a term of a sine.
         assert_eq!(split(terms.clone(), 9).0, None);
         terms[4].coefficient *= Rational::from_integer(Integer::from(2));
         let (rate, others) = split(terms.clone(), 8);

@@ -43,10 +43,9 @@ type Symbols = Polynomials<Integers>;
 /// Number of points times orders up to which one thread is done before others have begun.
 const ALONE: usize = 200;
 
-/// The expansion, to the order that it has reached where it is stopped; `None` where the equation
-/// has no symmetry to use, no term of the first order, an amplitude that is determined, or too many
-/// symbols, and where it is stopped before any order is there: the ring's own recursion answers
-/// then.
+/// The expansion, to the order that it has reached where it is stopped; `None` if the equation has
+/// no symmetry to use, no term of the first order, an amplitude that is determined, or too many
+/// symbols, and if it is stopped before any order is there: the ring's own recursion answers then.
 pub(super) fn expand(
     force: &[ForceTerm<Symbols>],
     highest: usize,
@@ -451,7 +450,7 @@ impl<A: Arithmetic> PrimeSearch<'_, A> {
     }
 }
 
-/// The numbers of an order as fractions; `None` where the primes are too few.
+/// The numbers of an order as fractions; `None` if the primes are too few.
 fn fractions<A: Arithmetic>(
     images: &[SymbolicImage],
     remainders: &Remainders<A>,

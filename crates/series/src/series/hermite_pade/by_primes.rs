@@ -16,8 +16,8 @@ use crate::parallel::par_map;
 
 /// The combination of these series, each with the degree of its factor, that vanishes to the
 /// highest order: whole numbers without a common factor, a list for each series, the lowest power
-/// first. `None` where there is none whose first number is not zero, or more than one, or one of
-/// more digits than anybody waits for.
+/// first. `None` if there is none whose first number is not zero, or more than one, or one of more
+/// digits than anybody waits for.
 pub fn exact(series: &[(Vec<Rational>, usize)]) -> Option<Vec<Vec<Integer>>> {
     by_widest(Exact(series))
 }
@@ -137,8 +137,8 @@ impl Work for Exact<'_> {
     }
 }
 
-/// All numbers over their common denominator, which is the first of them; `None` where the images,
-/// of which the last only tests, are too few.
+/// All numbers over their common denominator, which is the first of them; `None` if the images, of
+/// which the last only tests, are too few.
 fn lifted<A: Arithmetic>(arithmetic: A, images: &[CoefficientImage]) -> Option<Vec<Integer>> {
     let (test, images) = images.split_last()?;
     let moduli: Vec<Modulus> = images.iter().map(|image| image.modulus).collect();

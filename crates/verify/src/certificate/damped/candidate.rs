@@ -330,7 +330,7 @@ const fn last_harmonic_of_largest_block(odd: bool) -> usize {
 /// Binary digits behind the point: fewer of a motion of more harmonics, for the number of harmonics
 /// and with its square the time grow with them.
 fn digits(seen: usize) -> usize {
-    /// A motion of so many harmonics in doubles has all digits.
+    /// A motion of this many harmonics in doubles has all digits.
     const MANY: usize = 120;
     /// The least number of bits: those of doubles.
     const FEWEST: usize = 60;

@@ -48,11 +48,11 @@
 //! and the solution above would have odd harmonics.
 //!
 //! Of a driven equation, `x'' + g(x) x' + h(x, cos(Omega t), sin(Omega t)) = 0`, p is known, a
-//! whole number n of periods of the drive to a turn of theta: `p = n/Omega`. Then p is no unknown,
-//! b_1 is one, and all that belongs to p above is left out: its column, the first two terms of Z2,
-//! and `R/sigma` in P. With h along X goes the drive, `cos(n theta)` and `sin(n theta)`; its
-//! derivative is that by x. The zero in the ball is a motion that repeats itself after n periods of
-//! the drive; that it takes fewer, and that it attracts, are not excluded.
+//! whole number n of periods of the drive to a turn of theta: `p = n/Omega`. Then p is not an
+//! unknown, b_1 is one, and all that belongs to p above is left out: its column, the first two
+//! terms of Z2, and `R/sigma` in P. With h along X goes the drive, `cos(n theta)` and `sin(n
+//! theta)`; its derivative is that by x. The zero in the ball is a motion that repeats itself after
+//! n periods of the drive; that it takes fewer, and that it attracts, are not excluded.
 //!
 //! Source: A. Hungria, J.-P. Lessard, J. D. Mireles James: Rigorous numerics for analytic solutions
 //! of differential equations: the radii polynomial approach, Mathematics of Computation 85 (2016),

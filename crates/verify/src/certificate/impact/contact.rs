@@ -56,7 +56,7 @@ fn sum(left: &Ball, right: &Ball) -> Ball {
     WORKING.sum(left, right)
 }
 
-/// Sine and cosine; `None` of what is too large.
+/// Sine and cosine; `None` for what is too large.
 pub(super) fn sine_and_cosine(angle: &Ball) -> Option<[Ball; 2]> {
     let (series, largest) = ([angle.clone()], WORKING.magnitude(angle));
     let first = |p| even_function(&series, p, largest)?.into_iter().next();
@@ -148,8 +148,8 @@ impl HertzContact {
         Ok(WORKING.scaled(&product(&root, &integral), 8))
     }
 
-    /// The integral over `middle +- 1` in units of `2^-halvings`; `None` where too much is left of
-    /// its series.
+    /// The integral over `middle +- 1` in units of `2^-halvings`; `None` if too much is left of its
+    /// series.
     fn piece(&self, qm: &Ball, halvings: u32, middle: u64) -> Option<Ball> {
         let half = WORKING.dyadic(&Integer::from(1), halvings as usize);
         let centre = WORKING.scaled(&half, i64::try_from(middle).ok()?);
@@ -284,7 +284,7 @@ fn even_function(y: &[Ball], p: u32, largest: Bound) -> Option<Vec<Ball>> {
     Some(series)
 }
 
-/// The power -1/2 of a series; `None` where its first coefficient may not be positive.
+/// The power -1/2 of a series; `None` if its first coefficient may not be positive.
 fn inverse_root(series: &[Ball]) -> Option<Vec<Ball>> {
     let first = series.first()?;
     let mut terms = vec![WORKING.quotient(&WORKING.integer(1), &WORKING.root(first, 2)?)?];

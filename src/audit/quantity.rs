@@ -424,7 +424,7 @@ impl EvaluationScope<'_, '_> {
         }
     }
 
-    /// The formula beside the true motion there; how far it is good nobody asks.
+    /// The formula and the true motion at the values, without the range of the formula.
     fn judged(&mut self) -> Result<crate::verify::Verification, NotComputable> {
         let (equation, solution) = self.evaluator.law()?;
         let numbers = self.all(&needed_values(solution))?;

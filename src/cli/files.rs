@@ -134,7 +134,7 @@ fn is_special(path: &Path) -> bool {
     path.metadata().is_ok_and(|metadata| !metadata.is_file() && !metadata.is_dir())
 }
 
-/// The reason without the name of the file beside it, which nobody asked for.
+/// The reason without the name of the temporary file.
 fn cannot(path: &Path, error: &std::io::Error) -> String {
     format!("cannot write {}: {}", path.display(), error.kind())
 }

@@ -1,8 +1,8 @@
 //! The answer: a frequency relation and a motion, with everything needed to use them rightly.
 //!
 //! In come the parts that a method found: a [`Law`], a displacement as a Fourier series, [`Note`]s,
-//! a derivation. Out go its values at numbers, its law in one line, its polynomials in the order in
-//! which people read them. Nothing here knows how a method works or how a format looks.
+//! a derivation. Out go its values at numbers, its law in one line, its polynomials in the order of
+//! printing. Nothing here knows how a method works or how a format looks.
 //!
 //! A formula without its amplitude convention, order and validity is half a formula, so all of them
 //! travel together.
@@ -117,7 +117,7 @@ pub struct Definition {
 }
 
 impl Definition {
-    /// The meaning in the usual form.
+    /// The meaning as it is printed.
     pub fn meaning_in_words(&self) -> String {
         constant_in_words(&self.meaning)
     }

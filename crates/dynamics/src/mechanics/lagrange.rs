@@ -1,4 +1,4 @@
-//! Lagrange's equations, and the form in which people print them.
+//! Lagrange's equations, and the form in which they are printed.
 //!
 //! ```text
 //! sum_j M_ij q_j'' + h_i = 0      M_ij = d2T/dq_i'dq_j'

@@ -2,8 +2,8 @@
 //!
 //! In: sizes, none negative. Out: doubles that are certainly no smaller than their sums, products
 //! and quotients. An operation of IEEE 754 is within half a unit in the last place, so that the
-//! next double above what it gives is a bound; what is not a number bounds nothing and becomes
-//! infinity, which no comparison with a finite number takes for small.
+//! next double above what it gives is a bound; NaN bounds nothing and becomes infinity, which no
+//! comparison with a finite number takes for small.
 
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul};

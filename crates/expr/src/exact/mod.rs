@@ -4,11 +4,11 @@
 //! quotients, exact, and their values as doubles where numbers are wanted. A division that a ring
 //! cannot do is a [`NotInvertible`], which names the divisor.
 //!
-//! [`Rational`] is the coefficient people see; [`Polynomial`] carries the symbols; [`Ring`] is what
-//! a derivation asks of its coefficients, so that one derivation serves exact numbers, symbols,
-//! floating point, and rings that are chosen at run time. Where rounding cannot be left out,
-//! `BigFloat` puts it as far away as is asked for, and a `Ball` is all the numbers that rounding
-//! leaves possible; their sizes are `Bound`s, rounded up.
+//! [`Rational`] is the coefficient that is printed; [`Polynomial`] carries the symbols; [`Ring`] is
+//! what a derivation asks of its coefficients, so that one derivation serves exact numbers,
+//! symbols, floating point, and rings that are chosen at run time. Where rounding cannot be left
+//! out, `BigFloat` puts it as far away as is asked for, and a `Ball` is all the numbers that
+//! rounding leaves possible; their sizes are `Bound`s, rounded up.
 
 pub mod ball;
 pub mod big_float;

@@ -101,7 +101,7 @@ pub struct MaterialQuestion {
     pub settings: Settings,
     /// The method that follows them; pictures use the same one.
     pub integrator: Integrator,
-    /// The dampings that nobody gave, which are then the defaults.
+    /// The dampings that were not given, for which the defaults are used.
     pub defaults: Vec<Parameter>,
 }
 

@@ -157,7 +157,7 @@ impl Summary {
 }
 
 /// Follows every motion, on all threads of the current pool (on one without the feature
-/// `parallel`); `progress` hears how many more are done.
+/// `parallel`); `progress` is called with the number of motions that are newly done.
 ///
 /// # Errors
 /// [`SimulationError`] and the number of the first motion that cannot begin.

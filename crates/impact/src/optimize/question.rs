@@ -75,7 +75,7 @@ pub struct OptimizationProblem {
     pub runs: usize,
     /// The seed of all random numbers.
     pub seed: u64,
-    /// The dampings that nobody gave, which are then the defaults.
+    /// The dampings that were not given, for which the defaults are used.
     pub defaults: Vec<Parameter>,
 }
 

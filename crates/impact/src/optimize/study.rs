@@ -58,10 +58,10 @@ pub struct SearchRun {
 pub struct StudyObserver<'a> {
     /// Whether to stop.
     pub stop: &'a (dyn Fn() -> bool + Sync),
-    /// Hears of every run that has ended by itself.
+    /// Called with every run that has ended by itself.
     pub done: &'a (dyn Fn(&SearchRun) + Sync),
-    /// Hears of this many more generations, of those that [`OptimizationProblem::most_work`]
-    /// counts.
+    /// Called with the number of generations newly done, of those that
+    /// [`OptimizationProblem::most_work`] counts.
     pub progress: &'a (dyn Fn(usize) + Sync),
 }
 
@@ -482,8 +482,8 @@ fn finalists(question: &OptimizationProblem, runs: &[SearchRun]) -> Vec<Finalist
     finalists
 }
 
-/// The first designs that differ from those before by more than a part of the limits that nobody
-/// builds to.
+/// The first designs that differ from those before by more than the tolerance of manufacture, as a
+/// part of the limits.
 fn distinct<'a>(
     question: &OptimizationProblem,
     found: &[(usize, &'a Found)],

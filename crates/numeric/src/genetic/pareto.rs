@@ -24,7 +24,8 @@ pub fn dominates(one: &Evaluation, other: &Evaluation, tolerance: f64) -> bool {
     pairs().all(|(one, other)| one <= other) && pairs().any(|(one, other)| one < other)
 }
 
-/// The rank of everybody: 0 whom nobody dominates, 1 whom only those dominate, and so on.
+/// The rank of every individual: 0 if no other dominates it, 1 if only those of rank 0 do, and so
+/// on.
 pub fn ranks(all: &[&Evaluation], tolerance: f64) -> Vec<usize> {
     let count = all.len();
     let mut dominated: Vec<Vec<usize>> = vec![vec![]; count];

@@ -67,7 +67,7 @@ impl Default for GeneticOptions {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum OptionsError {
-    /// Fewer than two have nobody to cross with.
+    /// There are fewer than two individuals, which cannot cross.
     #[error(
         "population = {0} cannot cross: a population needs 2 or more, {MOST_INDIVIDUALS} at most"
     )]
@@ -75,7 +75,7 @@ pub enum OptionsError {
     /// There are no generations.
     #[error("generations = {0}: a run needs 1 or more, {MOST_GENERATIONS} at most")]
     Generations(usize),
-    /// Nobody would be left to change.
+    /// The elite is the whole population.
     #[error(
         "elite = {elite} leaves nobody of a population of {population} to change: it must be smaller"
     )]
@@ -268,7 +268,8 @@ struct Member {
 
 /// One run of the genetic algorithm: the smallest first objective under the constraints.
 ///
-/// `go_on` hears the number of the generation before it begins, and may end the run there.
+/// `go_on` is called with the number of each generation before it begins, and may end the run
+/// there.
 pub fn search(
     space: &Space,
     mut evaluate: impl FnMut(&[f64]) -> Evaluation,

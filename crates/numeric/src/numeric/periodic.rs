@@ -115,8 +115,8 @@ pub struct Shooting<'a, const N: usize> {
 impl<const N: usize> Shooting<'_, N> {
     /// The orbit; `None` if one cannot be followed over a period, or Newton's steps do not settle.
     /// `follow` gives the state after a period from a start, its derivative by the start and the
-    /// path; `settled` hears how far an orbit is from closing and how far Newton's method would
-    /// move it, both in the sizes, and says whether it is the one.
+    /// path; `settled` is called with the distance of an orbit from closing and the step of
+    /// Newton's method, both in units of the sizes, and returns whether it has converged.
     pub fn orbit<Path>(
         &self,
         mut follow: impl FnMut([f64; N], f64) -> Option<([f64; N], SMatrix<f64, N, N>, Path)>,

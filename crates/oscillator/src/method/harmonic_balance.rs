@@ -44,8 +44,8 @@ const METHOD: Method = Method::HarmonicBalance;
 /// The most harmonics.
 pub const MOST_HARMONICS: u32 = 100;
 
-/// The longest system that is written out, in terms: fifteen harmonics of a cubic force. Beyond,
-/// nobody reads it.
+/// The longest system that is written out, in terms: fifteen harmonics of a cubic force. A longer
+/// one is not readable.
 const MOST_TERMS: usize = 3500;
 
 /// The balance of this many harmonics, two by default.

@@ -1,4 +1,4 @@
-//! A polynomial with its terms in the order in which people read them.
+//! A polynomial with its terms in the order of printing.
 
 use std::fmt;
 

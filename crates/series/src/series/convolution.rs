@@ -123,7 +123,7 @@ impl<R: Ring> Convolutions<R> {
     }
 
     /// The first variation of every series at order zero when the leaves vary by `of_leaves`; zero
-    /// of products that nobody asked for.
+    /// for products that were not asked for.
     pub fn variations(
         &self,
         of_leaves: &HashMap<SeriesNode, FourierSeries<R>>,

@@ -56,8 +56,8 @@ impl PreparedRequest<'_> {
         paths
     }
 
-    /// Marks a branch whose mirror image nobody has come by: where the image of one of its motions
-    /// is a motion of the same equation and on no branch itself.
+    /// Marks a branch whose mirror image was not found: one for which the image of one of its
+    /// motions is a motion of the same equation and on no branch itself.
     fn mark_mirrored(&self, balance: &HarmonicBalance, paths: &mut [BranchPath], index: usize) {
         const SAME: f64 = 1e-6;
         let nodes = &paths[index].nodes;

@@ -34,8 +34,8 @@ impl PreparedRequest<'_> {
         }
         let [low, high] = self.question.range;
         let balance = HarmonicBalance::new(&self.driven, harmonics);
-        /// Without damping the ends and the middle are where somebody would put a resonance, at
-        /// which there is no motion.
+        /// Fraction of the range at which the search starts: without damping there is no motion at
+        /// a resonance, which a user is likely to place at an end or in the middle.
         const OFF: f64 = 0.382;
         let part = |index: u32| match self.driven.undamped {
             true => (f64::from(index) + OFF) / f64::from(VALUES),

@@ -29,10 +29,10 @@ pub struct SweptMotion {
     pub reason: PathEnd,
 }
 
-/// Follows the course at every one of the values; `progress` hears of each motion that is done.
-/// Costs a motion each, or less where eight of them go side by side, on all cores. Once the
-/// interrupt of the course asks for it, no other motion is begun; those that had come past the time
-/// `after` are handed back.
+/// Follows the course at every one of the values; `progress` is called after each motion. Costs a
+/// motion each, or less where eight of them go side by side, on all cores. Once the interrupt of
+/// the course asks for it, no other motion is begun; those that had come past the time `after` are
+/// handed back.
 ///
 /// # Errors
 /// The number, counted from zero, of the first motion that cannot begin, and why.

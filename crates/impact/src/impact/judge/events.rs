@@ -178,8 +178,8 @@ fn letting_go(model: &Model, HybridMode { region, .. }: HybridMode) -> Watched<'
     };
     let next = move |state: ode::State| {
         let direction = force_at_rest(model, region, state.t, state.x).signum();
-        // The acceleration is still zero: without a sign of its own the velocity would be
-        // anybody's.
+        // The acceleration is still zero: without a sign of its own that of the velocity would be
+        // arbitrary.
         let v = NUDGE * direction * sign;
         let (region, state) = match pushed_into(model, region, state.x, direction) {
             Some(contact) => (contact, ode::State { x: 0.0, v: NUDGE, ..state }),

@@ -46,8 +46,8 @@ impl PrimaryRow {
     }
 }
 
-/// A row for every motion, on all threads of the current pool; `progress` hears of each that is
-/// done. The result is the same for any number of threads.
+/// A row for every motion, on all threads of the current pool; `progress` is called after each of
+/// them. The result is the same for any number of threads.
 ///
 /// # Errors
 /// The number, counted from zero, of the first motion that cannot be followed, and why.

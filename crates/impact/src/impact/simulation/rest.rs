@@ -324,7 +324,7 @@ fn swing_of(energy: f64) -> Option<f64> {
 }
 
 /// Whether the motion may still be beyond the level where the straight line of log|x| between two
-/// turning points is at it: where it may not, nobody need know the fall.
+/// turning points is at it: if it cannot be, the fall is not needed.
 ///
 /// The linear swing of amplitude a takes acos(level/a) to the level. If a turning point is at least
 /// half as far out as the one before, a is twice the level at most: the swing of the pendulum is

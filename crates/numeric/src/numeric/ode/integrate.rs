@@ -526,7 +526,7 @@ impl<S: Sample> Leg<'_, '_, S> {
         self.looks.critical.get(next).map_or(f64::INFINITY, |critical| critical - time)
     }
 
-    /// Whether the steps are used up, or somebody wants it to end.
+    /// The reason to stop: the steps are used up, or an interrupt was requested.
     fn given_up(&self, time: f64, attempts: usize) -> Option<StopReason> {
         if attempts >= self.options.maximum_steps {
             return Some(StopReason::MaximumSteps { time });

@@ -42,7 +42,7 @@ pub(super) struct PrimeImage {
 }
 
 impl PrimeImage {
-    /// The coefficients of an order; empty if nobody wants them from this prime.
+    /// The coefficients of an order; empty if they are not wanted from this prime.
     pub fn displacement(&self, plan: &Plan, order: usize) -> &[u64] {
         let places = plan.coefficient_range(order);
         let Some(start) = places.start.checked_sub(self.start) else {
@@ -499,7 +499,7 @@ impl<'a, A: Arithmetic> Recursion<'a, A> {
         !self.parts.is_empty()
     }
 
-    /// The sum that `S_n` is, without its last term: nobody knows `y_n` yet.
+    /// The sum of `S_n` without its last term, because `y_n` is not known yet.
     #[inline(always)]
     fn prepare_sine(&mut self, field: &ResidueField<A>, order: usize) {
         if let Some((sine, _)) = &self.plan.sine {

@@ -222,7 +222,7 @@ impl<'a, A: Arithmetic> Reconstruction<'a, A> {
         let highest = self.plan.highest;
         let of_motion = |order| self.plan.largest_factor(order);
         let of_frequency = |order| self.plan.largest_factor_of_frequency(order);
-        // One guess about a motion that nobody wants is enough.
+        // One guess is enough about a motion that is not wanted.
         let guesses = match self.extent {
             ExpansionScope::Frequency => &Growth::ALL[..1],
             ExpansionScope::Motion => &Growth::ALL[..],

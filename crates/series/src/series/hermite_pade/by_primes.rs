@@ -16,8 +16,8 @@ use crate::parallel::par_map;
 
 /// The combination of these series, each with the degree of its factor, that vanishes to the
 /// highest order: whole numbers without a common factor, a list for each series, the lowest power
-/// first. `None` if there is none whose first number is not zero, or more than one, or one of more
-/// digits than anybody waits for.
+/// first. `None` if there is none whose first number is not zero, or more than one, or if its
+/// digits would take too long.
 pub fn exact(series: &[(Vec<Rational>, usize)]) -> Option<Vec<Vec<Integer>>> {
     by_widest(Exact(series))
 }

@@ -86,7 +86,7 @@ pub struct ClaimFinding {
     pub demand: Option<RequiredValue>,
     /// Quantities that are needed and not printed, if that decides.
     pub missing: Vec<String>,
-    /// Why the verdict is what it is, sentence by sentence.
+    /// The reason why the verdict is what it is, sentence by sentence.
     pub evidence: Vec<String>,
 }
 

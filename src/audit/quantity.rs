@@ -109,7 +109,7 @@ impl Computed {
     }
 }
 
-/// Why nothing is computed.
+/// The reason why nothing is computed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NotComputable {
     /// These are not given.

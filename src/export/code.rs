@@ -69,7 +69,7 @@ impl Language {
     }
 }
 
-/// Why an answer is no program.
+/// The reason why an answer has no program.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoCode {

@@ -150,7 +150,7 @@ pub struct Panel<'a> {
     pub guides: Vec<GuideLine<'a>>,
 }
 
-/// Why there is no figure.
+/// The reason why there is no figure.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FigureError {

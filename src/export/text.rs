@@ -160,7 +160,7 @@ fn facts_in_lines(facts: &[(&str, String)]) -> String {
     facts.iter().map(line).collect()
 }
 
-/// Why an answer has no motion.
+/// The reason why an answer has no motion.
 pub(super) fn without_motion(solution: &Solution) -> &'static str {
     match solution.method {
         // Whose motion is a formula: it was not asked for.

@@ -115,8 +115,8 @@ pub struct Pendulum {
     pub amplitude: f64,
     /// x_c, rad, or `[left, right]`, or `false` for none.
     pub barrier: Barrier,
-    /// On which side of its place a single barrier is: `right`, or `left` with the release at x =
-    /// amplitude.
+    /// The side of its position on which a single barrier is: `right`, or `left` with the release
+    /// at x = amplitude.
     pub side: Option<BarrierSide>,
     /// x(0), rad, where it is not -amplitude.
     pub start: Option<f64>,

@@ -53,7 +53,8 @@ pub use simulate::Simulate;
 /// The largest file that is read, in bytes.
 pub const LARGEST_FILE: usize = 1 << 20;
 
-/// Why a file cannot be taken at its word: what is wrong with which key, and what to write instead.
+/// The reason why a file cannot be taken at its word: what is wrong with which key, and what to
+/// write instead.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct ProblemError {

@@ -199,7 +199,7 @@ fn branch(response: &ResponseDiagram, index: usize, branch: &Branch) -> Vec<Bloc
     blocks
 }
 
-/// Why a branch ends at a point, where that is worth saying.
+/// The reason why a branch ends at a point, where that is worth saying.
 fn end_in_words(
     response: &ResponseDiagram,
     end: BranchEnd,

@@ -72,7 +72,7 @@ pub struct System {
     narrow: Vec<Argument>,
 }
 
-/// Why there is no system, or no path from this start.
+/// The reason why there is no system, or no path from this start.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SystemError {
@@ -208,13 +208,13 @@ impl Event {
 pub struct EventCrossing {
     /// Index of the event.
     pub event: usize,
-    /// When.
+    /// The time.
     pub time: f64,
     /// Whether its expression grew through zero.
     pub rising: bool,
 }
 
-/// Why a path ended.
+/// The reason why a path ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PathEnd {
     /// The end time.
@@ -248,8 +248,8 @@ fn within_range(mut states: impl Iterator<Item = f64>) -> bool {
     states.all(|state| state.abs() <= LARGEST)
 }
 
-/// Why a run ends in these states where its rates have no value, or no next step is possible,
-/// behind a step from one time to another.
+/// The reason why a run ends in these states where its rates have no value, or no next step is
+/// possible, behind a step from one time to another.
 fn without_value(mut states: impl Iterator<Item = f64>, step: [f64; 2]) -> PathEnd {
     match states.any(|state| state.abs() > LARGE) && !is_vanishing(step) {
         true => PathEnd::Overflow,
@@ -296,7 +296,7 @@ impl Path {
         self.end
     }
 
-    /// Why it ends there.
+    /// The reason why it ends there.
     pub fn reason(&self) -> PathEnd {
         self.reason
     }

@@ -24,7 +24,7 @@ use crate::symbol::Symbol;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Values(BTreeMap<Symbol, Expr>);
 
-/// Why a value is no value.
+/// The reason why a value is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ValueError {

@@ -98,7 +98,7 @@ pub struct PerturbedForce {
     pub definitions: Vec<Definition>,
 }
 
-/// Why an equation is not an oscillator, or not one that can be expanded.
+/// The reason why an equation is not an oscillator, or not one that can be expanded.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum OscillatorError {

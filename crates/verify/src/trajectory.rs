@@ -110,7 +110,7 @@ pub struct EnergyBalance {
     pub residual: f64,
 }
 
-/// Why there is no motion.
+/// The reason why there is no motion.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum TrajectoryError {
@@ -693,7 +693,7 @@ impl Trajectory {
         self.pieces.last().map_or(0.0, TrajectorySegment::end)
     }
 
-    /// Why it ends there.
+    /// The reason why it ends there.
     pub fn reason(&self) -> PathEnd {
         self.reason
     }
@@ -730,7 +730,7 @@ impl Trajectory {
     }
 }
 
-/// Why a motion ended, in words.
+/// The reason why a motion ended, in words.
 pub fn in_words(end: PathEnd) -> &'static str {
     match end {
         PathEnd::Reached => "at the time asked for",

@@ -44,7 +44,7 @@ enum LatexItem {
 /// The context of an expression, which decides whether it needs parentheses.
 #[derive(Clone, Copy, PartialEq)]
 enum LatexContext {
-    /// Alone.
+    /// The whole expression.
     Free,
     /// An argument, or between braces or parentheses already.
     Inside,

@@ -103,7 +103,7 @@ pub fn materials(study: &MaterialStudy) -> Result<String, FigureError> {
     figure(&panels, &caption(study, contrast, drawn))
 }
 
-/// When the last of them rests; the end of the run where one does not.
+/// The time at which the last of them rests; the end of the run where one does not.
 fn last_rest(study: &MaterialStudy) -> f64 {
     let of_rows = study.rows.iter().map(|row| row.course.rest_time);
     let of_held = study.held_fixed.iter().flat_map(|held| held.rest_times.iter().copied());

@@ -45,14 +45,14 @@ const NAMED: [(&str, [i64; 3]); 12] = [
     ("N_m", [1, 2, -2]),
 ];
 
-/// Why a unit or a term cannot be taken.
+/// The reason why a unit or a term cannot be taken.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum UnitError {
     /// A unit that cannot be read.
     #[error("the unit of `{name}`: {error}")]
     Parse {
-        /// Whose.
+        /// The name of the symbol.
         name: String,
         /// The error of its syntax.
         error: Box<ParseError>,
@@ -60,7 +60,7 @@ pub enum UnitError {
     /// A word that is no unit.
     #[error("the unit of `{name}`: `{unit}` is no unit that is known here")]
     Unknown {
-        /// Whose.
+        /// The name of the symbol.
         name: String,
         /// The word.
         unit: String,
@@ -68,7 +68,7 @@ pub enum UnitError {
     /// A unit that is no product of powers.
     #[error("the unit of `{name}`: `{unit}` is no product of powers of units")]
     NoProduct {
-        /// Whose.
+        /// The name of the symbol.
         name: String,
         /// The text.
         unit: String,

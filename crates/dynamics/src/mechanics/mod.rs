@@ -66,7 +66,7 @@ pub struct Mechanism {
     pub forces: BTreeMap<Symbol, Expr>,
 }
 
-/// Why there are no equations of motion, no groups or no study.
+/// The reason why there are no equations of motion, no groups or no study.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MechanicsError {

@@ -54,7 +54,7 @@ pub struct Mode {
     pub shape: Option<Vec<f64>>,
 }
 
-/// Why there are no numbers.
+/// The reason why there are no numbers.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum NoModes {

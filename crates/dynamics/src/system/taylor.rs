@@ -347,7 +347,7 @@ impl<'a> TaylorRun<'a> {
         }
     }
 
-    /// Why it ends here, where there is no series.
+    /// The reason why it ends here, where there is no series.
     fn without_value(&self) -> PathEnd {
         let before = self.steps.last().map_or(self.time, |step| step.start);
         without_value(self.values.iter().copied(), [before, self.time])

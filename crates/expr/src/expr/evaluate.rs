@@ -18,7 +18,7 @@ use super::{Expr, Function, Node};
 use crate::exact::rational::{Integer, Rational, to_f64};
 use crate::symbol::Symbol;
 
-/// Why an expression has no number.
+/// The reason why an expression has no number.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EvaluationError {
     /// A symbol without a value.

@@ -113,7 +113,7 @@ pub enum Node {
     Function(Function, Vec<Expr>),
 }
 
-/// Why an expression could not be built.
+/// The reason why an expression could not be built.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ExprError {

@@ -151,7 +151,7 @@ enum PrintItem {
 /// The context of an expression, which decides whether it needs parentheses.
 #[derive(Clone, Copy, PartialEq)]
 enum PrintContext {
-    /// Alone.
+    /// The whole expression.
     Free,
     /// An argument, or in parentheses already.
     Inside,

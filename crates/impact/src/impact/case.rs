@@ -91,7 +91,7 @@ impl Default for Case {
     }
 }
 
-/// Why a case makes no motion.
+/// The reason why a case makes no motion.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CaseError {

@@ -57,7 +57,7 @@ pub struct Impact {
     pub tried: Vec<Attempt>,
     /// The speed at the touch from the energy, exact for the equation.
     pub energy_speed: f64,
-    /// Why the paper's reading does not apply, where it does not.
+    /// The reason why the paper's version does not apply; `None` if it does.
     pub no_paper: Option<String>,
     /// Runge-Kutta on the original equation.
     pub truth: TrueImpact,

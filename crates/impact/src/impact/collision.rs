@@ -44,7 +44,7 @@ pub(super) fn losses([inwards, outwards]: [f64; 2]) -> [f64; 3] {
     [outwards / inwards, outwards, lost]
 }
 
-/// Why nothing hits the barrier.
+/// The reason why nothing hits the barrier.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CollisionError {

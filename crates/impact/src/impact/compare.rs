@@ -70,7 +70,7 @@ impl ImpactMethod {
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct ImpactRow {
-    /// Whose it is.
+    /// The method of the row.
     pub method: ImpactMethod,
     /// The order of the law, where it has one.
     pub order: Option<u32>,

@@ -93,7 +93,7 @@ pub struct ContactScales {
     pub speed: Option<f64>,
 }
 
-/// Why a damping makes no number of equation (7).
+/// The reason why a damping makes no number of equation (7).
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DampingError {

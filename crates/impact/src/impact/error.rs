@@ -13,8 +13,8 @@ use crate::solution::Method;
 use crate::symbol::Symbol;
 use crate::values::ValueError;
 
-/// Why there is no impact to report: in its equation, its three phases, the derived flight or the
-/// true motion.
+/// The reason why there is no impact to report: in its equation, its three phases, the derived
+/// flight or the true motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImpactError {
@@ -153,7 +153,7 @@ pub enum ImpactError {
     /// None of the versions applies.
     #[error("no closed form: the paper's reading does not apply, {paper}; {}", attempts(.tried))]
     NoReading {
-        /// Why not the paper's.
+        /// The reason why the paper's version does not apply.
         paper: String,
         /// The other attempts.
         tried: Vec<Attempt>,

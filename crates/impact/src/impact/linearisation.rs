@@ -113,7 +113,7 @@ impl LinearContactForce {
     }
 }
 
-/// Why there is no line.
+/// The reason why there is no line.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum LinearisationError {

@@ -123,7 +123,7 @@ impl Default for MaterialQuestion {
     }
 }
 
-/// Why there is no study.
+/// The reason why there is no study.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MaterialsError {
@@ -138,7 +138,7 @@ pub enum MaterialsError {
     Material {
         /// Its name.
         name: String,
-        /// Why.
+        /// The reason.
         error: CaseError,
     },
     /// A motion that cannot begin.
@@ -149,13 +149,13 @@ pub enum MaterialsError {
 /// The motion against one barrier until it rests.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionToRest {
-    /// When it rests, in units of 1/omega.
+    /// The time at which it rests, in units of 1/omega.
     pub rest_time: Result<f64, NoRest>,
     /// The contacts until then; all of them where it does not rest.
     pub impacts: Vec<ContactRecord>,
     /// The energy of the swing after each of them that ended, in units of m g L.
     pub energies: Vec<f64>,
-    /// Why it was followed no further.
+    /// The reason why it was followed no further.
     pub stop: SimulationStop,
 }
 

@@ -133,7 +133,7 @@ impl Default for Start {
     }
 }
 
-/// Why there is nothing to simulate.
+/// The reason why there is nothing to simulate.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ModelError {
@@ -306,9 +306,9 @@ impl Model {
         self.swing_energy(x, velocity) + self.elastic_energy(depth)
     }
 
-    /// When Coulomb friction lets go of a pendulum at rest at x, held since `t` against the
-    /// constant force `field` and the excitation: the time and the direction; `None` if it holds
-    /// for ever.
+    /// The time at which Coulomb friction lets go of a pendulum at rest at x, held since `t`
+    /// against the constant force `field` and the excitation: the time and the direction; `None` if
+    /// it holds for ever.
     ///
     /// |field + beta cos x sin(eta t)| = alpha, with the force on its way out.
     pub(super) fn release(&self, t: f64, x: f64, field: f64) -> Option<(f64, f64)> {

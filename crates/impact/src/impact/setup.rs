@@ -50,7 +50,7 @@ pub struct Setup {
     pub release: f64,
     /// Position x_c of the barrier, in the unit of x.
     pub barrier: f64,
-    /// On which side of x_c the barrier is.
+    /// The side of x_c on which the barrier is.
     pub side: Side,
     /// Stiffness gamma of the barrier, positive; dimensionless for a pendulum in units of 1/omega.
     pub stiffness: f64,

@@ -23,7 +23,7 @@ use super::{judge, taylor};
 use crate::numeric::ode::IntegrationError;
 use crate::trajectory::DISPLACEMENT;
 
-/// Why a simulation cannot begin.
+/// The reason why a simulation cannot begin.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SimulationError {

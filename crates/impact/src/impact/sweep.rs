@@ -104,8 +104,8 @@ pub fn grid_values(axes: &[Axis], number: usize) -> Vec<f64> {
 pub struct Summary {
     /// Number of contacts.
     pub impacts: usize,
-    /// When the envelope fell to a tenth of the first swing, in units of 1/omega; or why it did
-    /// not.
+    /// The time at which the envelope fell to a tenth of the first swing, in units of 1/omega; or
+    /// why it did not.
     pub rest_time: Result<f64, NoRest>,
     /// The rest times of the same swing without a barrier and with a lossless one, where they were
     /// asked for.
@@ -122,7 +122,7 @@ pub struct Summary {
     pub end_x: f64,
     /// Velocity there, rad times omega.
     pub end_velocity: f64,
-    /// Why it ended.
+    /// The reason why it ended.
     pub stop: SimulationStop,
 }
 

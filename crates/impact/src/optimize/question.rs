@@ -108,7 +108,7 @@ impl Default for OptimizationProblem {
     }
 }
 
-/// Why there is no search.
+/// The reason why there is no search.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum OptimizeError {

@@ -50,7 +50,7 @@ pub struct SearchRun {
     /// The number of designs that were integrated: they have no closed form, or would be the best
     /// if they keep the constraints.
     pub integrated: usize,
-    /// Why it ended.
+    /// The reason why it ended.
     pub stop: GeneticStop,
 }
 
@@ -357,7 +357,7 @@ pub fn optimize_on(
 /// Population and generations of a search for the constraints alone, at least.
 const ENOUGH: [usize; 2] = [60, 100];
 
-/// Why nothing was found.
+/// The error of a search without a design.
 fn no_design_error(
     question: &OptimizationProblem,
     space: &Space,

@@ -253,7 +253,7 @@ pub struct GeneticRun {
     pub generations: usize,
     /// Points that were evaluated.
     pub evaluations: usize,
-    /// Why it ended.
+    /// The reason why it ended.
     pub stop: GeneticStop,
 }
 
@@ -369,7 +369,7 @@ impl<E: FnMut(&[f64]) -> Evaluation> PopulationBuilder<'_, E> {
     }
 }
 
-/// Why no further generation is begun, where one of the limits is reached.
+/// The reason why no further generation is begun, where one of the limits is reached.
 fn ended(
     options: &GeneticOptions,
     curve: &[f64],

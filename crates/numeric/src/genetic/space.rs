@@ -7,7 +7,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Space(Vec<[f64; 2]>);
 
-/// Why there is no box.
+/// The reason why there is no box.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SpaceError {

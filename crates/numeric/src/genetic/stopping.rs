@@ -22,7 +22,7 @@ pub enum StallTest {
     Weighted,
 }
 
-/// Why a run ended.
+/// The reason why a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GeneticStop {
     /// The best value has ceased to change.

@@ -63,7 +63,7 @@ pub struct AutonomousEquation<'a> {
     pub frequency: f64,
 }
 
-/// Why no cycle was found.
+/// The reason why no cycle was found.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoLimitCycle {
@@ -276,7 +276,7 @@ fn cycle(equation: &AutonomousEquation, attracts: bool, path: Trajectory) -> Num
     }
 }
 
-/// Why a motion was not seen to come back.
+/// The reason why a motion was not seen to come back.
 enum NoReturn {
     Away,
     Escapes,

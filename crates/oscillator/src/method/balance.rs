@@ -53,7 +53,7 @@ pub struct BalanceSolution {
     pub over_several_wells: bool,
 }
 
-/// Why a balance has no solution.
+/// The reason why a balance has no solution.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BalanceError {
     /// The branch never reaches the amplitude.

@@ -118,7 +118,7 @@ impl AmplitudeEquation {
     /// All limit cycles, smallest amplitude first: empty if the motion dies out or grows.
     ///
     /// # Errors
-    /// Why the equation cannot be solved.
+    /// The reason why the equation cannot be solved.
     pub fn cycles(
         &self,
         delta: Symbol,

@@ -85,7 +85,7 @@ impl fmt::Display for Motion {
     }
 }
 
-/// Why there is no motion at these values.
+/// The reason why there is no motion at these values.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoMotion {

@@ -85,7 +85,7 @@ impl NumbersCache {
     }
 }
 
-/// Why an answer has no numbers.
+/// The reason why an answer has no numbers.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NoNumbers {

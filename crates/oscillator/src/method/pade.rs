@@ -146,7 +146,7 @@ fn by_primes(
     Ok(Quotient { above: polynomials(above, symbols), below: polynomials(below, &Monomial::one()) })
 }
 
-/// Why there is no quotient.
+/// The reason why there is no quotient.
 const SINGULAR: &str = "the equations for its denominator are singular";
 
 /// The equations for the denominator and then for the numerator, with the coefficients of this

@@ -107,7 +107,7 @@ pub(crate) struct Resummed {
     pub long: bool,
 }
 
-/// Why there is no approximant.
+/// The reason why there is no approximant.
 pub(crate) const CONSTANT: &str = "omega^2 does not depend on the amplitude";
 pub(crate) const STOPPED: &str = "the series was stopped before it was long enough";
 pub(crate) const TOO_LONG: &str = "its coefficients are too long for a value in double precision";

@@ -12,7 +12,7 @@ use crate::solution::{Advice, AmplitudeConvention, Degrees, Method, Setting, con
 use crate::symbol::Symbol;
 use crate::symbol::letters::{AMPLITUDE, FIRST_HARMONIC, FREQUENCY};
 
-/// Why a method does not answer, and what to do instead.
+/// The reason why a method does not answer, and what to do instead.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
     /// The reason.
@@ -38,7 +38,7 @@ pub enum Reason {
         /// The polynomial in z = amplitude^2 whose root is needed; `z_` where the equation has a z
         /// of its own.
         equation: Polynomial,
-        /// Why that is not possible.
+        /// The reason why that is not possible.
         reason: &'static str,
     },
     /// A self-excited oscillator without a limit cycle, and the polynomial in z = amplitude^2.
@@ -59,7 +59,7 @@ pub enum Reason {
         method: Method,
         /// The degrees asked for.
         degrees: Degrees,
-        /// Why.
+        /// The reason.
         reason: &'static str,
     },
     /// The order asked for is too high.

@@ -135,7 +135,7 @@ pub enum Note {
         nearest: Option<(u32, u32)>,
         /// The small quantities.
         small: Vec<Expr>,
-        /// As which power of the small parameter.
+        /// The power of the small parameter as which it counts.
         power: usize,
     },
     /// A drive against dry friction: below the least force there is no steady motion.
@@ -151,7 +151,7 @@ pub enum Note {
         square: Symbol,
         /// The polynomial of which it is a root.
         polynomial: Polynomial,
-        /// Why they are not written down.
+        /// The reason why they are not written down.
         reason: &'static str,
     },
     /// Viscous damping of a motion in a force that is not linear.
@@ -205,7 +205,7 @@ pub enum Note {
     InsteadOf {
         /// The usual one.
         usual: Method,
-        /// Why it does not answer.
+        /// The reason why it does not answer.
         reason: String,
     },
     /// An expansion in the amplitude where letters might have been small, for what quadratic terms
@@ -356,7 +356,7 @@ pub struct FollowedRoot {
     pub ends: Vec<(f64, RootEnd)>,
 }
 
-/// Why a root ends.
+/// The reason why a root ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RootEnd {
     /// The root meets the other one.
@@ -420,7 +420,7 @@ pub struct CrossWell {
 /// The end of the range of motions over several wells.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CrossWellEnd {
-    /// Nowhere.
+    /// They do not end.
     Never,
     /// The end at this amplitude.
     At(Position),

@@ -20,7 +20,7 @@ use crate::symbol::Symbol;
 use super::guard::Guards;
 use super::tape::{Operation, Program, Tape};
 
-/// Why an expression has no recurrence.
+/// The reason why an expression has no recurrence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RecurrenceError {

@@ -215,7 +215,7 @@ pub struct Tape<const L: usize = 1> {
     program: Arc<Program>,
     /// Place by place its coefficients.
     series: Vec<[f64; L]>,
-    /// On which side of each corner the motions are taken to be.
+    /// The side of each corner on which the motions are taken to be.
     sides: Vec<[f64; L]>,
 }
 

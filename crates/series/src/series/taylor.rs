@@ -33,7 +33,7 @@ use crate::symbol::Symbol;
 /// The highest degree that is expanded.
 pub const HIGHEST_DEGREE: u32 = 4000;
 
-/// Why there is no expansion.
+/// The reason why there is no expansion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TaylorError {

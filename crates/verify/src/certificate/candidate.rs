@@ -35,8 +35,8 @@ pub(super) const BITS: usize = 112;
 /// Bits of the entries of the approximate inverse, which need not be exact.
 pub(super) const INVERSE_BITS: usize = 56;
 
-/// Why there is no certificate. This is no evidence against a formula, but for a motion that the
-/// judge does not find either.
+/// The reason why there is no certificate. This is no evidence against a formula, but for a motion
+/// that the judge does not find either.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotCertified {

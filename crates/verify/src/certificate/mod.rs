@@ -115,7 +115,7 @@ pub struct Certified {
     pub formula: Option<Errors>,
 }
 
-/// Why a certificate is none.
+/// The reason why a certificate is refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckError {

@@ -45,11 +45,11 @@ pub struct Validity {
     pub within: f64,
     /// The intervals, each proved.
     pub intervals: usize,
-    /// Why the range ends.
+    /// The reason why the range ends.
     pub beyond: RangeEnd,
 }
 
-/// Why a range ends where it does.
+/// The reason why a range ends where it does.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RangeEnd {
     /// The requested end was reached.

@@ -170,7 +170,7 @@ impl TransitionCurve {
     }
 }
 
-/// Why there are no transition curves.
+/// The reason why there are no transition curves.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum HillError {

@@ -69,7 +69,7 @@ pub struct Chart {
     pub truth: Vec<(f64, f64)>,
 }
 
-/// Why there is no judgement.
+/// The reason why there is no judgement.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum TruthError {

@@ -57,7 +57,7 @@ impl BranchNode {
     }
 }
 
-/// Why a branch ends.
+/// The reason why a branch ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BranchEnd {
     /// The end of the range.
@@ -91,7 +91,7 @@ pub enum BranchEnd {
 pub struct BranchPath {
     /// The points.
     pub nodes: Vec<BranchNode>,
-    /// Why it ends before the first point, and behind the last.
+    /// The reason why it ends before the first point, and behind the last.
     pub ends: [BranchEnd; 2],
     /// Whether its mirror image, -x half a period of the drive later, is another branch.
     pub mirrored: bool,

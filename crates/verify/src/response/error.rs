@@ -7,7 +7,7 @@ use crate::expr::{EvaluationError, ExprError};
 use crate::oscillator::OscillatorError;
 use crate::symbol::Symbol;
 
-/// Why there is no response.
+/// The reason why there is no response.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ResponseError {

@@ -39,7 +39,7 @@ pub struct VariationalMotion {
 pub enum StopCondition {
     /// After this time.
     Time(f64),
-    /// When the velocity falls through zero, at a largest displacement, or after this time.
+    /// At the zero of the velocity at a largest displacement, or after this time.
     Turn(f64),
 }
 

@@ -135,7 +135,7 @@ pub struct SteadyMotion {
 pub struct Branch {
     /// Its points in order.
     pub points: Vec<SteadyMotion>,
-    /// Why it ends before the first one and behind the last.
+    /// The reason why it ends before the first one and behind the last.
     pub ends: [BranchEnd; 2],
     /// Whether its mirror image, -x half a period of the drive later, is a branch as well, which is
     /// not listed.
@@ -730,7 +730,7 @@ impl<'a> PreparedRequest<'a> {
         });
     }
 
-    /// Why there is nothing.
+    /// The error of a search without a motion.
     fn no_motion_error(&self) -> ResponseError {
         let ResponseRequest { parameter, range, .. } = *self.question;
         match (self.question.interrupt.is_requested(), self.driven.self_excited) {

@@ -34,7 +34,7 @@ pub enum PoincareSection {
 /// A state on a section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing {
-    /// When.
+    /// The time.
     pub time: f64,
     /// Coordinates, then velocities.
     pub state: Vec<f64>,
@@ -121,7 +121,7 @@ impl Trajectory {
         &self.on_section.touches
     }
 
-    /// Both, found.
+    /// Finds both.
     pub(super) fn find_on_section(&self) -> Result<OnSection, TrajectoryError> {
         let course = &self.course;
         let mut touched: Vec<[f64; 3]> = Vec::new();

@@ -15,7 +15,7 @@ use crate::system::{Integrator, LANES, PathEnd};
 pub struct SweptMotion {
     /// The values of what is varied, in the order of the names.
     pub values: Vec<f64>,
-    /// When it ended.
+    /// The time at which it ended.
     pub end: f64,
     /// Coordinates, then velocities there.
     pub state: Vec<f64>,
@@ -23,9 +23,9 @@ pub struct SweptMotion {
     pub extremes: Vec<[f64; 2]>,
     /// The states on the section from then on; none without a section.
     pub crossings: Vec<Crossing>,
-    /// When it touches the section and does not cross it, from then on.
+    /// The times from then on at which it touches the section without crossing it.
     pub touches: Vec<f64>,
-    /// Why it ended.
+    /// The reason why it ended.
     pub reason: PathEnd,
 }
 

@@ -33,7 +33,7 @@ pub struct ComparisonRow {
     pub solution: Solution,
     /// omega by the formula; `None` if there is none.
     pub frequency: Option<f64>,
-    /// Why there is none.
+    /// The reason why there is none.
     pub reason: Option<NoNumbers>,
     /// Values that the method left open: hbar as it was chosen, the coefficients of a balance as
     /// they were solved for.
@@ -71,7 +71,7 @@ impl Comparison {
 pub struct Refused {
     /// The method.
     pub method: Method,
-    /// Why not.
+    /// The reason.
     pub reason: Refusal,
 }
 
@@ -85,7 +85,7 @@ pub struct Comparison {
     pub at: Values,
     /// omega of the true motion; `None` if it cannot be computed.
     pub true_frequency: Option<f64>,
-    /// Why it cannot.
+    /// The reason why it cannot.
     pub reason: Option<VerificationError>,
     /// The tolerance of verdicts and ranges, relative: 0.01 is 1 %.
     pub tolerance: f64,
@@ -97,7 +97,7 @@ pub struct Comparison {
     pub validity: Vec<String>,
 }
 
-/// Why there is no table.
+/// The reason why there is no table.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ComparisonError {

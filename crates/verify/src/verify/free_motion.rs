@@ -65,7 +65,7 @@ pub(super) struct FreeMotion {
     ends_early: bool,
     /// Times and distances from the equilibrium at which it turns, the start left out.
     pub(super) turns: Vec<(f64, f64)>,
-    /// When and where friction takes hold of it, from the equilibrium.
+    /// Time and position, from the equilibrium, at which friction takes hold of it.
     held: Option<(f64, f64)>,
     /// Times at which it goes through the equilibrium.
     pub(super) crossings: Vec<f64>,
@@ -118,7 +118,7 @@ impl FreeMotion {
         Ok(followed)
     }
 
-    /// Why there is no swing where it goes through its equilibrium less than twice.
+    /// The reason why there is no swing where it goes through its equilibrium less than twice.
     pub(super) fn why_no_swing(&self) -> VerificationError {
         match self.ends_early {
             true => VerificationError::NotFollowed { time: self.end },
@@ -126,7 +126,7 @@ impl FreeMotion {
         }
     }
 
-    /// When it ends.
+    /// The time at which it ends.
     pub(super) fn end(&self) -> f64 {
         self.end
     }
@@ -174,16 +174,16 @@ impl FreeMotion {
         self.crossings = crossings;
     }
 
-    /// When the velocity becomes zero and stays so, between a time at which it moves and one at
-    /// which it is held.
+    /// The time at which the velocity becomes zero and stays so, between a time at which it moves
+    /// and one at which it is held.
     fn begin_of_rest(&self, moves: f64, held: f64) -> f64 {
         let [_, begin] =
             bisect(|t| self.phase_point_at(t).1 != 0.0, moves, held, BisectionStop::Width(0.0));
         begin
     }
 
-    /// When the line through the sizes at the turning points, and where it is held, straight on the
-    /// logarithm, comes down to this size.
+    /// The time at which the line through the sizes at the turning points, and where it is held,
+    /// straight on the logarithm, comes down to this size.
     pub(super) fn falls_to(&self, size: f64) -> Option<f64> {
         let start = (0.0, self.phase_point_at(0.0).0);
         let points: Vec<(f64, f64)> = std::iter::once(start)

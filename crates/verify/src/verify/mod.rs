@@ -100,7 +100,7 @@ pub struct Verification {
     pub at: Values,
     /// omega by the formula, in the unit of time of the equation; `None` if there is none.
     pub frequency: Option<f64>,
-    /// Why there is none.
+    /// The reason why there is none.
     pub reason: Option<NoNumbers>,
     /// omega of the true motion.
     pub true_frequency: f64,
@@ -112,7 +112,8 @@ pub struct Verification {
     pub error_of_omega: Option<f64>,
     /// Largest deviation over one true period, as a part of the amplitude.
     pub max_deviation: Option<f64>,
-    /// Why there is none, where the true motion has a period and no path that Runge-Kutta follows.
+    /// The reason why there is none, where the true motion has a period and no path that
+    /// Runge-Kutta follows.
     pub no_deviation: Option<String>,
     /// Root mean square of the equation's residual along the formula, over that of its force.
     pub residual: Option<f64>,
@@ -184,7 +185,7 @@ impl Verification {
     }
 }
 
-/// Why a formula could not be judged.
+/// The reason why a formula could not be judged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum VerificationError {
@@ -231,7 +232,7 @@ pub enum VerificationError {
     /// A motion that ends where it begins.
     #[error("the true motion cannot be followed past t = {}: a state or its rate has no value there", decimal(*time))]
     NotFollowed {
-        /// When it ends.
+        /// The time at which it ends.
         time: f64,
     },
     /// A motion whose period alone is known.
@@ -917,7 +918,7 @@ fn about_the_cycle(truth: &TrueMotion, coordinate: Symbol) -> Option<validity::R
     })
 }
 
-/// Why the displacement is not judged, where the true path is not known.
+/// The reason why the displacement is not judged, where the true path is not known.
 fn unfollowed(
     truth: &TrueMotion,
     physics: &NumericOscillator,

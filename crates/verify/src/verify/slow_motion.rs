@@ -43,7 +43,7 @@ pub(super) struct SlowMotion {
     pub(super) period: f64,
     /// The amplitudes that stay.
     steady: Vec<f64>,
-    /// When the amplitude is zero, by its closed form.
+    /// The time at which the amplitude is zero, by its closed form.
     ends: f64,
     /// Whether the order is so high that it tells by how much the motion turns beside the phases 0
     /// and pi, for its amplitude drifts.
@@ -260,12 +260,12 @@ impl SlowMotion {
         found
     }
 
-    /// When the amplitude comes down to a size.
+    /// The time at which the amplitude comes down to a size.
     pub(super) fn falls_to(&self, size: f64, longest: f64) -> Option<f64> {
         self.falls_below(|t| self.slow_at(t)[0].abs(), size, longest)
     }
 
-    /// When the turning points come down to a distance from the equilibrium.
+    /// The time at which the turning points come down to a distance from the equilibrium.
     pub(super) fn turns_at(&self, distance: f64, longest: f64) -> Option<f64> {
         self.falls_below(|t| self.turned(t, 1.0).abs(), distance, longest)
     }

@@ -167,9 +167,9 @@ fn well_of(
     Well::with_inertia(&weighted?, &force?, amplitude)
 }
 
-/// Why there is no motion to judge by, with the amplitudes at which there is one where the inertia
-/// depends on the position: Runge-Kutta alone does not know them. Where energy is conserved as it
-/// stands the error says so already.
+/// The reason why there is no motion to judge by, with the amplitudes at which there is one where
+/// the inertia depends on the position: Runge-Kutta alone does not know them. Where energy is
+/// conserved as it stands the error says so already.
 pub(super) fn why_no_motion(
     oscillator: &Oscillator,
     solution: &Solution,

@@ -36,7 +36,7 @@ use crate::decimal::decimal;
 use bounce::ChainBarrier;
 use swing::{Stretch, SwingAngle, UndampedSwing};
 
-/// Why a motion has no chain of closed forms.
+/// The reason why a motion has no chain of closed forms.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ChainError {

@@ -46,7 +46,7 @@ pub use law::{
 };
 pub use power_law::{CorrectedPowerLaw, PowerLaw};
 
-/// Why there is no contact to speak of.
+/// The reason why there is no contact to speak of.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum ContactError {

@@ -45,7 +45,7 @@ impl Default for FrictionSetup {
     }
 }
 
-/// Why there is nothing to say of a friction.
+/// The reason why there is nothing to say of a friction.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FrictionError {

@@ -103,7 +103,7 @@ impl RestTimes {
 /// A swing with friction, by both laws.
 #[derive(Debug, Clone)]
 pub struct NearRest {
-    /// When and where Coulomb's law stops it for good.
+    /// Time and position at which Coulomb's law stops it for good.
     pub stop: TurningPoint,
     /// The half swings until then.
     pub half_swings: usize,

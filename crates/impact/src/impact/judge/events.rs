@@ -383,7 +383,7 @@ fn contacts_and_turns(
     (impacts, turns)
 }
 
-/// Why the run ended.
+/// The reason why the run ended.
 fn stop_of(reason: StopReason) -> SimulationStop {
     match reason {
         StopReason::EndReached => SimulationStop::Duration,

@@ -64,7 +64,7 @@ pub struct Deviation {
     pub aligned: [f64; 3],
 }
 
-/// Why there is no true motion.
+/// The reason why there is no true motion.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum TrueImpactError {
@@ -92,7 +92,7 @@ pub enum TrueImpactError {
     Energy(#[from] QuadratureError),
 }
 
-/// Why the run gave up, and what to change in a problem.
+/// The reason why the run gave up, and what to change in a problem.
 fn way_forward(reason: &StopReason) -> String {
     match reason {
         StopReason::MaximumSteps { time } => {

@@ -28,7 +28,7 @@ pub struct Alone {
 /// The main mass without its damper and with the damper locked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UndampedAndLocked {
-    /// Without.
+    /// Without the damper.
     pub without: Alone,
     /// Locked.
     pub locked: Alone,
@@ -100,11 +100,12 @@ impl Primary {
 }
 
 impl PrimaryMotion {
-    /// When the envelope of the main mass has fallen to a tenth of its first swing, for good: the
-    /// larger of every two successive turning points, joined by straight lines of log|y|.
+    /// The time at which the envelope of the main mass has fallen to a tenth of its first swing,
+    /// for good: the larger of every two successive turning points, joined by straight lines of
+    /// log|y|.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why there is none.
     pub fn rest_time(&self) -> Result<f64, NoRest> {
         let [.., y, speed] = self.case.start;
         let primary = &self.case.primary;
@@ -131,7 +132,7 @@ impl PrimaryMotion {
     /// a level.
     ///
     /// # Errors
-    /// Why it does not.
+    /// The reason why it does not.
     pub(super) fn falls_to(&self, level: f64, envelope: &[(f64, f64)]) -> Result<f64, NoRest> {
         let Some(index) = envelope.iter().rposition(|(_, height)| *height > level) else {
             return Err(NoRest::StaysAbove);

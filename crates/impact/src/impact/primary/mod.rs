@@ -150,7 +150,7 @@ pub struct PrimaryEnergy {
     pub residual: f64,
 }
 
-/// Why a motion ended.
+/// The reason why a motion ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum PrimaryStop {
@@ -176,9 +176,9 @@ pub enum PrimaryStop {
 pub struct PrimaryMotion {
     /// The case.
     pub case: PrimaryCase,
-    /// When it ended.
+    /// The time at which it ended.
     pub end: f64,
-    /// Why.
+    /// The reason.
     pub stop: PrimaryStop,
     /// Every impact.
     pub impacts: Vec<PrimaryImpact>,
@@ -191,7 +191,7 @@ pub struct PrimaryMotion {
     path: PrimaryPath,
 }
 
-/// Why there is nothing to follow.
+/// The reason why there is nothing to follow.
 #[derive(Clone, Debug, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PrimaryError {

@@ -16,7 +16,7 @@ const LAST: f64 = 0.25;
 pub struct PrimaryRow {
     /// The main mass.
     pub primary: Primary,
-    /// When the run ended; 0 for one that was asked to end before it had begun.
+    /// The time at which the run ended; 0 for one that was asked to end before it had begun.
     pub end: f64,
     /// The largest |y| in the last quarter of the run, over L.
     pub amplitude: f64,
@@ -24,12 +24,12 @@ pub struct PrimaryRow {
     pub impacts: usize,
     /// The number of impacts in the whole run.
     pub all_impacts: usize,
-    /// When the main mass comes to rest, as
+    /// The time at which the main mass comes to rest, as
     /// [`PrimaryMotion::rest_time`](super::PrimaryMotion::rest_time) says, or why it does not.
     pub rest_time: Result<f64, NoRest>,
     /// The main mass without its damper and with the damper locked, in closed form.
     pub others: UndampedAndLocked,
-    /// Why the run ended.
+    /// The reason why the run ended.
     pub stop: PrimaryStop,
 }
 

@@ -89,7 +89,7 @@ impl Default for Settings {
     }
 }
 
-/// Why a run ended. Everything before is kept.
+/// The reason why a run ended. Everything before is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SimulationStop {
     /// The end of the duration.
@@ -202,9 +202,9 @@ impl fmt::Display for SimulationStop {
 pub struct ContactRecord {
     /// The side of the barrier.
     pub side: Side,
-    /// When it is touched.
+    /// The time at which it is touched.
     pub entry_time: f64,
-    /// When it is left; `None` if the run ended before.
+    /// The time at which it is left; `None` if the run ended before.
     pub exit_time: Option<f64>,
     /// Speed at the touch; where the motion starts inside the barrier, its speed inwards then,
     /// negative if it leaves.
@@ -321,7 +321,7 @@ pub(super) fn begin_contact(
 /// A moment of rest: x is largest or smallest there, or friction begins or ceases to hold it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TurningPoint {
-    /// When.
+    /// The time.
     pub t: f64,
     /// The position, rad.
     pub x: f64,
@@ -351,7 +351,7 @@ pub struct Simulation {
     pub end_x: f64,
     /// Velocity there.
     pub end_velocity: f64,
-    /// Why it ended there.
+    /// The reason why it ended there.
     pub stop: SimulationStop,
     /// Steps taken.
     pub steps: usize,

@@ -56,7 +56,7 @@ pub struct Rest {
     pub last_crossing: Option<f64>,
 }
 
-/// Why there is no rest time.
+/// The reason why there is no rest time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum NoRest {
@@ -87,7 +87,7 @@ enum RestByTurningPoints {
 }
 
 impl Simulation {
-    /// When it came to rest.
+    /// The time at which it came to rest.
     pub fn rest(&self) -> Rest {
         let amplitude = self.first_swing();
         let place = self.rest_point().x;
@@ -240,8 +240,8 @@ impl Simulation {
         self.integrator != Integrator::Chain && !self.path.pieces().is_empty()
     }
 
-    /// When |x| has fallen to the level on the way from a turning point, or the start, to the next,
-    /// all counted from the place of rest.
+    /// The time at which |x| has fallen to the level on the way from a turning point, or the start,
+    /// to the next, all counted from the place of rest.
     pub(in crate::impact) fn time_of_fall(&self, from: TurningPoint, level: f64) -> Option<f64> {
         if !self.path_tells_the_fall() {
             return self.fall;

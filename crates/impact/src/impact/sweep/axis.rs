@@ -49,7 +49,7 @@ pub struct Axis {
     values: Vec<f64>,
 }
 
-/// Why a text names no axis.
+/// The reason why a text names no axis.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum AxisError {

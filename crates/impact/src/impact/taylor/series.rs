@@ -70,7 +70,7 @@ pub(super) struct Inputs<const L: usize> {
     /// The size of the motion, and the bound of the first term left out of a step.
     pub(super) size: [f64; L],
     pub(super) allowed: [f64; L],
-    /// Between which x or w stays in this phase.
+    /// The bounds of x or w in this phase.
     pub(super) lower: [f64; L],
     pub(super) upper: [f64; L],
 }

@@ -28,7 +28,7 @@ const TOLERANCE: f64 = 1e-14;
 /// Relative tolerance where there are many of them.
 const TOLERANCE_OF_PIECES: f64 = 1e-12;
 
-/// Why there is no period.
+/// The reason why there is no period.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PeriodError {
@@ -90,7 +90,7 @@ pub enum PeriodError {
     RunsAway {
         /// The release point.
         start: f64,
-        /// When.
+        /// The time.
         time: f64,
     },
     /// Released farther out than motions come back from, where what becomes of this one has no

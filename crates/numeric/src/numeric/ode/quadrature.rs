@@ -24,7 +24,7 @@ use std::sync::LazyLock;
 use gauss_quad::GaussLegendre;
 use thiserror::Error;
 
-/// Why no integral was returned.
+/// The reason why no integral was returned.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum QuadratureError {

@@ -21,7 +21,7 @@
 use std::convert::Infallible;
 use thiserror::Error;
 
-/// Why no root was returned.
+/// The reason why no root was returned.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum RootError {

@@ -47,7 +47,7 @@ pub struct EventOccurrence<S = State> {
     pub rising: bool,
 }
 
-/// Why a run ended. Everything before that moment is kept.
+/// The reason why a run ended. Everything before that moment is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StopReason {
     /// The end time was reached.
@@ -180,7 +180,7 @@ impl<S: Sample> Trajectory<S> {
         self.steps.get(self.step_index(t)?).map(|step| step.phase)
     }
 
-    /// Why the run ended.
+    /// The reason why the run ended.
     pub fn stop_reason(&self) -> StopReason {
         self.stop_reason
     }

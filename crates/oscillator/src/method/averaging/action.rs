@@ -83,8 +83,8 @@ pub(super) fn notes(oscillator: &Oscillator, parts: &Parts) -> Vec<Note> {
     note.into_iter().collect()
 }
 
-/// When the amplitude is a part of that at the start, by the action; `None` if damping is not
-/// viscous alone.
+/// The time at which the amplitude is a part of that at the start, by the action; `None` if damping
+/// is not viscous alone.
 pub fn falls_to(
     oscillator: &Oscillator,
     equilibrium: &Expr,

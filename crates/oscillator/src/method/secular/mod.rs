@@ -112,7 +112,7 @@ pub struct SecularSine<R: Ring> {
     pub amplitude: FourierSeries<R>,
 }
 
-/// Why no periodic expansion exists.
+/// The reason why no periodic expansion exists.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SecularError {

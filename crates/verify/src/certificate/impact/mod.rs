@@ -56,7 +56,7 @@ impl ImpactEnclosure {
     }
 }
 
-/// Why an impact is not enclosed.
+/// The reason why an impact is not enclosed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum NotEnclosed {

@@ -94,8 +94,8 @@ impl AmplitudeConvention {
         }
     }
 
-    /// The definition of the symbol for a motion of this coordinate: `A = x(0) - equilibrium, x'(0)
-    /// = 0`.
+    /// The definition of the symbol for a motion of this coordinate:
+    /// `A = x(0) - equilibrium, x'(0) = 0`.
     pub fn in_words(self, coordinate: Symbol) -> String {
         match self {
             Self::Initial => format!(

@@ -4,8 +4,8 @@
 //! h = sum q_i' dL/dq_i' - L,  L = T - V        dh/dt = -dL/dt + sum q_i' (Q_i - dD/dq_i')
 //! ```
 //!
-//! (H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6, for h; of an equation it is `x'^2/2
-//! + V(x)`.) In: coordinates, their accelerations, numbers for every parameter, a start, a
+//! (H. Goldstein, *Classical Mechanics*, 2nd ed., section 2-6, for h; of an equation it is
+//! `x'^2/2 + V(x)`.) In: coordinates, their accelerations, numbers for every parameter, a start, a
 //! duration. Out: a [`Trajectory`]: every state at any time, the balance of energy where a
 //! mechanism has energies, and the same by the other integrator to judge it. Power series go first;
 //! where they end, as at a root or a touch that is not a power series in time, Runge-Kutta takes

@@ -21,8 +21,8 @@ use crate::exact::Rational;
 /// The form of the equation in `ode` of a certificate of a limit cycle.
 pub const EQUATION_OF_CYCLES: &str = "x''+g(x)*x'+h(x)=0";
 
-/// The form of the equation in `ode` of a certificate of a driven motion; c and s are `cos(Omega
-/// t)` and `sin(Omega t)`.
+/// The form of the equation in `ode` of a certificate of a driven motion; c and s are
+/// `cos(Omega t)` and `sin(Omega t)`.
 pub const EQUATION_WITH_DRIVE: &str = "x''+g(x)*x'+h(x,c,s)=0";
 
 /// Numbers from which a limit cycle of `x'' + g(x) x' + h(x) = 0` can be proved, or a steady motion

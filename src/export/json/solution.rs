@@ -206,8 +206,8 @@ pub struct System {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(JsonSchema))]
 pub struct Displacement {
-    /// The name of the angle, `theta`, or `phi` where the equation has a `theta` of its own: theta
-    /// = omega t + `verification.phase`, in radians.
+    /// The name of the angle, `theta`, or `phi` where the equation has a `theta` of its own:
+    /// theta = omega t + `verification.phase`, in radians.
     #[cfg_attr(feature = "schema", schemars(extend("pattern" = "^(theta|phi_*)$")))]
     pub variable: String,
     /// x = sum of cos * cos(harmonic theta) + sin * sin(harmonic theta), lowest harmonic first, the

@@ -87,8 +87,8 @@ impl TermKey {
             };
             match (base.node(), exponent) {
                 (Node::Symbol(symbol), Some(exponent)) => {
-                    // A negative power does not count for the degree: `omega0 + A^2/omega0 +
-                    // A^4/omega0^3`.
+                    // A negative power does not count for the degree:
+                    // `omega0 + A^2/omega0 + A^4/omega0^3`.
                     key.degree += exponent.max(0.0);
                     key.monomial.push((*symbol, exponent));
                 }

@@ -14,8 +14,8 @@
 //!    = (6 F E^2 / (pi^3 R^2))^(1/3)                                           the same, with the E of k
 //! ```
 //!
-//! The paper's equation (3) has the modulus of the barrier alone for E. Ductile bodies with nu
-//! = 0.3 begin to yield, below the middle of the contact, where p0 reaches 1.6 times the yield limit
+//! The paper's equation (3) has the modulus of the barrier alone for E. Ductile bodies with nu =
+//! 0.3 begin to yield, below the middle of the contact, where p0 reaches 1.6 times the yield limit
 //! Y of the softer one: above that the law of Hertz no longer holds (K. L. Johnson, *Contact
 //! Mechanics*, 1985, chapters 4 and 6).
 

@@ -181,8 +181,8 @@ mod tests {
         }
     }
 
-    /// Schaffer's problem, x^2 and (x - 2)^2: the front is 0 <= x <= 2, where sqrt(f1) + sqrt(f2)
-    /// = 2.
+    /// Schaffer's problem, x^2 and (x - 2)^2: the front is 0 <= x <= 2, where sqrt(f1) + sqrt(f2) =
+    /// 2.
     #[test]
     fn a_known_front_is_found_and_covered() {
         let space = Space::new(vec![[-100.0, 100.0]]).unwrap();

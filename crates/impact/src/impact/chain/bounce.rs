@@ -36,8 +36,8 @@ struct ContactConstants {
     /// int_0^1 sqrt(1 - y^(5/2)) dy: the area of half a contact in the phase plane in units of v D,
     /// p = 0.
     area: f64,
-    /// int_0^1 y^(3/2) sqrt(1 - y^(5/2)) dy: the work of its damping in units of mu v D^(5/2), p
-    /// = 0.
+    /// int_0^1 y^(3/2) sqrt(1 - y^(5/2)) dy: the work of its damping in units of mu v D^(5/2), p =
+    /// 0.
     loss: f64,
 }
 

@@ -412,7 +412,7 @@ impl<'a> Chain<'a> {
             let mean = 0.5 * (before.energy + after.energy);
             let time = leg.time + stretched * (mean - swing.energy);
             self.swing([before.energy, after.energy], time, side, [-before.x, after.x]);
-            self.from_turning_point(side, turn, None)?;
+            self.rest_at_turning_point(side, turn, None)?;
             if self.stop.is_some() {
                 return None;
             }
@@ -447,7 +447,7 @@ impl<'a> Chain<'a> {
         }
         let time = before.quarter.time + after.quarter.time;
         self.swing([from.energy, turn.energy], time, to, [-from.x, turn.x]);
-        self.from_turning_point(to, turn, None)
+        self.rest_at_turning_point(to, turn, None)
     }
 
     /// Continues from an angle on the way to a side: to the barrier there, or to the turning point.
@@ -496,11 +496,11 @@ impl<'a> Chain<'a> {
             };
             (swing, reach)
         });
-        self.from_turning_point(to, turn, known)
+        self.rest_at_turning_point(to, turn, known)
     }
 
     /// The pendulum rests at this spot for a moment, or for good.
-    fn from_turning_point(
+    fn rest_at_turning_point(
         &mut self,
         side: Side,
         turn: SwingAngle,

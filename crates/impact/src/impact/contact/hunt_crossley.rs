@@ -13,8 +13,8 @@
 //! ```
 //!
 //! with W Lambert's function. Neither branch is computed by W: near the deepest point, and all
-//! along where lambda v is small, its argument -exp(-1 - G) has lost the digits of z, and beyond G
-//! = 745 it underflows. `G(z) = z^2 (1 + psi(z))/2` is inverted by a root instead, psi by its
+//! along where lambda v is small, its argument -exp(-1 - G) has lost the digits of z, and beyond
+//! G = 745 it underflows. `G(z) = z^2 (1 + psi(z))/2` is inverted by a root instead, psi by its
 //! series near zero.
 //!
 //! ```text

@@ -273,8 +273,8 @@ fn creep(alpha: f64, x: f64) -> Result<Creep, FrictionError> {
 }
 
 /// The rate at which a linear motion dies, from four places at equal distances of time: the slow
-/// one of two, or that of both where it swings; `None` if there is no motion. (R. Prony, 1795: x_2
-/// = p x_1 + q x_0, and z^2 = p z + q for z = e^(-rate step).)
+/// one of two, or that of both where it swings; `None` if there is no motion. (R. Prony, 1795:
+/// x_2 = p x_1 + q x_0, and z^2 = p z + q for z = e^(-rate step).)
 fn rate_of([x0, x1, x2, x3]: [f64; 4], step: f64) -> Option<f64> {
     let determinant = x1 * x1 - x0 * x2;
     let decay = match determinant.abs() < 1e-6 * x1 * x1 {

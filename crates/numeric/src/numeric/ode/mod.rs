@@ -346,8 +346,8 @@ mod tests {
 
     #[test]
     fn a_bouncing_ball_stalls_where_its_bounces_accumulate() {
-        // Dropped from height 1/2 with restitution 1/2: first touch at t = 1, the bounces end at t
-        // = 1 + 2 (1/2 + 1/4 + ...).
+        // Dropped from height 1/2 with restitution 1/2: first touch at t = 1, the bounces end at
+        // t = 1 + 2 (1/2 + 1/4 + ...).
         let rebound =
             Event::switch(|_, x, _| x, |state| (0, State { x: 0.0, v: -0.5 * state.v, ..state }))
                 .falling();

@@ -28,8 +28,9 @@
 //!
 //! where `D = g(X) X'`, eps is what a series leaves out, W is the last harmonic of g(X) and h'(X),
 //! and the norms of Z2 are over the ball of radius R. Z2 bounds the second derivative of F at u =
-//! (q, v) and u' = (q', v'), `q (g v')' + q' (g v)' + 2 q q' h + 2 p h' (q v' + q' v) + p (g' v
-//! v')' + p^2 h'' v v'`, term by term.
+//! (q, v) and u' = (q', v'),
+//! `q (g v')' + q' (g v)' + 2 q q' h + 2 p h' (q v' + q' v) + p (g' v v')' + p^2 h'' v v'`, term by
+//! term.
 //!
 //! If `Z1 < 1`, `D > 0`, `r <= R`, `Z1 + Z2 r < 1` (`radii_polynomial.rs`), `r/sigma < p` and
 //! `r < a_1`, there is exactly one zero of F in the ball of radius r: B is onto, hence its matrix
@@ -50,9 +51,10 @@
 //! Of a driven equation, `x'' + g(x) x' + h(x, cos(Omega t), sin(Omega t)) = 0`, p is known, a
 //! whole number n of periods of the drive to a turn of theta: `p = n/Omega`. Then p is not an
 //! unknown, b_1 is one, and all that belongs to p above is left out: its column, the first two
-//! terms of Z2, and `R/sigma` in P. With h along X goes the drive, `cos(n theta)` and `sin(n
-//! theta)`; its derivative is that by x. The zero in the ball is a motion that repeats itself after
-//! n periods of the drive; that it takes fewer, and that it attracts, are not excluded.
+//! terms of Z2, and `R/sigma` in P. With h along X goes the drive, `cos(n theta)` and
+//! `sin(n theta)`; its derivative is that by x. The zero in the ball is a motion that repeats
+//! itself after n periods of the drive; that it takes fewer, and that it attracts, are not
+//! excluded.
 //!
 //! Source: A. Hungria, J.-P. Lessard, J. D. Mireles James: Rigorous numerics for analytic solutions
 //! of differential equations: the radii polynomial approach, Mathematics of Computation 85 (2016),

@@ -703,7 +703,7 @@ impl Oscillator {
     }
 
     /// Whether `parameter = 0` leaves `x'' + omega0^2 x = 0`, and the equation is not that already.
-    /// What is left of a bead on a wire that turns, `-Omega^2 x`, is no such thing.
+    /// The remainder `-Omega^2 x` of a bead on a turning wire does not count.
     fn is_linear_without(&self, parameter: Symbol) -> bool {
         let Ok(rest) =
             self.force.substitute(parameter, &Expr::zero()).and_then(|rest| rest.expand())

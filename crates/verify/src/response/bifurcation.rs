@@ -19,7 +19,7 @@ use super::continuation::BranchNode;
 use super::stability::Floquet;
 use crate::numeric::ode::root::{BisectionStop, find_root, try_bisect};
 
-/// What happens at a point of a branch.
+/// The kind of a bifurcation on a branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]

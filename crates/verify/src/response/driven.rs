@@ -8,7 +8,7 @@
 //! periods of the drive, n, a period of the motion takes. Out: f and its derivatives by x, x' and p
 //! at a fixed phase as straight lists of operations. Time may stand inside `sin`, `cos` and `tan`
 //! alone, as `Omega*t + phase`; the frequencies found there must be whole multiples of one, Omega.
-//! Where it does not occur at all, omega is an unknown of every motion.
+//! If it does not occur at all, omega is an unknown of every motion.
 
 use num_integer::Integer as _;
 use num_traits::{Signed, Zero};

@@ -2,7 +2,7 @@
 //! bracket.
 //!
 //! In: a continuous function and an interval. Out: the point, to the last bits of a double.
-//! Where there is no value but only a yes or a no, [`bisect`] halves the interval.
+//! For a property that only holds or not, [`bisect`] halves the interval.
 //!
 //! [`find_root`]: Chandrupatla's hybrid of inverse quadratic interpolation and bisection (T. R.
 //! Chandrupatla, *Adv. Eng. Software* 28 (1997) 145): the interpolation is taken only where the

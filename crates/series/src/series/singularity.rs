@@ -332,8 +332,7 @@ impl Field for Floats {
     }
 }
 
-/// The polynomials of an approximant: one that vanishes at a singularity, and those of its
-/// exponent.
+/// The polynomials of an approximant: one that vanishes at a singularity, and one for its exponent.
 struct Approximant {
     /// D or P.
     zero: Vec<BigFloat>,

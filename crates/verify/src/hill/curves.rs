@@ -116,8 +116,7 @@ fn separate(
         of_waves("a", tongue, power.solved(cosine, tongue)),
         of_waves("b", tongue, power.solved(sine, tongue)),
     ];
-    // The order of the two curves may show beyond the truncation order only: the n-th tongue opens
-    // with the power n or later.
+    // The order of the two curves may show only beyond the truncation order.
     let further = match pair[0].middle == pair[1].middle {
         false => None,
         true => Some(effective_matrix(hill, tongue, order + 2 * tongue as u32)),
